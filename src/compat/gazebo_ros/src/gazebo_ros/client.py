@@ -1,0 +1,38 @@
+"""Stands in for Gazebo's window: says once how to look at the world, then waits for the end."""
+
+import argparse
+import os
+import signal
+import socket
+import sys
+import time
+from urllib.parse import urlsplit
+
+HOW_TO_LOOK = (
+    "No 3D window here. See what a camera sees: rosrun image_view image_view "
+    "image:=/camera/rgb/image_raw (rostopic list shows the cameras); see the robot: rviz"
+)
+POLL_PERIOD = 2.0  # s
+
+
+def master_is_there() -> bool:
+    uri = urlsplit(os.environ.get("ROS_MASTER_URI", "http://localhost:11311"))
+    try:
+        socket.create_connection((uri.hostname, uri.port or 11311), timeout=POLL_PERIOD).close()
+    except OSError:
+        return False
+    return True
+
+
+def main() -> None:
+    """No ROS node on purpose: one would be handed every /clock message."""
+    parser = argparse.ArgumentParser(prog="gzclient", description=HOW_TO_LOOK)
+    parser.add_argument("-v", "--version", action="version", version="gzclient: no window")
+    parser.parse_known_args([word for word in sys.argv[1:] if ":=" not in word])
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: sys.exit(0))
+    print(f"[gzclient] {HOW_TO_LOOK}", flush=True)
+    seen = False
+    while (there := master_is_there()) or not seen:
+        seen |= there
+        time.sleep(POLL_PERIOD)

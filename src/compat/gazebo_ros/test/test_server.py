@@ -1,0 +1,110 @@
+"""gzserver and gzclient: Gazebo's options to the node's, and processes that end when told."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from gazebo_ros.server import node_arguments
+
+SCRIPTS = Path(__file__).resolve().parents[1] / "scripts"
+FAKE_NODE = """
+import os, signal, sys, time
+def stop(*_):
+    print("stopped", flush=True)
+    sys.exit(3)
+signal.signal(signal.SIGINT, stop)
+print(os.getpid(), sys.flags.dev_mode, sys.flags.safe_path, *sys.argv[1:], flush=True)
+time.sleep(60)
+"""
+PLAIN = ["--world", "worlds/empty.world", "--physics", "ode"]
+
+
+@pytest.mark.parametrize(("words", "expected"), [
+    ([], PLAIN),
+    (["-e", "bullet", "/a b.world"], ["--world", "/a b.world", "--physics", "bullet"]),
+    (["-u", "-r", "--verbose", "-e", "ode"], [*PLAIN, "--paused", "--verbose"]),
+    (["--seed", "-4", "--iters", "5", "--initial_sim_time", "2.5"],
+     [*PLAIN, "--seed=-4", "--iters=5", "--initial-sim-time=2.5"]),
+    (["__name:=gazebo", "x.world", "/scan:=/s"],
+     ["--world", "x.world", "--physics", "ode", "__name:=gazebo", "/scan:=/s"]),
+    (["-s", "libgazebo_ros_api_plugin.so", "-p", "log", "-o", "fast", "-g", "lib.so", "--lockstep",
+      "--minimal_comms", "--record_path", "p", "--record_period", "1", "--record_filter", "f",
+      "--record_encoding", "txt", "--record_resources"], PLAIN),
+    (["--nobody-knows", "x.world", "second", "third"],
+     ["--world", "x.world", "--physics", "ode"]),
+])
+def test_gazebos_options_become_the_nodes(words, expected):
+    assert node_arguments("gzserver", words) == expected
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts a script with a node that only tells what it was given; kills what is left."""
+    package = tmp_path / "bullet_sim_ros"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "node.py").write_text(FAKE_NODE)
+    running = []
+
+    def start_script(name, *words, **variables):
+        path = f"{tmp_path}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
+        process = subprocess.Popen(
+            [sys.executable, SCRIPTS / name, *words], text=True, cwd=tmp_path,
+            env=os.environ | {"PYTHONPATH": path} | variables,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        running.append(process)
+        return process
+
+    yield start_script
+    for process in running:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize(("name", "dev"), [("gzserver", "False"), ("debug", "True")])
+def test_the_script_becomes_the_node(start, name, dev):
+    process = start(name, "-u", "a.world", "__name:=gazebo")
+    assert process.stdout.readline().split() == [
+        str(process.pid), dev, "True", "--world", "a.world", "--physics", "ode", "--paused",
+        "__name:=gazebo"]
+    process.send_signal(signal.SIGINT)
+    assert process.stdout.readline() == "stopped\n" and process.wait(10) == 3
+
+
+def test_gazebo_is_the_clients_line_and_the_server(start):
+    process = start("gazebo", "a.world")
+    assert "image_view" in process.stdout.readline()
+    assert process.stdout.readline().split()[0] == str(process.pid)
+
+
+@pytest.mark.parametrize("name", ["gzserver", "gzclient", "gazebo", "debug"])
+@pytest.mark.parametrize("option", ["-h", "--help", "-v", "--version"])
+def test_help_and_version(start, name, option):
+    process = start(name, option)
+    said, _ = process.communicate(timeout=20)
+    assert process.returncode == 0 and name in said
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_client_says_how_to_look_and_ends_with_0(start, number):
+    process = start("gzclient", "--verbose", "__name:=gazebo_gui")
+    line = process.stdout.readline()
+    assert "rosrun image_view image_view" in line and "rviz" in line
+    process.send_signal(number)
+    said, _ = process.communicate(timeout=10)
+    assert (said, process.returncode) == ("", 0)
+
+
+def test_the_client_ends_when_the_master_is_gone(start):
+    master = socket.create_server(("localhost", 0))
+    uri = f"http://localhost:{master.getsockname()[1]}"
+    process = start("gzclient", ROS_MASTER_URI=uri)
+    master.settimeout(20)
+    master.accept()[0].close()
+    assert process.poll() is None
+    master.close()
+    assert process.wait(20) == 0

@@ -1,0 +1,128 @@
+"""The command line of spawn_model, and the XML it takes from files, parameters and text."""
+
+import io
+import math
+from xml.etree import ElementTree
+
+import pytest
+import rospy
+from gazebo_ros import model_source, spawn_arguments, spawning
+
+NEEDED = ["-urdf", "-param", "robot_description", "-model", "car"]
+
+
+def parse(*words):
+    return spawn_arguments.parser().parse_args(words)
+
+
+def test_defaults(monkeypatch):
+    monkeypatch.setattr(rospy, "get_namespace", lambda: "/tb3_0/")
+    options = parse(*NEEDED)
+    assert (options.urdf, options.sdf, options.param, options.model) \
+        == (True, False, "robot_description", "car")
+    assert (options.gazebo_namespace, options.robot_namespace, options.reference_frame) \
+        == ("/gazebo", "/tb3_0/", "")
+    assert (options.wait, options.unpause, options.b, options.package_to_model, options.joints) \
+        == (None, False, False, False, [])
+    assert spawning.pose_from(options).orientation.w == 1.0
+
+
+def test_pose_and_negative_numbers():
+    pose = spawning.pose_from(parse(*NEEDED, "-x", "-1.5", "-y", "2", "-Y", str(math.pi / 2)))
+    assert (pose.position.x, pose.position.y, pose.position.z) == (-1.5, 2.0, 0.0)
+    assert math.isclose(pose.orientation.z, math.sqrt(0.5))
+    pose = spawning.pose_from(parse(*NEEDED, "-R", "0.1", "-P", "0.2", "-Y", "0.3"))
+    # tf.transformations.quaternion_from_euler(0.1, 0.2, 0.3)
+    expected = (0.0342708, 0.1060205, 0.1435722, 0.9833474)
+    turn = pose.orientation
+    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx(expected, abs=1e-6)
+
+
+def test_prefixes_of_flags_are_enough():
+    options = parse(*NEEDED, "-gazebo", "/sim", "-ref", "map", "-robot", "r1")
+    assert (options.gazebo_namespace, options.reference_frame, options.robot_namespace) \
+        == ("/sim", "map", "r1")
+
+
+@pytest.mark.parametrize("words", [
+    [], NEEDED[1:], NEEDED[:-2], ["-urdf", "-model", "car"], [*NEEDED, "-sdf"],
+    [*NEEDED, "-file", "x"], [*NEEDED, "-trimesh"], [*NEEDED, "-x", "far"],
+    [*NEEDED, "-x", "-1e-3"], [*NEEDED, "-J", "wheel"],
+])
+def test_a_wrong_command_line_is_exit_code_2(words, capsys):
+    with pytest.raises(SystemExit) as caught:
+        parse(*words)
+    assert caught.value.code == 2 and "usage: spawn_model" in capsys.readouterr().err
+
+
+def test_joint_positions():
+    options = parse(*NEEDED, "-J", "a", "1.5", "-J", "b", "-0.5")
+    assert spawn_arguments.joint_positions(options.joints) == [1.5, -0.5]
+    options = parse(*NEEDED, "-J", "a", "1", "-J", "b", "up")
+    with pytest.raises(ValueError, match="Error: -J b up: up is not a number"):
+        spawn_arguments.joint_positions(options.joints)
+
+
+def load(*source):
+    return model_source.load(parse("-urdf", "-model", "car", *source))
+
+
+def test_a_file_keeps_its_meaning(tmp_path):
+    path = tmp_path / "car.urdf"
+    path.write_bytes('<?xml version="1.0" encoding="utf-8"?><!-- 注 --><robot name="车"/>'.encode())
+    text = load("-file", str(path))
+    assert text.isascii() and ElementTree.fromstring(text).get("name") == "车"
+
+
+@pytest.mark.parametrize(("content", "said"), [
+    (None, "Error: specified file {} does not exist"), ("folder", "Error: specified file {} is not"
+     " a file"), (b"", "Error: file {} is empty"), (b"<robot>", "Invalid XML: no element found"),
+])
+def test_files_that_cannot_be_used(tmp_path, content, said):
+    path = tmp_path / "car.urdf"
+    if content == "folder":
+        path.mkdir()
+    elif content is not None:
+        path.write_bytes(content)
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-file", str(path))
+    assert str(caught.value).startswith(said.format(path))
+    assert isinstance(caught.value, model_source.NoSuchFileError) == ("specified" in said)
+
+
+def test_standard_input(monkeypatch):
+    monkeypatch.setattr("sys.stdin", io.StringIO('<robot name="r"/>'))
+    assert load("-stdin") == '<robot name="r" />'
+    with pytest.raises(model_source.SourceError, match="Error: stdin buffer was empty"):
+        load("-stdin")
+
+
+def test_the_model_database_is_an_include():
+    root = ElementTree.fromstring(load("-database", "coke_can"))
+    assert root.find("world[@name='default']/include/uri").text == "model://coke_can"
+
+
+def test_package_to_model(monkeypatch):
+    text = '<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://"/></robot>'
+    monkeypatch.setattr(rospy, "get_param", lambda name: text)
+    meshes = ElementTree.fromstring(load("-param", "d", "-package_to_model")).findall("mesh")
+    assert [m.get("filename") for m in meshes] == ["model://p/a.dae", "file:///package://"]
+    assert "package://p/a.dae" in load("-param", "d")
+
+
+def test_a_missing_parameter_names_those_there_are(monkeypatch):
+    def missing(name):
+        raise KeyError(name)
+
+    monkeypatch.setattr(rospy, "get_param", missing)
+    monkeypatch.setattr(rospy, "get_param_names", lambda: ["/b/robot_description", "/rate"])
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-param", "robot_description")
+    assert str(caught.value) == ("Error: parameter /robot_description is not set; "
+                                 "there are: /b/robot_description")
+
+
+def test_an_empty_parameter(monkeypatch):
+    monkeypatch.setattr(rospy, "get_param", lambda name: "")
+    with pytest.raises(model_source.SourceError, match="param does not exist or is empty"):
+        load("-param", "robot_description")
