@@ -1,0 +1,1 @@
+"""Drive trains: from a velocity command to joint motors, and odometry back."""

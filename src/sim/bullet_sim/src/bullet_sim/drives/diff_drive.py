@@ -1,0 +1,55 @@
+"""Differential drive: two velocity motors, with Gazebo's limit on wheel acceleration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.model import Joint
+
+SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
+
+
+@dataclass(frozen=True)
+class DiffDriveParameters:
+    """Geometry and motors; defaults are those of gazebo_ros_diff_drive."""
+
+    wheel_separation: float = 0.34  # m
+    wheel_diameter: float = 0.15  # m
+    wheel_acceleration: float = 0.0  # m/s^2 at the rim; 0: immediate
+    wheel_torque: float = 5.0  # N m
+
+
+class DiffDrive:
+    """Turns (forward, yaw rate) into motor targets; call `update` at the drive's own rate."""
+
+    def __init__(self, left: Joint, right: Joint, parameters: DiffDriveParameters):
+        self._left, self._right = left, right
+        self._parameters = parameters
+        self.stop()
+
+    def command(self, forward: float, yaw_rate: float) -> None:
+        """Wanted speed (m/s) and rate of yaw (rad/s); held until the next command."""
+        half = yaw_rate * self._parameters.wheel_separation / 2
+        self._wanted = (forward - half, forward + half)
+
+    def stop(self) -> None:
+        """Forget command and ramp."""
+        self._wanted = (0.0, 0.0)
+        self._commanded = (0.0, 0.0)
+
+    def update(self, elapsed: float) -> None:
+        """Move the motor targets towards the command; `elapsed` in s since the last update."""
+        p = self._parameters
+        self._commanded = ramp(self._commanded, self._wanted, p.wheel_acceleration * elapsed)
+        radius = p.wheel_diameter / 2
+        for joint, speed in zip((self._left, self._right), self._commanded, strict=True):
+            joint.drive_velocity(speed / radius, p.wheel_torque)
+
+
+def ramp(now: tuple[float, float], wanted: tuple[float, float],
+         step: float) -> tuple[float, float]:
+    """Rim speeds after one update. A step of 0, or one wheel already there, means at once."""
+    gaps = [w - n for n, w in zip(now, wanted, strict=True)]
+    if step <= 0 or min(abs(gap) for gap in gaps) < SETTLED:
+        return wanted
+    return tuple(n + max(-step, min(step, gap)) for n, gap in zip(now, gaps, strict=True))

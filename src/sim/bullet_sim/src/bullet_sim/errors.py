@@ -1,0 +1,35 @@
+"""The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class SimulationError(Exception):
+    """Base of everything the simulator core raises on purpose."""
+
+
+class FormatError(SimulationError):
+    """A model, world, material or xacro text that cannot be understood."""
+
+
+class ResourceNotFound(SimulationError):
+    """A URI or file name that is in none of the searched folders."""
+
+    def __init__(self, uri: str, searched: Iterable[str] = ()):
+        self.uri = uri
+        self.searched = tuple(str(place) for place in searched)
+        places = ", ".join(self.searched) or "nowhere to look"
+        super().__init__(f"{uri} not found (searched: {places})")
+
+
+class UnknownName(SimulationError):
+    """A model, link or joint that does not exist."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]):
+        self.kind, self.name, self.known = kind, name, tuple(known)
+        super().__init__(f"no {kind} named {name!r}; there are: {', '.join(self.known) or 'none'}")
+
+
+class NameTaken(SimulationError):
+    """A model of that name is already in the world."""

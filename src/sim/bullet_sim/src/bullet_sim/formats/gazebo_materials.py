@@ -1,0 +1,21 @@
+"""The materials that Gazebo knows by name, such as `Gazebo/Grey`, read from a table in data/."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+
+from bullet_sim.description import Material
+from bullet_sim.formats.resources import DATA_FOLDER
+
+
+@cache
+def named_materials() -> dict[str, Material]:
+    """All of them by full name."""
+    with (DATA_FOLDER / "gazebo_materials.toml").open("rb") as file:
+        table = tomllib.load(file)
+    return {name: Material(**_as_fields(entry)) for name, entry in table.items()}
+
+
+def _as_fields(entry: dict) -> dict:
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()}

@@ -1,0 +1,110 @@
+"""Reads a model, light or world from its text: URDF or SDF, told apart by the root element."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.formats import sdf_model, sdf_world
+from bullet_sim.formats.resources import Resources
+from bullet_sim.formats.sdf_include import read_include
+from bullet_sim.formats.sdf_light import read_light
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.urdf import read_robot
+from bullet_sim.formats.xml_values import parse_xml, read_xml_file
+
+SDF_ROOTS = ("sdf", "gazebo")
+PACKAGE_URI = re.compile(r"package://([^/\s\"'<>]+)")
+COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+
+
+def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
+    """The model of a URDF or SDF text; `name` replaces the one in the text."""
+    root = parse_xml(text, "model")
+    if root.tag == "robot":
+        root = parse_xml(_with_package_folders(text, resources), "model")
+        if name:
+            root.set("name", name)
+    elif root.tag not in SDF_ROOTS:
+        raise FormatError(
+            "GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, or cannot be "
+            f"converted to Gazebo compatible format. (the root element is <{root.tag}>)"
+        )
+    model = _read_root(root, Source(resources))
+    return replace(model, name=name) if name else model
+
+
+def load_light(text: str, resources: Resources, name: str | None = None) -> LightDescription | None:
+    """The light of an SDF text whose root's first child is one; None for other texts."""
+    root = parse_xml(text, "model")
+    if root.tag not in SDF_ROOTS or len(root) == 0 or root[0].tag != "light":
+        return None
+    light = read_light(root[0])
+    return replace(light, name=name) if name else light
+
+
+def load_world(path: Path | str, resources: Resources) -> WorldDescription:
+    """The first world of a file; `Resources.find_world` finds the file."""
+    path = Path(path)
+    if not path.is_file():
+        raise ResourceNotFound(f"world file {path}", [str(path.parent)])
+    root = read_xml_file(path)
+    world = root.find("world") if root.tag in SDF_ROOTS else None
+    if world is None:
+        raise FormatError(f"{path} has no <world> in an <sdf> root (the root is <{root.tag}>)")
+    source = Source(resources).entering(path.resolve()).of_root(root)
+    try:
+        return sdf_world.read_world(world, source, _read_model, _read_include)
+    except FormatError as error:
+        raise FormatError(f"{path}: {error}") from error
+
+
+def _with_package_folders(text: str, resources: Resources) -> str:
+    """The text with `package://NAME` as the package's folder, as the URDF spawn service does."""
+    def folder(match: re.Match) -> str:
+        try:
+            return str(resources.package_folder(match[1]))
+        except ResourceNotFound as error:
+            raise FormatError(
+                f"urdf reference package name does not exist: {match[1]}"
+            ) from error
+    return PACKAGE_URI.sub(folder, COMMENT.sub("", text))
+
+
+def _read_root(root: Element, source: Source) -> ModelDescription:
+    if root.tag == "robot":
+        return read_robot(root, source)
+    source = source.of_root(root)
+    model = root.find("model")
+    if model is None:
+        model = root.find("world/model")
+    if model is not None:
+        return _read_model(model, source)
+    # what spawn_model -database sends: a world that only includes the model
+    include = root.find("world/include")
+    if include is None:
+        raise FormatError(f"no <model> in the <{root.tag}> text")
+    found = _read_include(include, source)
+    if not isinstance(found, ModelDescription):
+        uri = (include.findtext("uri") or "").strip()
+        raise FormatError(f"<include> of {uri!r} brings in no model")
+    return found
+
+
+def _read_model(element: Element, source: Source) -> ModelDescription:
+    return sdf_model.read_model(element, source, _included_model)
+
+
+def _read_include(
+    include: Element, source: Source
+) -> ModelDescription | LightDescription | None:
+    return read_include(include, source, _read_root)
+
+
+def _included_model(include: Element, source: Source) -> ModelDescription | None:
+    found = _read_include(include, source)
+    return found if isinstance(found, ModelDescription) else None

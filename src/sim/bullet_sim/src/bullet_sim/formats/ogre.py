@@ -1,0 +1,154 @@
+"""Parses the part of OGRE's material scripts that Gazebo models use: first pass, first texture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from bullet_sim.description import Material, Rgba
+from bullet_sim.errors import FormatError
+
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+WORD = re.compile(r'"([^"]*)"|(\S+)')
+SECTIONS = ("technique", "pass", "texture_unit")  # of each, only the first counts
+
+
+@dataclass
+class ScriptMaterial:
+    """A material as written: keyword -> its arguments."""
+
+    name: str
+    parent: str | None = None
+    values: dict[str, list[str]] = field(default_factory=dict)
+
+
+def parse_script(text: str) -> dict[str, ScriptMaterial]:
+    """All materials of a script by name."""
+    statements = _statements(text)
+    materials: dict[str, ScriptMaterial] = {}
+    for words in statements:
+        if words == ["{"]:
+            _skip_block(statements)
+        elif words[0] == "material" and len(words) > 1:
+            material = _header(words[1:])
+            if next(statements, None) != ["{"]:
+                raise FormatError(f"material {material.name!r}: expected '{{' after its name")
+            _read_block(statements, material, set())
+            materials[material.name] = material
+    return materials
+
+
+def to_material(
+    name: str,
+    materials: dict[str, ScriptMaterial],
+    find_texture: Callable[[str], str | None],
+) -> Material:
+    """The description of a parsed material, with what it inherits."""
+    values = _inherited(name, materials)
+    shown = Material()
+    specular, shininess = _specular(name, values.get("specular"))
+    texture = values.get("texture")
+    scale = _numbers(name, "scale", values.get("scale", ["1", "1"])[:2])
+    return Material(
+        ambient=_colour(name, "ambient", values, shown.ambient),
+        diffuse=_colour(name, "diffuse", values, shown.diffuse),
+        specular=specular,
+        emissive=_colour(name, "emissive", values, shown.emissive),
+        shininess=shininess,
+        texture=find_texture(texture[0]) if texture else None,
+        texture_scale=(scale[0], scale[-1]),
+        lighting=values.get("lighting", ["on"])[:1] != ["off"],
+    )
+
+
+def _statements(text: str) -> Iterator[list[str]]:
+    """Lines as words; a brace is a statement of its own."""
+    spread = re.sub(r"([{}])", r"\n\1\n", COMMENT.sub("", text))
+    for line in spread.splitlines():
+        words = [quoted or bare for quoted, bare in WORD.findall(line)]
+        if words:
+            yield words
+
+
+def _header(words: list[str]) -> ScriptMaterial:
+    name, _, rest = " ".join(words).partition(":") if ":" in words else (" ".join(words), "", "")
+    return ScriptMaterial(name.strip(), rest.strip() or None)
+
+
+def _read_block(statements: Iterator[list[str]], material: ScriptMaterial, seen: set[str]) -> None:
+    """Statements up to the closing brace; `seen` holds the kinds of section already read."""
+    pending: list[str] | None = None
+    for words in statements:
+        if words == ["}"]:
+            _keep(material, pending)
+            return
+        if words == ["{"]:
+            kind = pending[0] if pending else ""
+            pending = None
+            if kind in SECTIONS and kind not in seen:
+                seen.add(kind)
+                _read_block(statements, material, seen)
+            else:
+                _skip_block(statements)
+        else:
+            _keep(material, pending)
+            pending = words
+    raise FormatError(f"material {material.name!r}: a '}}' is missing")
+
+
+def _keep(material: ScriptMaterial, words: list[str] | None) -> None:
+    if words and words[0] not in SECTIONS and len(words) > 1:
+        material.values[words[0]] = words[1:]
+
+
+def _skip_block(statements: Iterator[list[str]]) -> None:
+    depth = 1
+    for words in statements:
+        depth += {"{": 1, "}": -1}.get(words[0], 0)
+        if depth == 0:
+            return
+
+
+def _inherited(name: str, materials: dict[str, ScriptMaterial]) -> dict[str, list[str]]:
+    chain: list[str] = []
+    current: str | None = name
+    while current in materials and current not in chain:
+        chain.append(current)
+        current = materials[current].parent
+    values: dict[str, list[str]] = {}
+    for ancestor in reversed(chain):
+        values.update(materials[ancestor].values)
+    return values
+
+
+def _colour(name: str, keyword: str, values: dict[str, list[str]], default: Rgba) -> Rgba:
+    words = values.get(keyword)
+    if words is None or words == ["vertexcolour"]:
+        return default
+    return _rgba(name, keyword, words)
+
+
+def _specular(name: str, words: list[str] | None) -> tuple[Rgba, float]:
+    """OGRE writes the shininess as the last number, after three or four of colour."""
+    if words is None or "vertexcolour" in words:
+        return Material().specular, Material().shininess
+    if len(words) < 4:
+        return _rgba(name, "specular", words), 0.0
+    return _rgba(name, "specular", words[:-1]), _numbers(name, "specular", words[-1:])[0]
+
+
+def _rgba(name: str, keyword: str, words: list[str]) -> Rgba:
+    values = _numbers(name, keyword, words)
+    if len(values) not in (3, 4):
+        raise FormatError(f"material {name!r}: {keyword} {' '.join(words)!r} is not a colour")
+    return (*values, 1.0)[:4]
+
+
+def _numbers(name: str, keyword: str, words: list[str]) -> list[float]:
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        raise FormatError(
+            f"material {name!r}: {keyword} {' '.join(words)!r} has a word that is no number"
+        ) from None

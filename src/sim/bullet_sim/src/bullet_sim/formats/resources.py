@@ -1,0 +1,99 @@
+"""Finds the files behind `model://`, `package://`, `file://` and plain names, in Gazebo's order."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from bullet_sim.errors import ResourceNotFound
+
+DATA_FOLDER = Path(__file__).resolve().parent.parent / "data"
+RESOURCE_SUBFOLDERS = ("", "models", "media/models", "Media/models")
+
+FindPackage = Callable[[str], str]
+
+
+class Resources:
+    """Search paths of one simulator. `find_package` gives a package's folder or raises."""
+
+    def __init__(
+        self,
+        model_paths: Iterable[str | Path] = (),
+        resource_paths: Iterable[str | Path] = (),
+        find_package: FindPackage | None = None,
+    ):
+        self.model_paths = _unique(model_paths)
+        self.resource_paths = _unique(resource_paths)
+        self._find_package = find_package
+
+    @classmethod
+    def from_environment(
+        cls,
+        environ: Mapping[str, str] = os.environ,
+        extra_model_paths: Iterable[str | Path] = (),
+        extra_resource_paths: Iterable[str | Path] = (),
+        find_package: FindPackage | None = None,
+    ) -> Resources:
+        """Gazebo's paths: home, our own folders, the environment's, then what packages export."""
+        home = Path(environ.get("HOME") or Path.home())
+        models = [home / ".gazebo" / "models", DATA_FOLDER / "models"]
+        return cls(
+            [*models, *_listed(environ, "GAZEBO_MODEL_PATH"), *extra_model_paths],
+            [DATA_FOLDER, *_listed(environ, "GAZEBO_RESOURCE_PATH"), *extra_resource_paths],
+            find_package,
+        )
+
+    def resolve(self, uri: str, base: Path | None = None) -> Path:
+        """The existing file or folder behind a URI; `base` is the folder of the text it is in."""
+        scheme, separator, rest = uri.strip().partition("://")
+        if not separator:
+            return self._first(uri, self._plain_candidates(uri.strip(), base))
+        if scheme == "model":
+            return self._first(uri, [folder / rest for folder in self.model_paths])
+        if scheme == "package":
+            package, _, inside = rest.partition("/")
+            return self._first(uri, [self.package_folder(package) / inside])
+        if scheme == "file":
+            return self._first(uri, self._plain_candidates(rest, base))
+        raise ResourceNotFound(uri, ["nowhere, unknown URI prefix; known: model package file"])
+
+    def find_world(self, name: str) -> Path:
+        """A world file: as given, else below the resource paths."""
+        return self._first(name, self._plain_candidates(name, Path.cwd()))
+
+    def package_folder(self, package: str) -> Path:
+        """Folder of a ROS package."""
+        if self._find_package is None:
+            raise ResourceNotFound(f"package {package}", ["no package finder was given"])
+        try:
+            found = self._find_package(package)
+        except Exception as error:  # a finder brings its own kinds of error with it
+            raise ResourceNotFound(f"package {package}", [str(error)]) from error
+        if not found:
+            raise ResourceNotFound(f"package {package}", ["the package path"])
+        return Path(found)
+
+    def _plain_candidates(self, name: str, base: Path | None) -> list[Path]:
+        path = Path(name).expanduser()
+        if path.is_absolute():
+            return [path]
+        nearby = [base / path] if base is not None else []
+        return nearby + [
+            folder / sub / path for folder in self.resource_paths for sub in RESOURCE_SUBFOLDERS
+        ]
+
+    @staticmethod
+    def _first(uri: str, candidates: list[Path]) -> Path:
+        for candidate in candidates:
+            if candidate.exists():
+                return Path(os.path.abspath(candidate))
+        raise ResourceNotFound(uri, dict.fromkeys(str(path.parent) for path in candidates))
+
+
+def _listed(environ: Mapping[str, str], variable: str) -> list[str]:
+    return [folder for folder in environ.get(variable, "").split(":") if folder]
+
+
+def _unique(folders: Iterable[str | Path]) -> tuple[Path, ...]:
+    return tuple(dict.fromkeys(Path(folder) for folder in folders))

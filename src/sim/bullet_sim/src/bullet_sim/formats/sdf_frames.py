@@ -1,0 +1,79 @@
+"""Resolves SDF pose frames: `relative_to`, `frame`, `attached_to`, within one model."""
+
+from __future__ import annotations
+
+from xml.etree.ElementTree import Element
+
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import pose
+from bullet_sim.pose import IDENTITY, Pose
+
+MODEL = "__model__"
+JOINT = "joint "  # before SDF 1.7 a joint may bear the name of a link
+
+
+class Frames:
+    """Named frames of one model and where they stand in the model frame, joints at zero."""
+
+    def __init__(self, source: Source, model: str):
+        self._source = source
+        self._model = model
+        self._placed: dict[str, tuple[str, Pose]] = {}  # name -> (frame it is given in, pose)
+
+    def add(self, name: str, given_in: str, placed: Pose) -> None:
+        """A frame known by name, given in another one that may come later."""
+        self._placed[name] = (given_in or MODEL, placed)
+
+    def add_element(self, element: Element, usual: str, where: str) -> None:
+        """The frame of a link, joint or `<frame>`; `usual` is what its pose is relative to."""
+        name = element.get("name", "")
+        given_in, placed = relative_to(element) or usual, pose(element, where)
+        if element.tag == "joint":
+            self.add(JOINT + name, given_in, placed)
+        if element.tag != "joint" or name not in self._placed:
+            self.add(name, given_in, placed)
+
+    def joint_in_model(self, name: str) -> Pose:
+        """Pose of a joint's frame in the model frame."""
+        return self.in_model(JOINT + name)
+
+    def in_model(self, name: str) -> Pose:
+        """Pose of a frame in the model frame."""
+        result = IDENTITY
+        passed: list[str] = []
+        while name not in (MODEL, "world"):
+            if name in passed or name not in self._placed:
+                reason = "goes round in a circle" if name in passed else "is not in the model"
+                self._source.warn_once(
+                    f"model {self._model!r}: pose frame {name!r} {reason}; model frame taken"
+                )
+                break
+            passed.append(name)
+            name, placed = self._placed[name]
+            result = placed * result
+        return result
+
+
+def relative_to(element: Element) -> str:
+    """The frame an element's pose names: `relative_to` since SDF 1.7, `frame` before."""
+    written = element.find("pose")
+    if written is None:
+        return ""
+    return (written.get("relative_to") or written.get("frame") or "").strip()
+
+
+def end_of(joint: Element, role: str) -> str:
+    """Name of a joint's parent or child; SDF 1.2 wrote it as the attribute `link`."""
+    end = joint.find(role)
+    return "" if end is None else (end.text or "").strip() or end.get("link", "")
+
+
+def add_model_frames(frames: Frames, element: Element, where: str) -> None:
+    """All links, joints and frames that stand directly in a `<model>`."""
+    for link in element.findall("link"):
+        frames.add_element(link, MODEL, f"{where}, link {link.get('name')!r}")
+    for joint in element.findall("joint"):
+        frames.add_element(joint, end_of(joint, "child"), f"{where}, joint {joint.get('name')!r}")
+    for frame in element.findall("frame"):
+        usual = frame.get("attached_to") or MODEL
+        frames.add_element(frame, usual, f"{where}, frame {frame.get('name')!r}")

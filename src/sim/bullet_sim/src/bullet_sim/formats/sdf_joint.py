@@ -1,0 +1,94 @@
+"""Reads SDF joints, bringing old files' model-frame axes into the joint frame."""
+
+from __future__ import annotations
+
+import math
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import JointDescription
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.sdf_frames import MODEL, Frames, end_of
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import flag, number, vector
+from bullet_sim.pose import Vector3, conjugate, multiply, rotate
+
+TYPES = (
+    "revolute", "revolute2", "prismatic", "ball", "universal", "screw", "gearbox", "fixed",
+    "continuous",
+)
+AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the joint frame
+
+
+def read_joint(
+    element: Element, source: Source, model: str, frames: Frames, links: set[str]
+) -> JointDescription:
+    """A joint between two of `links`, or between one and the world."""
+    name = element.get("name", "")
+    where = f"{model}, joint {name!r}"
+    kind = element.get("type", "")
+    if kind not in TYPES:
+        raise FormatError(f"{where}: unknown type {kind!r}; there are: {', '.join(TYPES)}")
+    parent = _end(element, "parent", links | {"world"}, where)
+    child = _end(element, "child", links | {"world"}, where)
+    axis = element.find("axis") if element.find("axis") is not None else Element("axis")
+    if element.find("axis2") is not None:
+        source.warn_once(f"{where}: <axis2> is not supported, left out")
+    return JointDescription(
+        name=name,
+        type=kind,
+        parent=parent,
+        child=child,
+        pose=frames.in_model(child).inverse() * frames.joint_in_model(name),
+        axis=_direction(axis, name, source, frames, where),
+        provide_feedback=flag(element, "physics/provide_feedback", False)
+        or flag(element, "physics/ode/provide_feedback", False),
+        **_axis_numbers(axis, f"{where} <axis>"),
+    )
+
+
+def _end(element: Element, role: str, known: set[str], where: str) -> str:
+    end = end_of(element, role)
+    if end not in known:
+        names = ", ".join(sorted(known))
+        raise FormatError(f"{where}: no {role} link named {end!r}; there are: {names}")
+    return end
+
+
+def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
+    usual = JointDescription("", "", "", "")
+    fields = {
+        "lower": "limit/lower", "upper": "limit/upper",
+        "effort": "limit/effort", "velocity": "limit/velocity",
+        "damping": "dynamics/damping", "friction": "dynamics/friction",
+        "spring_reference": "dynamics/spring_reference",
+        "spring_stiffness": "dynamics/spring_stiffness",
+    }
+    return {
+        field: number(axis, path, getattr(usual, field), where) for field, path in fields.items()
+    }
+
+
+def _direction(
+    axis: Element, joint: str, source: Source, frames: Frames, where: str
+) -> Vector3:
+    """Unit axis in the joint frame."""
+    written = vector(axis, "xyz", (0.0, 0.0, 1.0), f"{where} <axis>")
+    length = math.sqrt(sum(part * part for part in written))
+    if length == 0.0:
+        raise FormatError(f"{where} <axis> <xyz>: the axis 0 0 0 has no direction")
+    unit = tuple(part / length for part in written)
+    given_in = _axis_frame(axis, source)
+    if not given_in:
+        return unit
+    joint_in_model = frames.joint_in_model(joint).orientation
+    frame_in_model = frames.in_model(given_in).orientation
+    return rotate(multiply(conjugate(joint_in_model), frame_in_model), unit)
+
+
+def _axis_frame(axis: Element, source: Source) -> str:
+    """The frame an axis is given in; empty for the joint's own."""
+    expressed_in = axis.find("xyz")
+    if expressed_in is not None and expressed_in.get("expressed_in"):
+        return expressed_in.get("expressed_in", "")
+    old = source.version < AXES_IN_JOINT_FRAME
+    return MODEL if flag(axis, "use_parent_model_frame", old) else ""

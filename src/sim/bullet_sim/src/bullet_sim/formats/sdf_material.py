@@ -1,0 +1,113 @@
+"""Reads SDF `<material>`: colours, named materials and OGRE scripts found through their URIs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import Material
+from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.formats import ogre
+from bullet_sim.formats.gazebo_materials import named_materials
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import child_text, colour, flag
+
+BUILTIN_SCRIPT = "media/materials/scripts/gazebo.material"
+COLOURS = ("ambient", "diffuse", "specular", "emissive")
+
+
+def read_material(element: Element, source: Source, where: str) -> Material | None:
+    """A visual's material; None where it says nothing that we know."""
+    named = _scripted(element, source, where)
+    written = [name for name in COLOURS if child_text(element, name)]
+    lighting = flag(element, "lighting", named.lighting if named else True)
+    if not written and lighting:
+        return named
+    start = named or Material()
+    colours = {name: colour(element, name, getattr(start, name), where) for name in written}
+    return replace(start, lighting=lighting, **colours)
+
+
+def _scripted(element: Element, source: Source, where: str) -> Material | None:
+    script = element.find("script")
+    if script is None:
+        name, uris = (element.text or "").strip(), []
+    else:
+        name = child_text(script, "name") or (script.text or "").strip()
+        uris = [(uri.text or "").strip() for uri in script.findall("uri")]
+    if not name or name == "__default__":
+        return None
+    return find_material(name, [uri for uri in uris if uri], source, where)
+
+
+def find_material(name: str, uris: list[str], source: Source, where: str) -> Material | None:
+    """A material of the scripts at `uris`, of Gazebo's own, or of a media folder."""
+    own = [uri for uri in uris if not uri.endswith(BUILTIN_SCRIPT)]
+    places, missing = _folders_and_scripts(own, source)
+    found = _in_scripts(name, places, source)
+    if found is None:
+        found = named_materials().get(name)
+    if found is None:
+        media = [path / "media/materials/scripts" for path in source.resources.resource_paths]
+        found = _in_scripts(name, media, source)
+    if found is None:
+        searched = ", ".join([*(str(place) for place in places), *missing]) or "Gazebo's own names"
+        message = f"{where}: material {name!r} not found, default taken (searched: {searched})"
+        source.warn_once(message, about=f"material {name}")
+    return found
+
+
+def _folders_and_scripts(uris: list[str], source: Source) -> tuple[list[Path], list[str]]:
+    places, missing = [], []
+    for uri in uris:
+        try:
+            places.append(source.resources.resolve(uri, source.folder))
+        except ResourceNotFound as error:
+            missing.append(str(error))
+    return places, missing
+
+
+def _in_scripts(name: str, places: list[Path], source: Source) -> Material | None:
+    parsed: dict[str, ogre.ScriptMaterial] = {}
+    home: dict[str, Path] = {}  # material -> folder of its script
+    for script in _scripts_in(places):
+        for material in _parsed(script, source).values():
+            parsed.setdefault(material.name, material)
+            home.setdefault(material.name, script.parent)
+    if name not in parsed:
+        return None
+    folders = [*(place for place in places if place.is_dir()), home[name],
+               home[name].parent / "textures"]
+    try:
+        return ogre.to_material(name, parsed, lambda file: _texture(file, folders, name, source))
+    except FormatError as error:
+        source.warn_once(f"{home[name]}: {error}")
+        return None
+
+
+def _scripts_in(places: list[Path]) -> list[Path]:
+    found: list[Path] = []
+    for place in places:
+        found += sorted(place.glob("*.material")) if place.is_dir() else [place]
+    return found
+
+
+def _parsed(script: Path, source: Source) -> dict[str, ogre.ScriptMaterial]:
+    if script not in source.scripts:
+        try:
+            text = script.read_text(encoding="utf-8", errors="replace")
+            source.scripts[script] = ogre.parse_script(text)
+        except (FormatError, OSError) as error:
+            source.warn_once(f"{script}: {error}")
+            source.scripts[script] = {}
+    return source.scripts[script]
+
+
+def _texture(file: str, folders: list[Path], name: str, source: Source) -> str | None:
+    for folder in folders:
+        if (folder / file).is_file():
+            return str((folder / file).resolve())
+    searched = ", ".join(dict.fromkeys(str(folder) for folder in folders))
+    source.warn_once(f"material {name!r}: texture {file} not found (searched: {searched})")
+    return None

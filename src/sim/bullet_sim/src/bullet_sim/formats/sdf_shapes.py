@@ -1,0 +1,136 @@
+"""Reads SDF geometry, visuals, collisions and their surfaces."""
+
+from __future__ import annotations
+
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Plane,
+    Sphere,
+    Surface,
+    Visual,
+)
+from bullet_sim.errors import ResourceNotFound
+from bullet_sim.formats.sdf_material import read_material
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import child_text, flag, number, numbers, pose, vector
+
+ONES = (1.0, 1.0, 1.0)
+
+
+def read_visual(element: Element, source: Source, link: str) -> Visual | None:
+    """A visual; None, with a warning given, where its shape cannot be had."""
+    name = element.get("name", "")
+    where = _part(link, element)
+    shape = read_geometry(element.find("geometry"), source, where)
+    if shape is None:
+        return None
+    material = element.find("material")
+    return Visual(
+        name=name,
+        geometry=shape,
+        pose=pose(element, where),
+        material=None if material is None else read_material(material, source, where),
+        transparency=number(element, "transparency", 0.0, where),
+        cast_shadows=flag(element, "cast_shadows", True),
+    )
+
+
+def read_collision(element: Element, source: Source, link: str) -> Collision | None:
+    """A collision; None, with a warning given, where its shape cannot be had."""
+    name = element.get("name", "")
+    where = _part(link, element)
+    shape = read_geometry(element.find("geometry"), source, where)
+    if shape is None:
+        return None
+    return Collision(
+        name=name,
+        geometry=shape,
+        pose=pose(element, where),
+        surface=read_surface(element.find("surface"), where),
+        laser_retro=number(element, "laser_retro", 0.0, where),
+    )
+
+
+def _part(link: str, element: Element) -> str:
+    """How errors call a visual or collision; in URDF most have no name."""
+    name = element.get("name", "")
+    return f"{link}, {element.tag} {name!r}" if name else f"{link}, <{element.tag}>"
+
+
+def read_surface(element: Element | None, where: str) -> Surface:
+    """Contact parameters; only ODE's, as Gazebo runs on ODE unless told otherwise."""
+    usual = Surface()
+    if element is None:
+        return usual
+    friction, contact = "friction/ode/", "contact/ode/"
+    return Surface(
+        mu=number(element, friction + "mu", usual.mu, where),
+        mu2=number(element, friction + "mu2", usual.mu2, where),
+        fdir1=vector(element, friction + "fdir1", usual.fdir1, where),
+        kp=number(element, contact + "kp", usual.kp, where),
+        kd=number(element, contact + "kd", usual.kd, where),
+        min_depth=number(element, contact + "min_depth", usual.min_depth, where),
+        max_vel=number(element, contact + "max_vel", usual.max_vel, where),
+        restitution=number(element, "bounce/restitution_coefficient", usual.restitution, where),
+    )
+
+
+def read_geometry(element: Element | None, source: Source, where: str) -> Geometry | None:
+    """The first shape we know; None for `<empty>`, or with a warning."""
+    for shape in () if element is None else element:
+        reader = READERS.get(shape.tag)
+        if reader is not None:
+            return reader(shape, source, where)
+        if shape.tag != "empty":
+            source.warn_once(f"{where}: geometry <{shape.tag}> is not supported, left out; "
+                             f"there are: {', '.join(READERS)}")
+        return None
+    source.warn_once(f"{where}: no shape in <geometry>, left out")
+    return None
+
+
+def _box(element: Element, source: Source, where: str) -> Box:
+    return Box(vector(element, "size", ONES, f"{where} <box>"))
+
+
+def _cylinder(element: Element, source: Source, where: str) -> Cylinder:
+    where = f"{where} <cylinder>"
+    return Cylinder(number(element, "radius", 1.0, where), number(element, "length", 1.0, where))
+
+
+def _sphere(element: Element, source: Source, where: str) -> Sphere:
+    return Sphere(number(element, "radius", 1.0, f"{where} <sphere>"))
+
+
+def _plane(element: Element, source: Source, where: str) -> Plane:
+    where = f"{where} <plane>"
+    size = child_text(element, "size", "1 1")
+    return Plane(
+        vector(element, "normal", (0.0, 0.0, 1.0), where), numbers(size, 2, f"{where} <size>")
+    )
+
+
+def _mesh(element: Element, source: Source, where: str) -> Mesh | None:
+    uri = child_text(element, "uri") or child_text(element, "filename")
+    try:
+        path = source.resources.resolve(uri, source.folder)
+        if not path.is_file():
+            raise ResourceNotFound(f"file {uri!r}", [str(path)])
+    except ResourceNotFound as error:
+        source.warn_once(f"{where}: mesh {error}; left out, the rest is loaded", about=uri)
+        return None
+    return Mesh(
+        path=str(path),
+        scale=vector(element, "scale", ONES, f"{where} <mesh>"),
+        submesh=child_text(element, "submesh/name") or None,
+        centre_submesh=flag(element, "submesh/center", False),
+    )
+
+
+READERS = {"box": _box, "cylinder": _cylinder, "sphere": _sphere, "plane": _plane, "mesh": _mesh}

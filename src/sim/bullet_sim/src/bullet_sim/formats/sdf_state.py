@@ -1,0 +1,61 @@
+"""Applies the `<state>` of a saved world: its poses win over those the models were written with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.formats.xml_values import child_text, pose
+from bullet_sim.pose import Pose
+
+
+def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
+    """The world as it was saved; names that do not exist (any more) are passed over."""
+    deleted = {(name.text or "").strip() for name in state.findall("deletions/name")}
+    models = {model.get("name", ""): model for model in state.findall("model")}
+    lights = {light.get("name", ""): light for light in state.findall("light")}
+    return replace(
+        world,
+        models=tuple(
+            _moved_model(model, models[model.name]) if model.name in models else model
+            for model in world.models
+            if model.name not in deleted
+        ),
+        lights=tuple(
+            _moved_light(light, lights[light.name]) if light.name in lights else light
+            for light in world.lights
+            if light.name not in deleted
+        ),
+    )
+
+
+def _moved_light(light: LightDescription, state: Element) -> LightDescription:
+    if not child_text(state, "pose"):
+        return light
+    return replace(light, pose=pose(state, f"<state> of light {light.name!r}"))
+
+
+def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
+    if child_text(state, "pose"):
+        model = replace(model, pose=pose(state, f"<state> of model {model.name!r}"))
+    if model.joints and not model.static:
+        return model  # its link poses are joint positions, and those start at zero here
+    saved = dict(_link_poses(state, "", f"<state> of model {model.name!r}"))
+    to_model = model.pose.inverse()  # link poses are saved in the world frame
+    return replace(
+        model,
+        links=tuple(
+            replace(link, pose=to_model * saved[link.name]) if link.name in saved else link
+            for link in model.links
+        ),
+    )
+
+
+def _link_poses(state: Element, scope: str, where: str) -> Iterator[tuple[str, Pose]]:
+    for link in state.findall("link"):
+        if child_text(link, "pose"):
+            yield scope + link.get("name", ""), pose(link, f"{where}, link {link.get('name')!r}")
+    for nested in state.findall("model"):
+        yield from _link_poses(nested, f"{scope}{nested.get('name', '')}::", where)

@@ -1,0 +1,50 @@
+"""Where the text being read comes from, and what has already been said about it."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from bullet_sim.formats.resources import Resources
+
+logger = logging.getLogger(__name__)
+
+NEWEST_SDF = (1, 7)
+
+
+@dataclass(frozen=True)
+class Source:
+    """One text with its SDF version; `said` and `scripts` are shared by everything it includes."""
+
+    resources: Resources
+    version: tuple[int, int] = NEWEST_SDF
+    folder: Path | None = None  # of the file the text stands in
+    said: set[str] = field(default_factory=set)
+    scripts: dict = field(default_factory=dict)  # material script path -> parsed materials
+    including: tuple[Path, ...] = ()  # files being read, outermost first
+
+    def warn_once(self, message: str, about: str = "") -> None:
+        """A warning that is given once per load, or once `about` a thing met in several places."""
+        key = about or message
+        if key not in self.said:
+            self.said.add(key)
+            logger.warning(message)
+
+    def of_root(self, root: Element) -> Source:
+        """This source with the version that an `<sdf>` or `<gazebo>` root states."""
+        return replace(self, version=sdf_version(root.get("version", "")))
+
+    def entering(self, file: Path) -> Source:
+        """A source for a file that this one includes."""
+        return replace(self, folder=file.parent, including=(*self.including, file))
+
+
+def sdf_version(text: str) -> tuple[int, int]:
+    """`1.6` as (1, 6); the newest where nothing readable is written."""
+    major, _, minor = text.strip().partition(".")
+    try:
+        return (int(major), int(minor or 0))
+    except ValueError:
+        return NEWEST_SDF

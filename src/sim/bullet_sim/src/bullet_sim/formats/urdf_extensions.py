@@ -1,0 +1,133 @@
+"""What `<gazebo>` tags add to a URDF's links and joints, written into SDF elements."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from xml.etree.ElementTree import Element, SubElement
+
+from bullet_sim.formats.xml_values import numbers
+
+SURFACE_PATHS = {
+    "mu1": "surface/friction/ode/mu",
+    "mu2": "surface/friction/ode/mu2",
+    "fdir1": "surface/friction/ode/fdir1",
+    "kp": "surface/contact/ode/kp",
+    "kd": "surface/contact/ode/kd",
+    "maxVel": "surface/contact/ode/max_vel",
+    "minDepth": "surface/contact/ode/min_depth",
+    "maxContacts": "max_contacts",
+    "laserRetro": "laser_retro",
+}
+CONTAINERS = ("material", "surface", "friction", "contact", "ode", "bounce", "torsional")
+TRUE_WORDS = ("true", "yes", "1")
+FALSE_WORDS = ("false", "no", "0")
+
+
+class Extensions:
+    """The children of all `<gazebo>` elements by what they refer to; blocks accumulate."""
+
+    def __init__(self, robot: Element):
+        self._by_reference: dict[str, list[Element]] = {}
+        for block in robot.findall("gazebo"):
+            self._by_reference.setdefault(block.get("reference", ""), []).extend(block)
+
+    def of(self, reference: str) -> list[Element]:
+        """Everything said about a link or joint, or with "" about the robot."""
+        return self._by_reference.get(reference, [])
+
+    def references(self) -> Iterator[str]:
+        """The names that are referred to."""
+        return (name for name in self._by_reference if name)
+
+    def says(self, reference: str, tag: str) -> bool:
+        """Whether the last such tag holds true."""
+        values = [value_of(child) for child in self.of(reference) if child.tag == tag]
+        return bool(values) and is_true(values[-1])
+
+
+def value_of(element: Element) -> str:
+    """An extension's value: the attribute `value` of older files, or its text."""
+    return (element.get("value") or element.text or "").strip()
+
+
+def is_true(text: str) -> bool:
+    """True as the robot-level tags spell it."""
+    return text.lower() in TRUE_WORDS
+
+
+def extend_link(link: Element, tags: list[Element], lumped: bool) -> None:
+    """Writes a link's extensions into its SDF element.
+
+    After lumping Gazebo knows a child's shapes only by name: those whose own URDF name lacks the
+    link's name get nothing.
+    """
+    name = link.get("name", "")
+    for tag in tags:
+        targets = _targets(tag)
+        if targets is None:
+            _extend_link_itself(link, tag)
+            continue
+        for part in link.findall(targets):
+            own_name = part.get("name", "")
+            if not (lumped and own_name and name not in own_name):
+                _extend_part(part, tag, name)
+
+
+def _targets(tag: Element) -> str | None:
+    """Which parts of the link a tag goes to; None for the link itself."""
+    if tag.tag in ("material", "visual"):
+        return "visual"
+    if tag.tag == "collision" or tag.tag in SURFACE_PATHS:
+        return "collision"
+    return None
+
+
+def _extend_part(part: Element, tag: Element, link: str) -> None:
+    if tag.tag == "material":
+        _set_material(part, tag)
+    elif tag.tag in SURFACE_PATHS:
+        count = 3 if tag.tag == "fdir1" else 1
+        numbers(value_of(tag), count, f"<gazebo reference={link!r}> <{tag.tag}>")
+        put(part, SURFACE_PATHS[tag.tag], value_of(tag))
+    else:
+        for child in tag:
+            merge(part, child)
+
+
+def _set_material(visual: Element, tag: Element) -> None:
+    if len(tag):
+        merge(visual, tag)
+        return
+    put(visual, "material/script/name", value_of(tag))
+
+
+def _extend_link_itself(link: Element, tag: Element) -> None:
+    value = value_of(tag)
+    if tag.tag == "selfCollide":
+        put(link, "self_collide", str(is_true(value)).lower())
+    elif tag.tag == "turnGravityOff":
+        put(link, "gravity", str(value.lower() in FALSE_WORDS).lower())
+    elif tag.tag == "dampingFactor":
+        put(link, "velocity_decay/linear", value)
+        put(link, "velocity_decay/angular", value)
+    else:
+        link.append(copy.deepcopy(tag))
+
+
+def put(element: Element, path: str, value: str) -> None:
+    """Sets the text at a path, making what is missing on the way."""
+    for tag in path.split("/"):
+        child = element.find(tag)
+        element = child if child is not None else SubElement(element, tag)
+    element.text = value
+
+
+def merge(element: Element, addition: Element) -> None:
+    """Adds a child; where both have a container of that tag, their children come together."""
+    there = element.find(addition.tag) if addition.tag in CONTAINERS else None
+    if there is None:
+        element.append(copy.deepcopy(addition))
+        return
+    for child in addition:
+        merge(there, child)

@@ -1,0 +1,102 @@
+"""Reads URDF joints that move, or that are kept although fixed, with their `<gazebo>` tags."""
+
+from __future__ import annotations
+
+import logging
+import math
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import JointDescription
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.urdf_extensions import Extensions, value_of
+from bullet_sim.formats.urdf_tree import UrdfJoint
+from bullet_sim.formats.xml_values import numbers
+from bullet_sim.pose import Vector3
+
+logger = logging.getLogger(__name__)
+
+SPRINGS = {"springReference": "spring_reference", "springStiffness": "spring_stiffness"}
+
+
+def read_urdf_joint(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointDescription:
+    """A joint below `parent`, the link that its written parent was lumped into."""
+    if joint.type == "fixed":
+        return _kept_fixed(joint, parent, extensions)
+    where = f"joint {joint.name!r}"
+    return JointDescription(
+        name=joint.name,
+        type=joint.type,
+        parent=parent,
+        child=joint.child,
+        axis=_axis(joint.element, where),
+        provide_feedback=extensions.says(joint.name, "provideFeedback"),
+        **_limits(joint, where),
+        **_dynamics(joint.element, where),
+        **_springs(joint.name, extensions),
+    )
+
+
+def _kept_fixed(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointDescription:
+    """`preserveFixedJoint` wins; `disableFixedJointLumping` makes a joint that cannot turn."""
+    turns = extensions.says(joint.name, "disableFixedJointLumping") and not extensions.says(
+        joint.name, "preserveFixedJoint"
+    )
+    limits = {"lower": 0.0, "upper": 0.0} if turns else {}
+    return JointDescription(
+        name=joint.name,
+        type="revolute" if turns else "fixed",
+        parent=parent,
+        child=joint.child,
+        provide_feedback=extensions.says(joint.name, "provideFeedback"),
+        **limits,
+    )
+
+
+def _axis(element: Element, where: str) -> Vector3:
+    axis = element.find("axis")
+    text = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
+    values = numbers(text, 3, f"{where} <axis xyz>")
+    length = math.sqrt(sum(value * value for value in values))
+    if length == 0.0:
+        raise FormatError(f"{where} <axis xyz>: the axis 0 0 0 has no direction")
+    return tuple(value / length for value in values)
+
+
+def _limits(joint: UrdfJoint, where: str) -> dict[str, float]:
+    limit = joint.element.find("limit")
+    if limit is None:
+        if joint.type == "continuous":
+            return {}
+        raise FormatError(f"{where} is {joint.type} but has no <limit>")
+    result = {}
+    for key in ("effort", "velocity"):
+        if limit.get(key) is None:
+            raise FormatError(f"{where} <limit {key}> is missing")
+        result[key] = numbers(limit.get(key, ""), 1, f"{where} <limit {key}>")[0]
+    if joint.type == "continuous":
+        return result
+    lower, upper = (
+        numbers(limit.get(key, "0"), 1, f"{where} <limit {key}>")[0] for key in ("lower", "upper")
+    )
+    if lower > upper:
+        logger.warning("%s: lower limit %g is above upper limit %g; switching the two",
+                       where, lower, upper)
+        lower, upper = upper, lower
+    return result | {"lower": lower, "upper": upper}
+
+
+def _dynamics(element: Element, where: str) -> dict[str, float]:
+    dynamics = element.find("dynamics")
+    if dynamics is None:
+        return {}
+    return {
+        key: numbers(dynamics.get(key, "0"), 1, f"{where} <dynamics {key}>")[0]
+        for key in ("damping", "friction")
+    }
+
+
+def _springs(name: str, extensions: Extensions) -> dict[str, float]:
+    return {
+        SPRINGS[tag.tag]: numbers(value_of(tag), 1, f"<gazebo reference={name!r}> <{tag.tag}>")[0]
+        for tag in extensions.of(name) if tag.tag in SPRINGS
+    }

@@ -1,0 +1,119 @@
+"""The bones of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from xml.etree.ElementTree import Element
+
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.xml_values import numbers
+from bullet_sim.pose import Pose
+
+WORLD = "world"
+JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+
+
+@dataclass(frozen=True)
+class UrdfJoint:
+    """A joint as written, with its place in the parent link's frame."""
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    origin: Pose
+    element: Element
+
+
+@dataclass
+class UrdfTree:
+    """All links by name, and which joints lead away from and into each."""
+
+    name: str
+    root: str
+    links: dict[str, Element]
+    outward: dict[str, list[UrdfJoint]] = field(default_factory=dict)  # parent link -> joints
+    inward: dict[str, UrdfJoint] = field(default_factory=dict)  # child link -> its joint
+
+    def depth_first(self, start: str) -> Iterator[str]:
+        """Link names from `start` down, parents before children."""
+        yield start
+        for joint in self.outward.get(start, ()):
+            yield from self.depth_first(joint.child)
+
+
+def read_tree(robot: Element) -> UrdfTree:
+    """The tree of a `<robot>`, or an error that names what is wrong with it."""
+    name = robot.get("name", "")
+    if not name:
+        raise FormatError("<robot> has no name")
+    links = _named(robot, "link", f"robot {name!r}")
+    if not links:
+        raise FormatError(f"robot {name!r} has no links")
+    joints = _named(robot, "joint", f"robot {name!r}")
+    tree = UrdfTree(name, "", links)
+    for joint_name in sorted(joints):  # urdfdom keeps them in a sorted map
+        joint = _read_joint(joints[joint_name], links)
+        other = tree.inward.setdefault(joint.child, joint)
+        if other is not joint:
+            raise FormatError(f"link {joint.child!r} is the child of two joints: "
+                              f"{other.name!r} and {joint.name!r}")
+        tree.outward.setdefault(joint.parent, []).append(joint)
+    tree.root = _root(tree)
+    return tree
+
+
+def read_origin(element: Element, where: str) -> Pose:
+    """The `<origin>` of an element; identity when absent."""
+    origin = element.find("origin")
+    if origin is None:
+        return Pose()
+    return Pose.from_xyz_rpy(
+        numbers(origin.get("xyz", "0 0 0"), 3, f"{where} <origin xyz>"),
+        numbers(origin.get("rpy", "0 0 0"), 3, f"{where} <origin rpy>"),
+    )
+
+
+def _named(robot: Element, tag: str, where: str) -> dict[str, Element]:
+    found: dict[str, Element] = {}
+    for element in robot.findall(tag):
+        name = element.get("name", "")
+        if not name:
+            raise FormatError(f"{where}: a <{tag}> has no name")
+        if name in found:
+            raise FormatError(f"{where}: two {tag}s are named {name!r}")
+        found[name] = element
+    return found
+
+
+def _read_joint(element: Element, links: dict[str, Element]) -> UrdfJoint:
+    name, kind = element.get("name", ""), element.get("type", "")
+    where = f"joint {name!r}"
+    if kind not in JOINT_TYPES:
+        raise FormatError(f"{where}: unknown type {kind!r}; there are: {', '.join(JOINT_TYPES)}")
+    parent, child = (_end(element, role, links, where) for role in ("parent", "child"))
+    return UrdfJoint(name, kind, parent, child, read_origin(element, where), element)
+
+
+def _end(joint: Element, role: str, links: dict[str, Element], where: str) -> str:
+    element = joint.find(role)
+    end = "" if element is None else element.get("link", "")
+    if end not in links:
+        raise FormatError(
+            f"{where}: {role} link {end!r} not found; the links are: {', '.join(links)}"
+        )
+    return end
+
+
+def _root(tree: UrdfTree) -> str:
+    roots = [link for link in tree.links if link not in tree.inward]
+    if len(roots) > 1:
+        raise FormatError(f"robot {tree.name!r} has several root links: {', '.join(roots)}; "
+                          "join them with a joint")
+    reached = set(tree.depth_first(roots[0])) if roots else set()
+    loop = [link for link in tree.links if link not in reached]
+    if loop:
+        raise FormatError(f"robot {tree.name!r}: the joints go round in a circle through "
+                          f"{', '.join(loop)}")
+    return roots[0]

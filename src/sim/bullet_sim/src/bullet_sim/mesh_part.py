@@ -1,0 +1,44 @@
+"""One drawable piece of a surface: triangles that share a material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bullet_sim.description import Material
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPart:
+    """Triangles, counter-clockwise seen from outside. Arrays are read, never written."""
+
+    vertices: np.ndarray  # (n, 3) float32, m
+    normals: np.ndarray  # (n, 3) float32, unit length
+    uv: np.ndarray | None  # (n, 2) float32, (0, 0) is the lower left corner of the image
+    faces: np.ndarray  # (m, 3) uint32
+    material: Material | None = None  # None: the file names none
+
+
+NamedPart = tuple[str, MeshPart]  # name of the submesh it belongs to, and the part
+
+
+def flat_shaded(
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    uv: np.ndarray | None = None,
+    material: Material | None = None,
+) -> MeshPart:
+    """A part with one normal per triangle, from the triangle's winding; corners are not shared."""
+    corners = np.asarray(vertices, np.float64)[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = normals / np.where(length > 0, length, 1)
+    count = len(faces) * 3
+    return MeshPart(
+        vertices=corners.reshape(count, 3).astype(np.float32),
+        normals=np.repeat(normals, 3, axis=0).astype(np.float32),
+        uv=None if uv is None else np.asarray(uv)[faces].reshape(count, 2).astype(np.float32),
+        faces=np.arange(count, dtype=np.uint32).reshape(-1, 3),
+        material=material,
+    )

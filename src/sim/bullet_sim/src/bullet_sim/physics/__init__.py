@@ -1,0 +1,1 @@
+"""The only room that knows PyBullet's integers: a client, and bodies made of descriptions."""

@@ -1,0 +1,76 @@
+"""One PyBullet world: connection, engine parameters, and a quiet importer."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from bullet_sim.description import PhysicsDescription
+from bullet_sim.physics.assembly import Tree
+from bullet_sim.physics.quiet import pybullet, quiet_stdout
+from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
+from bullet_sim.pose import Pose, Vector3
+
+LOAD_FLAGS = (
+    pybullet.URDF_USE_INERTIA_FROM_FILE
+    # The default cylinder is a 32-sided prism plus a margin: wheels would roll 3 % too far.
+    | pybullet.URDF_USE_IMPLICIT_CYLINDER
+    | pybullet.URDF_MAINTAIN_LINK_ORDER
+)
+
+# With SDF's default of 50 a light driven wheel is not solved out: a robot sent straight began to
+# turn after 8 s. 150, which the courses' worlds ask for themselves, holds 0.15 m/s within 0.05 %.
+FEWEST_ITERATIONS = 150
+
+
+class PhysicsClient:
+    """Owner of one engine instance. Everything else reaches PyBullet through `call`."""
+
+    def __init__(self, physics: PhysicsDescription, gravity: Vector3):
+        self._id = pybullet.connect(pybullet.DIRECT)
+        self.configure(physics, gravity)
+
+    def configure(self, physics: PhysicsDescription, gravity: Vector3) -> None:
+        """Step (s), solver iterations and gravity (m/s^2)."""
+        self.call(
+            pybullet.setPhysicsEngineParameter,
+            fixedTimeStep=physics.max_step_size,
+            numSubSteps=0,
+            numSolverIterations=max(physics.iterations, FEWEST_ITERATIONS),
+            # A pyramid, as Gazebo's ODE has it. The engine's cone lets light driven wheels creep:
+            # a turn in place came out 8 % slow.
+            enableConeFriction=0,
+            deterministicOverlappingPairs=1,
+            enableFileCaching=0,
+        )
+        self.call(pybullet.setGravity, *gravity)
+
+    def call(self, function, *args, **kwargs):
+        """Run a pybullet function on this client."""
+        return function(*args, physicsClientId=self._id, **kwargs)
+
+    def step(self) -> None:
+        """Advance the engine by one fixed step."""
+        pybullet.stepSimulation(physicsClientId=self._id)
+
+    def cast_rays(self, starts: list, ends: list) -> list:
+        """Rows of (body, link, fraction, position, normal); body -1 where nothing was hit."""
+        return self.call(pybullet.rayTestBatch, starts, ends)
+
+    def load(self, tree: Tree, pose: Pose) -> int:
+        """Make a body of a tree; returns its number. The importer's chatter is kept off stdout."""
+        flags = LOAD_FLAGS
+        if tree.self_collide:
+            flags |= pybullet.URDF_USE_SELF_COLLISION
+        with tempfile.TemporaryDirectory(prefix="bullet_sim-") as folder:
+            path = Path(folder) / "body.urdf"
+            path.write_text(urdf_text(tree.links, MeshFiles(Path(folder))), encoding="utf-8")
+            with quiet_stdout():
+                return self.call(
+                    pybullet.loadURDF, str(path), pose.position, pose.orientation,
+                    useFixedBase=tree.fixed, flags=flags,
+                )
+
+    def close(self) -> None:
+        """Disconnect; the client is not to be used afterwards."""
+        pybullet.disconnect(physicsClientId=self._id)

@@ -1,0 +1,98 @@
+"""Writes the URDF that the engine imports: masses, joints and collision shapes, no visuals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Mesh, Plane, Sphere
+from bullet_sim.meshes import collision_mesh
+from bullet_sim.physics.assembly import PhysicsLink
+from bullet_sim.pose import Pose
+
+ENGINE_JOINTS = {"revolute": "revolute", "continuous": "continuous", "prismatic": "prismatic",
+                 "ball": "spherical"}
+NO_LIMIT = 1e15  # limits at or beyond this mean none
+
+
+class MeshFiles:
+    """Writes collision meshes as OBJ into a folder that lives as long as the import takes."""
+
+    def __init__(self, folder: Path):
+        self._folder = folder
+        self._written = 0
+
+    def __call__(self, mesh: Mesh) -> str:
+        vertices, faces = collision_mesh(mesh)
+        lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
+        lines += [f"f {a} {b} {c}" for a, b, c in faces + 1]
+        path = self._folder / f"mesh_{self._written}.obj"
+        path.write_text("\n".join(lines) + "\n", encoding="ascii")
+        self._written += 1
+        return str(path)
+
+
+def urdf_text(links: Iterable[PhysicsLink], mesh_path: Callable[[Mesh], str]) -> str:
+    """A `<robot>` whose links keep the order given, the first being the base."""
+    parts = ['<robot name="body">']
+    for link in links:
+        parts.append(f"<link name={quoteattr(link.name)}>{_inertial(link.inertial)}")
+        fixed = link.inertial.mass == 0.0
+        parts.extend(_collision(collision, fixed, mesh_path) for collision in link.collisions)
+        parts.append("</link>")
+        if link.parent is not None:
+            parts.append(_joint(link))
+    parts.append("</robot>")
+    return "\n".join(parts)
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _origin(pose: Pose) -> str:
+    return f'<origin xyz="{_numbers(pose.position)}" rpy="{_numbers(pose.rpy())}"/>'
+
+
+def _inertial(inertial: Inertial) -> str:
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    tensor = " ".join(f'{n}="{v!r}"' for n, v in zip(names, inertial.inertia, strict=True))
+    return (f'<inertial>{_origin(inertial.pose)}<mass value="{inertial.mass!r}"/>'
+            f"<inertia {tensor}/></inertial>")
+
+
+def _collision(collision: Collision, fixed: bool, mesh_path: Callable[[Mesh], str]) -> str:
+    # Triangles as they are for what never moves; a convex hull otherwise (the engine has no more).
+    concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Mesh) else ""
+    return (f"<collision{concave}>{_origin(collision.pose)}"
+            f"<geometry>{_geometry(collision.geometry, mesh_path)}</geometry></collision>")
+
+
+def _geometry(geometry: Geometry, mesh_path: Callable[[Mesh], str]) -> str:
+    match geometry:
+        case Box(size):
+            return f'<box size="{_numbers(size)}"/>'
+        case Cylinder(radius, length):
+            return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
+        case Sphere(radius):
+            return f'<sphere radius="{radius!r}"/>'
+        case Plane(normal, _):
+            return f'<plane normal="{_numbers(normal)}"/>'
+        case Mesh():
+            return f'<mesh filename={quoteattr(mesh_path(geometry))}/>'
+    raise TypeError(f"no engine shape for {geometry!r}")
+
+
+def _joint(link: PhysicsLink) -> str:
+    joint = link.joint
+    kind = "fixed" if joint is None else ENGINE_JOINTS.get(joint.type, "fixed")
+    if kind == "revolute" and joint.lower <= -NO_LIMIT and joint.upper >= NO_LIMIT:
+        kind = "continuous"
+    name = f"{link.name}__weld" if joint is None else joint.name
+    text = (f'<joint name={quoteattr(name)} type="{kind}"><parent link={quoteattr(link.parent)}/>'
+            f"<child link={quoteattr(link.name)}/>{_origin(link.pose_parent)}")
+    if kind != "fixed":
+        text += (f'<axis xyz="{_numbers(joint.axis)}"/>'
+                 f'<limit lower="{joint.lower!r}" upper="{joint.upper!r}"/>')
+    return text + "</joint>"

@@ -1,0 +1,147 @@
+"""Rigid poses: a position in metres and a unit quaternion (x, y, z, w), composed as frames are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a frame stands in another one; `pose_a_b * pose_b_c` is `pose_a_c`."""
+
+    position: Vector3 = (0.0, 0.0, 0.0)  # m
+    orientation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w; unit length
+
+    @staticmethod
+    def from_xyz_rpy(xyz: Sequence[float], rpy: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
+        """URDF's and SDF's six numbers: metres, and roll, pitch, yaw about fixed axes in rad."""
+        return Pose(_triple(xyz), quaternion_from_rpy(*rpy))
+
+    def __mul__(self, other: Pose) -> Pose:
+        x, y, z = rotate(self.orientation, other.position)
+        px, py, pz = self.position
+        return Pose((px + x, py + y, pz + z), multiply(self.orientation, other.orientation))
+
+    def inverse(self) -> Pose:
+        """The same relation seen from the other frame."""
+        back = conjugate(self.orientation)
+        x, y, z = rotate(back, self.position)
+        return Pose((-x, -y, -z), back)
+
+    def transform(self, point: Sequence[float]) -> Vector3:
+        """A point of this frame, in the frame this pose is given in."""
+        x, y, z = rotate(self.orientation, point)
+        px, py, pz = self.position
+        return (px + x, py + y, pz + z)
+
+    def rpy(self) -> Vector3:
+        """Roll, pitch, yaw about fixed axes, rad."""
+        return rpy_from_quaternion(self.orientation)
+
+    def matrix(self) -> np.ndarray:
+        """Homogeneous (4, 4) float64 matrix, column vectors."""
+        result = np.eye(4)
+        result[:3, :3] = rotation_matrix(self.orientation)
+        result[:3, 3] = self.position
+        return result
+
+
+IDENTITY = Pose()
+
+
+def _triple(values: Sequence[float]) -> Vector3:
+    x, y, z = values
+    return (float(x), float(y), float(z))
+
+
+def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Hamilton product: rotate by `b`, then by `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def conjugate(q: Quaternion) -> Quaternion:
+    """The opposite rotation of a unit quaternion."""
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+def normalised(q: Sequence[float]) -> Quaternion:
+    """Unit length; all zeros become no rotation, as Gazebo reads a default message."""
+    x, y, z, w = (float(value) for value in q)
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    if length == 0.0:
+        return (0.0, 0.0, 0.0, 1.0)
+    return (x / length, y / length, z / length, w / length)
+
+
+def rotate(q: Quaternion, v: Sequence[float]) -> Vector3:
+    """Vector `v` turned by `q`."""
+    x, y, z, w = q
+    vx, vy, vz = v
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    return (
+        vx + w * tx + y * tz - z * ty,
+        vy + w * ty + z * tx - x * tz,
+        vz + w * tz + x * ty - y * tx,
+    )
+
+
+def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """Rotation about fixed x, then y, then z (URDF, SDF, REP 103)."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def rpy_from_quaternion(q: Quaternion) -> Vector3:
+    """Inverse of `quaternion_from_rpy`, pitch in [-pi/2, pi/2]."""
+    x, y, z, w = q
+    roll = math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
+    yaw = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return (roll, pitch, yaw)
+
+
+def rotation_matrix(q: Quaternion) -> np.ndarray:
+    """(3, 3) float64 rotation matrix of a unit quaternion."""
+    x, y, z, w = q
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])
+
+
+def quaternion_from_matrix(r: np.ndarray) -> Quaternion:
+    """Unit quaternion of a (3, 3) rotation matrix (Shepperd's method)."""
+    diagonal = [r[0, 0], r[1, 1], r[2, 2]]
+    trace = sum(diagonal)
+    if trace > max(diagonal):
+        q = (r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], 1 + trace)
+        return normalised(q)
+    i = int(np.argmax(diagonal))
+    j, k = (i + 1) % 3, (i + 2) % 3
+    q = [0.0, 0.0, 0.0, r[k, j] - r[j, k]]
+    q[i] = 1 + r[i, i] - r[j, j] - r[k, k]
+    q[j] = r[j, i] + r[i, j]
+    q[k] = r[k, i] + r[i, k]
+    return normalised(q)

@@ -1,0 +1,1 @@
+"""Drawing the scene: one protocol, one file per backend."""

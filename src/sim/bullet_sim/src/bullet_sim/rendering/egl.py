@@ -1,0 +1,206 @@
+"""The renderer people normally have: OpenGL without a screen, on a graphics card or llvmpipe.
+
+Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
+once, faces that look away and links outside the picture not drawn, near things first, light per
+corner where that is enough; no MSAA, no anisotropic filtering, no shadows, no sky. Back faces are
+not drawn, as in Gazebo: a camera inside its own housing sees out.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+from collections.abc import Callable
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import cv2
+import moderngl
+import numpy as np
+
+from bullet_sim.rendering import lights
+from bullet_sim.rendering.frame import CameraView, Frame
+from bullet_sim.rendering.projection import (
+    frustum_planes,
+    metres_from_depth,
+    projection_matrix,
+    view_matrix,
+)
+from bullet_sim.rendering.scene import Node, Scene
+from bullet_sim.rendering.surfaces import (
+    LIGHTS_BINDING,
+    SURFACE_BINDING,
+    Program,
+    Surface,
+    SurfaceStore,
+)
+
+# OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
+_UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
+# A highlight of less than half a grey level is not worth working out for each pixel.
+_VISIBLE = 0.5 / 255
+
+
+@dataclass(eq=False)
+class _Item:
+    node: Node
+    surface: Surface
+    program: Program
+    array: moderngl.VertexArray
+
+
+@dataclass(eq=False)
+class _Prepared:
+    """A scene's lights and draw list, as of one version."""
+
+    version: int
+    lights: moderngl.Buffer
+    nodes: list[tuple[Node, list[_Item], list[_Item]]]  # with opaque and see-through items
+
+
+class EglRenderer:
+    """See `renderer.Renderer`."""
+
+    def __init__(self) -> None:
+        self._context = moderngl.create_context(standalone=True, backend="egl", require=330)
+        with self._context:  # leaving it lets go of the context, so that any thread may draw
+            self._context.gc_mode = "context_gc"
+            self.name = f"EGL, {self._context.info['GL_RENDERER']}"
+            self._store = SurfaceStore(self._context)
+        self._prepared: WeakKeyDictionary[Scene, _Prepared] = WeakKeyDictionary()
+        self._targets: dict[tuple[int, int], _Target] = {}
+        self._finish = _finish_without_gil() or self._context.finish
+
+    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+        """RGB, and depth if asked for, of one pass."""
+        with self._context:
+            target = self._target(view.width, view.height)
+            prepared = self._prepare(scene)
+            self._submit(scene, prepared, view, target)
+            self._finish()
+            return target.read(view, depth)
+
+    def close(self) -> None:
+        self._prepared.clear()
+        self._targets.clear()
+        with self._context:
+            self._context.gc()
+        self._context.release()
+
+    def _target(self, width: int, height: int) -> _Target:
+        size = (width, height)
+        if size not in self._targets:
+            self._targets[size] = _Target(self._context, size)
+        return self._targets[size]
+
+    def _prepare(self, scene: Scene) -> _Prepared:
+        prepared = self._prepared.get(scene)
+        if prepared is None or prepared.version != scene.version:
+            prepared = self._prepared[scene] = self._build(scene)
+            self._context.gc()  # what removed models held
+        return prepared
+
+    def _build(self, scene: Scene) -> _Prepared:
+        near_lights = lights.needs_pixels(scene)
+        shine = lights.strongest_highlight(scene)
+        nodes = []
+        for node in scene.nodes.values():
+            items = []
+            for surface in self._store.of(node.shape):
+                per_pixel = near_lights or surface.highlight * shine > _VISIBLE
+                items.append(_Item(node, surface, *self._store.array(surface, per_pixel)))
+            opaque = [item for item in items if item.surface.opaque]
+            nodes.append((node, opaque, [item for item in items if not item.surface.opaque]))
+        block = self._context.buffer(lights.lights_block(scene), dynamic=True)
+        return _Prepared(scene.version, block, nodes)
+
+    def _submit(self, scene: Scene, prepared: _Prepared, view: CameraView, target: _Target) -> None:
+        clip_world = _UPSIDE_DOWN @ projection_matrix(view) @ view_matrix(view.pose)
+        eye = np.array([*view.pose.position, 1.0], np.float32)
+        prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
+        prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
+        target.start(self._context, scene.description.background)
+        seen = _near_first(prepared, clip_world, view)
+        for _, opaque, _ in seen:
+            _render(opaque, clip_world)
+        if any(see_through for _, _, see_through in seen):
+            target.blend(self._context)
+            for _, _, see_through in reversed(seen):
+                _render(see_through, clip_world)
+
+
+class _Target:
+    """Where one size of picture is drawn, and read back."""
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int]):
+        colour = context.renderbuffer(size, 4)
+        self._framebuffer = context.framebuffer([colour], context.depth_renderbuffer(size))
+        self._rgba = np.empty((size[1], size[0], 4), np.uint8)
+
+    def start(self, context: moderngl.Context, background: tuple[float, ...]) -> None:
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        context.front_face = "cw"  # upside down
+        context.cull_face = "back"
+        self._framebuffer.use()
+        self._framebuffer.depth_mask = True
+        self._framebuffer.clear(*background[:3], 1.0)
+
+    def blend(self, context: moderngl.Context) -> None:
+        """From here on surfaces mix with what is there, and leave no depth of their own."""
+        context.enable(moderngl.BLEND)
+        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        self._framebuffer.depth_mask = False
+
+    def read(self, view: CameraView, depth: bool) -> Frame:
+        """RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would (measured)."""
+        self._framebuffer.read_into(self._rgba, components=4, alignment=1)
+        rgb = cv2.cvtColor(self._rgba, cv2.COLOR_RGBA2RGB)
+        if not depth:
+            return Frame(rgb, None)
+        raw = np.empty((view.height, view.width), np.float32)
+        self._framebuffer.read_into(raw, components=1, attachment=-1, alignment=1, dtype="f4")
+        return Frame(rgb, metres_from_depth(raw, view.near, view.far))
+
+
+def _near_first(prepared: _Prepared, clip_world: np.ndarray, view: CameraView) -> list[tuple]:
+    """Nodes that can be in the picture, nearest first; of those around the camera the floor last."""
+    planes = frustum_planes(clip_world)
+    eye = np.array(view.pose.position)
+    seen = []
+    for index, entry in enumerate(prepared.nodes):
+        shape = entry[0].shape
+        matrix = entry[0].matrix
+        centre = matrix[:3, :3] @ shape.centre + matrix[:3, 3]
+        if not shape.parts or (planes[:, :3] @ centre + planes[:, 3]).min() < -shape.radius:
+            continue
+        gap = max(0.0, float(np.linalg.norm(centre - eye)) - shape.radius)
+        seen.append(((gap, shape.radius, index), entry))
+    seen.sort(key=lambda pair: pair[0])
+    return [entry for _, entry in seen]
+
+
+def _render(items: list[_Item], clip_world: np.ndarray) -> None:
+    if not items:
+        return
+    matrix = items[0].node.matrix  # all items of a node share it
+    model = matrix.T.astype(np.float32).tobytes()
+    projection_model = (clip_world @ matrix).T.astype(np.float32).tobytes()
+    for item in items:
+        item.program.model.write(model)
+        item.program.projection_model.write(projection_model)
+        item.surface.material.bind_to_uniform_block(SURFACE_BINDING)
+        if item.surface.texture is not None:
+            item.surface.texture.use(0)
+        item.array.render()
+
+
+def _finish_without_gil() -> Callable[[], None] | None:
+    """glFinish as a plain C call: other Python threads run meanwhile. In moderngl's they wait."""
+    name = ctypes.util.find_library("GL")
+    try:
+        finish = ctypes.CDLL(name).glFinish if name else None
+    except (OSError, AttributeError):
+        return None
+    if finish is not None:
+        finish.restype = None
+    return finish

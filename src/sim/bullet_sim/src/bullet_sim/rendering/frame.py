@@ -1,0 +1,35 @@
+"""What a renderer is asked for and what it gives back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bullet_sim.pose import Pose
+
+
+@dataclass(frozen=True)
+class CameraView:
+    """A pinhole camera that looks along +x of its frame, z up (SDF's convention)."""
+
+    width: int  # px
+    height: int  # px
+    horizontal_fov: float  # rad
+    near: float  # m
+    far: float  # m
+    pose: Pose  # camera frame in the world
+
+    @property
+    def focal_length_px(self) -> float:
+        """Focal length of both axes: width / (2 tan(hfov / 2)); pixels are square."""
+        return self.width / (2 * math.tan(self.horizontal_fov / 2))
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture, top row first."""
+
+    rgb: np.ndarray  # (height, width, 3) uint8, RGB, C-contiguous
+    depth: np.ndarray | None  # (height, width) float32, m along the optical axis; inf beyond far

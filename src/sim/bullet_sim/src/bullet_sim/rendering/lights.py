@@ -1,0 +1,57 @@
+"""The scene's lights as the bytes of the shader's `Lights` block."""
+
+from __future__ import annotations
+
+import logging
+import math
+
+import numpy as np
+
+from bullet_sim.description import LightDescription
+from bullet_sim.pose import rotate
+from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.shaders import DIRECTIONAL, MAX_LIGHTS, POINT, SPOT
+
+log = logging.getLogger(__name__)
+
+_KINDS = {"directional": DIRECTIONAL, "point": POINT, "spot": SPOT}
+BLOCK_SIZE = 16 * (3 + 6 * MAX_LIGHTS)  # bytes
+EYE_OFFSET = 16  # bytes, of the camera's position in the block
+
+
+def lights_block(scene: Scene) -> bytes:
+    """All but the eye, which changes with the camera; lights beyond the eighth are left out."""
+    lights = list(scene.lights.values())
+    if len(lights) > MAX_LIGHTS:
+        left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])
+        log.warning("more than %d lights; left out: %s", MAX_LIGHTS, left_out)
+    block = np.zeros((3 + 6 * MAX_LIGHTS, 4), np.float32)
+    block[0] = scene.description.ambient
+    block[2].view(np.int32)[0] = min(len(lights), MAX_LIGHTS)
+    for index, light in enumerate(lights[:MAX_LIGHTS]):
+        block[3 + 6 * index:9 + 6 * index] = _rows(light)
+    return block.tobytes()
+
+
+def needs_pixels(scene: Scene) -> bool:
+    """Whether some light is near enough that its strength changes across a face."""
+    return any(light.type != "directional" for light in scene.lights.values())
+
+
+def strongest_highlight(scene: Scene) -> float:
+    """The brightest specular channel of all lights, 0..1."""
+    return max((max(light.specular[:3]) for light in scene.lights.values()), default=0.0)
+
+
+def _rows(light: LightDescription) -> np.ndarray:
+    direction = np.array(rotate(light.pose.orientation, light.direction))
+    length = np.linalg.norm(direction)
+    direction = direction / length if length > 0 else np.array([0.0, 0.0, -1.0])
+    return np.array([
+        (*light.pose.position, _KINDS.get(light.type, POINT)),
+        (*direction, light.range),
+        light.diffuse,
+        light.specular,
+        (light.constant, light.linear, light.quadratic, 0.0),
+        (math.cos(light.inner_angle / 2), math.cos(light.outer_angle / 2), light.falloff, 0.0),
+    ], np.float32)

@@ -1,0 +1,59 @@
+"""The pinhole camera as matrices.
+
+The optical axis meets the picture in its middle: (width / 2, height / 2) when pixel edges are whole
+numbers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the camera frame
+(x forward, y left, z up) falls at column (width - 1) / 2 - f y / x and row (height - 1) / 2 - f z / x,
+with f the focal length in pixels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.frame import CameraView
+
+# Camera frame (x forward, y left, z up) to OpenGL's eye frame (x right, y up, z backward).
+_EYE_FROM_CAMERA = np.array([
+    [0.0, -1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+    [-1.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0, 1.0],
+])
+
+
+def projection_matrix(view: CameraView) -> np.ndarray:
+    """(4, 4) from OpenGL's eye frame to clip space, first picture row at y = +1."""
+    focal, near, far = view.focal_length_px, view.near, view.far
+    matrix = np.zeros((4, 4))
+    matrix[0, 0] = 2 * focal / view.width
+    matrix[1, 1] = 2 * focal / view.height
+    matrix[2, 2] = -(far + near) / (far - near)
+    matrix[2, 3] = -2 * far * near / (far - near)
+    matrix[3, 2] = -1.0
+    return matrix
+
+
+def view_matrix(pose: Pose) -> np.ndarray:
+    """(4, 4) from the world to OpenGL's eye frame of a camera at `pose`."""
+    return _EYE_FROM_CAMERA @ pose.inverse().matrix()
+
+
+def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
+    """Depth buffer values 0..1 to m along the optical axis, float32; inf where nothing was drawn.
+
+    Written with 1 - depth, which is exact where depth is close to 1: no cancellation far away.
+    """
+    result = np.subtract(np.float32(1), depth, dtype=np.float32)
+    background = result <= 0
+    result *= np.float32(1 / near - 1 / far)
+    result += np.float32(1 / far)
+    np.reciprocal(result, out=result)
+    result[background] = np.inf
+    return result
+
+
+def frustum_planes(matrix: np.ndarray) -> np.ndarray:
+    """(6, 4) planes of a world-to-clip matrix; plane @ (x, y, z, 1) is the distance, inside > 0."""
+    rows = np.concatenate([matrix[3] + matrix[:3], matrix[3] - matrix[:3]])
+    return rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)

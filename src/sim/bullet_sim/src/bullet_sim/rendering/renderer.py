@@ -1,0 +1,102 @@
+"""The protocol of renderers, and the choice of one."""
+
+from __future__ import annotations
+
+import logging
+import math
+import os
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+from bullet_sim.description import Box, LightDescription, Plane, Visual
+from bullet_sim.errors import SimulationError
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.frame import CameraView, Frame
+from bullet_sim.rendering.scene import Scene
+
+log = logging.getLogger(__name__)
+
+VARIABLE = "BULLET_SIM_RENDERER"
+
+
+class Renderer(Protocol):
+    """Draws a scene. One call at a time; which thread makes it does not matter."""
+
+    name: str  # backend and what it runs on, for people
+
+    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+        """One picture, and its depth if asked for; the arrays are the caller's own."""
+        ...
+
+    def close(self) -> None:
+        """Give back what the renderer holds; it draws no more."""
+        ...
+
+
+def open_renderer(preference: str | None = None) -> Renderer:
+    """EGL where it works, else TinyRenderer with a warning.
+
+    `preference`, "egl" or "tiny", or without it BULLET_SIM_RENDERER insists on one; if that one
+    does not work, it is a SimulationError.
+    """
+    chosen = preference or os.environ.get(VARIABLE) or None
+    if chosen is not None:
+        return _open_chosen(chosen)
+    try:
+        return _open_egl()
+    except Exception as error:  # no library, no driver, no device: each says it in its own way
+        reason = " ".join(str(error).split()) or type(error).__name__
+    renderer = _open_tiny()
+    rate_hz = 1 / _seconds_per_frame(renderer)
+    log.warning(
+        "no EGL renderer (%s); drawing with %s instead: about %.3g frames/s at 320x240, "
+        "a quarter of that at twice the width",
+        reason, renderer.name, rate_hz,
+    )
+    return renderer
+
+
+def _open_chosen(chosen: str) -> Renderer:
+    opener = _OPENERS.get(chosen)
+    if opener is None:
+        known = ", ".join(_OPENERS)
+        raise SimulationError(f"{VARIABLE}={chosen}: no such renderer; there are: {known}")
+    try:
+        return opener()
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise SimulationError(f"renderer {chosen} does not start: {reason}") from error
+
+
+def _open_egl() -> Renderer:
+    from bullet_sim.rendering.egl import EglRenderer
+
+    return EglRenderer()
+
+
+def _open_tiny() -> Renderer:
+    from bullet_sim.rendering.tiny import TinyRenderer
+
+    return TinyRenderer()
+
+
+_OPENERS: dict[str, Callable[[], Renderer]] = {"egl": _open_egl, "tiny": _open_tiny}
+
+
+def _seconds_per_frame(renderer: Renderer) -> float:
+    """The quickest of three small pictures of a floor and a box."""
+    scene = Scene()
+    scene.add_light(LightDescription("sun", type="directional"))
+    visuals = (
+        Visual("floor", Plane((0.0, 0.0, 1.0), (4.0, 4.0))),
+        Visual("box", Box((0.3, 0.3, 0.3)), Pose((1.0, 0.0, 0.15))),
+    )
+    scene.add_link(("trial", "link"), visuals, Pose())
+    view = CameraView(320, 240, math.pi / 3, 0.05, 50.0, Pose((-1.0, 0.0, 0.3)))
+    took = []
+    for _ in range(3):
+        start = time.perf_counter()
+        renderer.draw(scene, view)
+        took.append(time.perf_counter() - start)
+    return min(took)

@@ -1,0 +1,183 @@
+"""What there is to see: lights, and links with surfaces and poses, as data without a renderer."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from weakref import WeakValueDictionary
+
+import numpy as np
+
+from bullet_sim.description import LightDescription, Material, Mesh, SceneDescription, Visual
+from bullet_sim.errors import NameTaken, SimulationError, UnknownName
+from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes import load_mesh
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.primitives import primitive_part
+
+log = logging.getLogger(__name__)
+
+LinkKey = tuple[str, str]  # model, link
+
+# What a surface without any material looks like: a whitish grey, as in Gazebo.
+DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class LinkShape:
+    """Everything that links with equal visuals look like; shared by them, compared by identity."""
+
+    parts: tuple[MeshPart, ...]  # in the link frame, each with a material, one per material
+    centre: np.ndarray  # (3,) m, of a sphere around all parts, in the link frame
+    radius: float  # m
+
+
+class Node:
+    """One link in the scene."""
+
+    __slots__ = ("shape", "_pose", "_matrix")
+
+    def __init__(self, shape: LinkShape, pose: Pose):
+        self.shape = shape
+        self.pose = pose
+
+    @property
+    def pose(self) -> Pose:
+        """Link frame in the world."""
+        return self._pose
+
+    @pose.setter
+    def pose(self, pose: Pose) -> None:
+        self._pose = pose
+        self._matrix: np.ndarray | None = None
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """(4, 4) float64 of the pose; made when first asked for."""
+        if self._matrix is None:
+            self._matrix = self._pose.matrix()
+        return self._matrix
+
+
+class Scene:
+    """Lights and links by name. `version` grows when more than poses changes."""
+
+    def __init__(self, description: SceneDescription = SceneDescription()):
+        self.description = description
+        self.lights: dict[str, LightDescription] = {}
+        self.nodes: dict[LinkKey, Node] = {}
+        self.version = 0
+        self._shapes: WeakValueDictionary[tuple[Visual, ...], LinkShape] = WeakValueDictionary()
+
+    def add_light(self, light: LightDescription) -> None:
+        """Poses and directions of lights are in the world."""
+        if light.name in self.lights:
+            raise NameTaken(f"the scene already has a light named {light.name!r}")
+        self.lights[light.name] = light
+        self.version += 1
+
+    def remove_light(self, name: str) -> None:
+        if name not in self.lights:
+            raise UnknownName("light", name, self.lights)
+        del self.lights[name]
+        self.version += 1
+
+    def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
+        """Visuals whose mesh cannot be read are left out, with one warning each."""
+        if key in self.nodes:
+            raise NameTaken(f"the scene already has a link {'::'.join(key)}")
+        wanted = tuple(visuals)
+        shape = self._shapes.get(wanted)
+        if shape is None:
+            shape = self._shapes[wanted] = link_shape(wanted)
+        self.nodes[key] = Node(shape, pose)
+        self.version += 1
+
+    def remove_model(self, model: str) -> None:
+        """All links of a model; a model without links in the scene is no error."""
+        for key in [key for key in self.nodes if key[0] == model]:
+            del self.nodes[key]
+            self.version += 1
+
+    def set_pose(self, key: LinkKey, pose: Pose) -> None:
+        node = self.nodes.get(key)
+        if node is None:
+            raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
+        node.pose = pose
+
+    def set_poses(self, poses: Mapping[LinkKey, Pose]) -> None:
+        for key, pose in poses.items():
+            self.set_pose(key, pose)
+
+
+def link_shape(visuals: Sequence[Visual]) -> LinkShape:
+    """All visuals of a link in the link frame, with parts of equal material joined into one."""
+    by_material: dict[Material, list[MeshPart]] = {}
+    for visual in visuals:
+        for part in _visual_parts(visual):
+            by_material.setdefault(part.material, []).append(part)
+    parts = tuple(_joined(parts) for parts in by_material.values())
+    if not parts:
+        return LinkShape((), np.zeros(3), 0.0)
+    low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
+    high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
+    centre = (low.astype(float) + high) / 2
+    reach = [np.linalg.norm(part.vertices - centre, axis=1).max() for part in parts]
+    return LinkShape(parts, centre, float(max(reach)))
+
+
+def _visual_parts(visual: Visual) -> list[MeshPart]:
+    try:
+        parts = _surface(visual)
+    except SimulationError as error:
+        log.warning("visual %s is left out: %s", visual.name, error)
+        return []
+    placed = [_placed(part, visual) for part in parts]
+    return [part for part in placed if part.material.diffuse[3] > 0]
+
+
+def _surface(visual: Visual) -> tuple[MeshPart, ...]:
+    if isinstance(visual.geometry, Mesh):
+        return load_mesh(visual.geometry)
+    return (primitive_part(visual.geometry),)
+
+
+def _placed(part: MeshPart, visual: Visual) -> MeshPart:
+    """In the link frame, with the material that counts: visual's own, else file's, else default."""
+    material = visual.material or part.material or DEFAULT_MATERIAL
+    if visual.transparency > 0:
+        red, green, blue, alpha = material.diffuse
+        alpha *= max(0.0, 1 - visual.transparency)
+        material = replace(material, diffuse=(red, green, blue, alpha))
+    matrix = visual.pose.matrix()
+    vertices = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    normals = part.normals @ matrix[:3, :3].T
+    return replace(
+        part,
+        vertices=vertices.astype(np.float32),
+        normals=normals.astype(np.float32),
+        material=material,
+    )
+
+
+def _joined(parts: list[MeshPart]) -> MeshPart:
+    if len(parts) == 1:
+        return parts[0]
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
+    faces = [
+        part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
+    ]
+    uv = None
+    if any(part.uv is not None for part in parts):
+        uv = np.concatenate([
+            np.zeros((len(part.vertices), 2), np.float32) if part.uv is None else part.uv
+            for part in parts
+        ])
+    return MeshPart(
+        vertices=np.concatenate([part.vertices for part in parts]),
+        normals=np.concatenate([part.normals for part in parts]),
+        uv=uv,
+        faces=np.concatenate(faces),
+        material=parts[0].material,
+    )

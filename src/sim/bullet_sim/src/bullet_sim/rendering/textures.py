@@ -1,0 +1,25 @@
+"""Image files as arrays for surfaces."""
+
+from __future__ import annotations
+
+import logging
+
+import cv2
+import numpy as np
+
+log = logging.getLogger(__name__)
+
+
+def load_image(path: str, largest_px: int) -> np.ndarray | None:
+    """(height, width, 4) uint8 RGBA, opaque, bottom row first; None, with a warning, if unreadable.
+
+    An image larger than `largest_px` on a side is shrunk to fit.
+    """
+    image = cv2.imread(path, cv2.IMREAD_COLOR)
+    if image is None:
+        log.warning("texture %s is left out: it is not an image that can be read", path)
+        return None
+    shrink = largest_px / max(image.shape[:2])
+    if shrink < 1:
+        image = cv2.resize(image, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
+    return np.ascontiguousarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGBA)[::-1])

@@ -1,0 +1,180 @@
+"""The fallback where OpenGL does not start: PyBullet's TinyRenderer, slow, with the same cameras.
+
+One directional light, no filtering of textures, no blending; what glows only has the colour of it.
+It has a physics client of its own that never steps: bodies without mass stand where links are.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+
+import numpy as np
+import pybullet
+
+from bullet_sim.description import Material
+from bullet_sim.mesh_part import MeshPart
+from bullet_sim.pose import Pose, rotate
+from bullet_sim.rendering.frame import CameraView, Frame
+from bullet_sim.rendering.projection import metres_from_depth, projection_matrix, view_matrix
+from bullet_sim.rendering.scene import Node, Scene
+
+log = logging.getLogger(__name__)
+
+# PyBullet takes 8 MiB a call; so many triangles with corners of their own stay well below.
+_TRIANGLES_PER_BODY = 20_000
+
+
+class TinyRenderer:
+    """See `renderer.Renderer`."""
+
+    name = "PyBullet's TinyRenderer"
+
+    def __init__(self) -> None:
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._scene: Scene | None = None
+        self._version = -1
+        self._bodies: dict[Node, list[int]] = {}
+        self._poses: dict[Node, Pose] = {}
+        self._textures: dict[str, int] = {}
+
+    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+        """RGB, and depth if asked for."""
+        self._mirror(scene)
+        width, height, pixels, raw, _ = pybullet.getCameraImage(
+            view.width,
+            view.height,
+            _columns(view_matrix(view.pose)),
+            _columns(_half_pixel(view) @ projection_matrix(view)),
+            shadow=0,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+            renderer=pybullet.ER_TINY_RENDERER,
+            physicsClientId=self._client,
+            **_light(scene),
+        )
+        rgb = np.ascontiguousarray(np.reshape(pixels, (height, width, 4))[..., :3], np.uint8)
+        metres = metres_from_depth(
+            np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far
+        )
+        background = metres > view.far * 0.99  # TinyRenderer says nearly `far` for nothing
+        rgb[background] = np.clip(np.array(scene.description.background[:3]) * 255 + 0.5, 0, 255)
+        metres[background] = np.inf
+        return Frame(rgb, metres if depth else None)
+
+    def close(self) -> None:
+        pybullet.disconnect(self._client)
+
+    def _mirror(self, scene: Scene) -> None:
+        """Bring the client's bodies in line with the scene."""
+        if scene is not self._scene:
+            pybullet.resetSimulation(physicsClientId=self._client)
+            self._bodies, self._poses, self._textures = {}, {}, {}
+            self._scene, self._version = scene, -1
+        if scene.version != self._version:
+            current = set(scene.nodes.values())
+            for node in [node for node in self._bodies if node not in current]:
+                self._remove(node)
+            for node in current.difference(self._bodies):
+                pieces = [piece for part in node.shape.parts for piece in _pieces(part)]
+                self._bodies[node] = [self._body(piece) for piece in pieces]
+            self._version = scene.version
+        for node, bodies in self._bodies.items():
+            if self._poses.get(node) is not node.pose:
+                self._place(node, bodies)
+
+    def _remove(self, node: Node) -> None:
+        for body in self._bodies.pop(node):
+            pybullet.removeBody(body, physicsClientId=self._client)
+        self._poses.pop(node, None)
+
+    def _place(self, node: Node, bodies: list[int]) -> None:
+        self._poses[node] = node.pose
+        for body in bodies:
+            pybullet.resetBasePositionAndOrientation(
+                body, node.pose.position, node.pose.orientation, physicsClientId=self._client
+            )
+
+    def _body(self, part: MeshPart) -> int:
+        material = part.material
+        arrays = {
+            "vertices": part.vertices.tolist(),
+            "normals": part.normals.tolist(),
+            "indices": part.faces.ravel().tolist(),
+        }
+        if part.uv is not None:
+            arrays["uvs"] = _scaled_uv(part.uv, material).tolist()
+        visual = pybullet.createVisualShape(
+            pybullet.GEOM_MESH,
+            rgbaColor=_colour(material),
+            physicsClientId=self._client,
+            **arrays,
+        )
+        body = pybullet.createMultiBody(
+            baseVisualShapeIndex=visual, physicsClientId=self._client
+        )
+        if material.texture is not None and part.uv is not None:
+            self._paint(body, material.texture)
+        return body
+
+    def _paint(self, body: int, path: str) -> None:
+        if path not in self._textures:
+            try:
+                texture = pybullet.loadTexture(path, physicsClientId=self._client)
+            except pybullet.error:
+                log.warning("texture %s is left out: TinyRenderer cannot read it", path)
+                texture = -1
+            self._textures[path] = texture
+        if self._textures[path] >= 0:
+            pybullet.changeVisualShape(
+                body, -1, textureUniqueId=self._textures[path], physicsClientId=self._client
+            )
+
+
+def _pieces(part: MeshPart) -> Iterator[MeshPart]:
+    """The part itself, or pieces of it with corners of their own if it is too large for one call."""
+    if len(part.faces) <= _TRIANGLES_PER_BODY:
+        yield part
+        return
+    for start in range(0, len(part.faces), _TRIANGLES_PER_BODY):
+        corners = part.faces[start:start + _TRIANGLES_PER_BODY].ravel()
+        yield MeshPart(
+            vertices=part.vertices[corners],
+            normals=part.normals[corners],
+            uv=None if part.uv is None else part.uv[corners],
+            faces=np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
+            material=part.material,
+        )
+
+
+def _scaled_uv(uv: np.ndarray, material: Material) -> np.ndarray:
+    scale = np.array([factor or 1.0 for factor in material.texture_scale])
+    return (uv - 0.5) / scale + 0.5
+
+
+def _colour(material: Material) -> tuple[float, ...]:
+    """Its diffuse or its emissive colour, whichever is brighter in a channel."""
+    pairs = zip(material.diffuse[:3], material.emissive[:3], strict=True)
+    return (*(max(pair) for pair in pairs), material.diffuse[3])
+
+
+def _light(scene: Scene) -> dict:
+    """TinyRenderer's one light: the first directional one, else the first, else ambient alone."""
+    lights = sorted(scene.lights.values(), key=lambda light: light.type != "directional")
+    ambient = float(np.mean(scene.description.ambient[:3]))
+    settings = {"lightAmbientCoeff": ambient, "lightSpecularCoeff": 0.0, "lightDiffuseCoeff": 0.0}
+    if lights:
+        towards = rotate(lights[0].pose.orientation, [-axis for axis in lights[0].direction])
+        settings["lightDirection"] = list(towards)
+        settings["lightDiffuseCoeff"] = float(np.mean(lights[0].diffuse[:3]))
+    return settings
+
+
+def _half_pixel(view: CameraView) -> np.ndarray:
+    """TinyRenderer takes a pixel's corner for its middle: a shift of the picture makes up for it."""
+    shift = np.eye(4)
+    shift[0, 3], shift[1, 3] = -1 / view.width, -1 / view.height
+    return shift
+
+
+def _columns(matrix: np.ndarray) -> list[float]:
+    return matrix.T.ravel().tolist()

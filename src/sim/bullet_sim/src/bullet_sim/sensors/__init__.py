@@ -1,0 +1,1 @@
+"""Pure reads of the world: each sensor samples into a frozen reading."""

@@ -1,0 +1,216 @@
+"""The simulated world: the only thing that steps, and the owner of simulated time."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.errors import NameTaken, UnknownName
+from bullet_sim.model import Link, Model
+from bullet_sim.physics.body import Twist
+from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.rendering.scene import Scene
+
+
+@dataclass(frozen=True)
+class ModelSnapshot:
+    """One model at one moment, in the world frame."""
+
+    pose: Pose
+    twist: Twist
+    links: dict[str, tuple[Pose, Twist]]
+    joints: dict[str, tuple[float, float]]  # position, rate
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The world at one moment."""
+
+    time: float  # s, simulated
+    models: dict[str, ModelSnapshot]
+
+
+@dataclass(frozen=True)
+class RayHits:
+    """Result of a batch of rays; row i belongs to ray i."""
+
+    fraction: np.ndarray  # (n,) of the ray's length; 1 where nothing was hit
+    retro: np.ndarray  # (n,) laser_retro of what was hit
+
+
+class World:
+    """Models by name, integer ticks, step, pause and reset. Not thread-safe: one thread owns it."""
+
+    def __init__(self, description: WorldDescription | None = None, seed: int = 0,
+                 initial_time: float = 0.0):
+        self.description = description or WorldDescription()
+        self.seed = seed
+        self._initial_tick = round(initial_time / self.timestep)
+        self.tick = self._initial_tick
+        self.paused = False
+        self.models: dict[str, Model] = {}
+        self.lights: dict[str, LightDescription] = {}
+        self.scene = Scene(self.description.scene)
+        self._client = PhysicsClient(self.description.physics, self.description.gravity)
+        self._retro: dict[tuple[int, int], float] = {}
+        for light in self.description.lights:
+            self.add_light(light)
+        for model in self.description.models:
+            self.spawn(model)
+
+    # --- time
+
+    @property
+    def timestep(self) -> float:
+        """Length of one step, s."""
+        return self.description.physics.max_step_size
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s: a whole number of steps."""
+        return self.tick * self.timestep
+
+    def step(self) -> None:
+        """One step forward; while paused, time stands still."""
+        if self.paused:
+            return
+        for model in self.models.values():
+            model.before_step()
+        self._client.step()
+        self.tick += 1
+        for model in self.models.values():
+            if not model.static:
+                model.forget()
+
+    def random(self, name: str) -> np.random.Generator:
+        """A generator of its own for each named thing, the same in every run with the same seed."""
+        return np.random.default_rng([self.seed, zlib.crc32(name.encode())])
+
+    # --- contents
+
+    def spawn(self, description: ModelDescription, pose: Pose = IDENTITY,
+              name: str | None = None) -> Model:
+        """Put a model in: its own pose is kept as an offset to `pose`, as Gazebo does."""
+        name = name or description.name
+        if name in self.models:
+            raise NameTaken(f"a model named {name!r} is already there; delete it or choose another")
+        model = Model(name, description, pose * description.pose, self._client,
+                      self.description.gravity)
+        self.models[name] = model
+        for link in model.links.values():
+            self.scene.add_link((name, link.name), link.description.visuals, link.pose)
+            for light in link.description.lights:
+                scoped = f"{link.scoped_name}::{light.name}"
+                self.add_light(replace(light, name=scoped, pose=link.pose * light.pose))
+        for body in model.bodies:
+            for index, link in enumerate(body.tree.links, start=-1):
+                if link.collisions and link.collisions[0].laser_retro:
+                    self._retro[(body.number, index)] = link.collisions[0].laser_retro
+        return model
+
+    def delete(self, name: str) -> None:
+        """Take a model out."""
+        model = self.model(name)
+        del self.models[name]
+        self.scene.remove_model(name)
+        for light in [light for light in self.lights if light.startswith(f"{name}::")]:
+            self.remove_light(light)
+        numbers = {body.number for body in model.bodies}
+        self._retro = {key: value for key, value in self._retro.items() if key[0] not in numbers}
+        model.remove()
+
+    def model(self, name: str) -> Model:
+        """The model of that name."""
+        if name not in self.models:
+            raise UnknownName("model", name, self.models)
+        return self.models[name]
+
+    def link(self, name: str) -> Link:
+        """A link by scoped name `model::link`, or by an unscoped name that only one model has."""
+        model, _, rest = name.partition("::")
+        if rest and model in self.models:
+            return self.models[model].link(rest)
+        found = [m.links[name] for m in self.models.values() if name in m.links]
+        if len(found) == 1:
+            return found[0]
+        known = [link.scoped_name for m in self.models.values() for link in m.links.values()]
+        raise UnknownName("link", name, known)
+
+    def frame(self, name: str) -> tuple[Pose, Twist]:
+        """Pose and twist of a reference frame: a model, a link, or the world by its usual names."""
+        if name in self.models:
+            return self.models[name].pose, self.models[name].twist
+        if name in ("", "world", "map", "/map"):
+            return IDENTITY, Twist()
+        link = self.link(name)
+        return link.pose, link.twist
+
+    def add_light(self, light: LightDescription) -> None:
+        """Switch a light on."""
+        if light.name in self.lights:
+            raise NameTaken(f"a light named {light.name!r} is already there")
+        self.lights[light.name] = light
+        self.scene.add_light(light)
+
+    def remove_light(self, name: str) -> None:
+        """Switch a light off for good."""
+        if name not in self.lights:
+            raise UnknownName("light", name, self.lights)
+        del self.lights[name]
+        self.scene.remove_light(name)
+
+    # --- reset
+
+    def reset_models(self) -> None:
+        """Every model back to where it was spawned; time goes on (Gazebo's reset_world)."""
+        for model in self.models.values():
+            model.reset()
+
+    def reset_simulation(self) -> None:
+        """As `reset_models`, and time starts again where it began."""
+        self.reset_models()
+        self.tick = self._initial_tick
+
+    # --- reads
+
+    def snapshot(self) -> Snapshot:
+        """Where everything is now."""
+        return Snapshot(self.time, {
+            name: ModelSnapshot(
+                model.pose, model.twist, dict(model.link_states()),
+                {joint.name: (joint.position, joint.velocity) for joint in model.joints.values()},
+            )
+            for name, model in self.models.items()
+        })
+
+    def update_scene(self) -> Scene:
+        """The scene with every moving link where it is now."""
+        for model in self.models.values():
+            for name, (pose, _) in model.link_states().items():
+                self.scene.set_pose((model.name, name), pose)
+        return self.scene
+
+    def cast_rays(self, starts: np.ndarray, ends: np.ndarray) -> RayHits:
+        """First collision shape along each ray; `starts` and `ends` are (n, 3) in the world."""
+        rows = self._client.cast_rays(starts.tolist(), ends.tolist())
+        fraction = np.array([row[2] if row[0] >= 0 else 1.0 for row in rows])
+        retro = np.zeros(len(rows))
+        if self._retro:
+            retro[:] = [self._retro.get((row[0], row[1]), 0.0) for row in rows]
+        return RayHits(fraction, retro)
+
+    def configure_physics(self, **changes) -> None:
+        """Change fields of the world's PhysicsDescription, and gravity (m/s^2)."""
+        gravity = changes.pop("gravity", self.description.gravity)
+        physics = replace(self.description.physics, **changes)
+        self.tick = round(self.time / physics.max_step_size)
+        self.description = replace(self.description, physics=physics, gravity=gravity)
+        self._client.configure(physics, gravity)
+
+    def close(self) -> None:
+        """Let go of the engine."""
+        self._client.close()

@@ -1,0 +1,138 @@
+"""Materials: Gazebo's names, OGRE scripts, colours written in SDF."""
+
+import pytest
+
+from bullet_sim.description import Material
+from bullet_sim.errors import FormatError
+from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.gazebo_materials import named_materials
+from bullet_sim.formats.ogre import parse_script, to_material
+
+NO_FILES = Resources()
+SCRIPT = """
+import * from "base.material" // a comment
+/* material hidden { } */
+material Base
+{
+  technique
+  {
+    pass
+    {
+      ambient 0.1 0.2 0.3
+      diffuse 0.4 0.5 0.6 0.7
+      specular 0.1 0.1 0.1 1 12.5
+      emissive 0.5 0 0
+      lighting off
+      texture_unit { texture wall.png
+        scale 2 4 }
+      texture_unit { texture second.png }
+    }
+    pass { diffuse 1 1 1 }
+  }
+  technique { pass { ambient 1 1 1 } }
+}
+material "Derived One" : Base
+{
+  receive_shadows off
+  technique { pass { diffuse 1 0 0 } }
+}
+"""
+TEXTURED = "material {} {{ technique {{ pass {{ texture_unit {{ texture {} }} }} }} }}"
+
+
+@pytest.mark.parametrize("name", sorted(named_materials()))
+def test_every_named_material_is_a_material(name):
+    material = named_materials()[name]
+    for colour in (material.ambient, material.diffuse, material.specular, material.emissive):
+        assert len(colour) == 4 and all(0 <= part <= 1 for part in colour)
+
+
+def test_some_of_gazebos_values():
+    named = named_materials()
+    assert (named["Gazebo/Grey"].ambient, named["Gazebo/Grey"].diffuse) == (
+        (0.3, 0.3, 0.3, 1), (0.7, 0.7, 0.7, 1))
+    assert named["Gazebo/Orange"].diffuse == (1, 0.5088, 0.0468, 1)
+    assert named["Gazebo/RedTransparent"].diffuse[3] == 0.5
+    assert named["Gazebo/GreenGlow"].emissive == (0, 1, 0, 1)
+
+
+def test_ogre_script():
+    base = to_material("Base", parse_script(SCRIPT), lambda file: f"/textures/{file}")
+    assert base == Material(
+        ambient=(0.1, 0.2, 0.3, 1), diffuse=(0.4, 0.5, 0.6, 0.7), specular=(0.1, 0.1, 0.1, 1),
+        emissive=(0.5, 0, 0, 1), shininess=12.5, texture="/textures/wall.png",
+        texture_scale=(2, 4), lighting=False)
+
+
+def test_ogre_inheritance():
+    derived = to_material("Derived One", parse_script(SCRIPT), lambda file: file)
+    assert derived.diffuse == (1, 0, 0, 1)
+    assert derived.ambient == (0.1, 0.2, 0.3, 1)
+    assert derived.texture == "wall.png"
+
+
+@pytest.mark.parametrize("text, message", [
+    ("material a { technique {", "material 'a': a '}' is missing"),
+    ("material a technique", "material 'a technique': expected '{' after its name"),
+])
+def test_broken_scripts(text, message):
+    with pytest.raises(FormatError, match=message.replace("{", r"\{").replace("}", r"\}")):
+        parse_script(text)
+
+
+def test_word_for_a_number():
+    materials = parse_script("material a { technique { pass { diffuse red 0 0 } } }")
+    with pytest.raises(FormatError, match="material 'a': diffuse 'red 0 0'"):
+        to_material("a", materials, lambda file: file)
+
+
+def visual_with(material: str, resources: Resources = NO_FILES) -> Material | None:
+    shape = "<geometry><sphere><radius>1</radius></sphere></geometry>"
+    model = load_model(f"""<sdf version="1.6"><model name="m"><link name="l">
+    <visual name="v">{shape}
+        <material>{material}</material></visual></link></model></sdf>""", resources)
+    return model.links[0].visuals[0].material
+
+
+def test_colours_in_sdf():
+    material = visual_with(
+        "<ambient>1 0 0</ambient><diffuse>0 1 0 0.5</diffuse><lighting>0</lighting>")
+    assert (material.ambient, material.diffuse) == ((1, 0, 0, 1), (0, 1, 0, 0.5))
+    assert not material.lighting
+
+
+def test_colours_win_over_the_script():
+    material = visual_with("""<script><uri>file://media/materials/scripts/gazebo.material</uri>
+        <name>Gazebo/Red</name></script><ambient>0 0 1 1</ambient>""")
+    assert (material.ambient, material.diffuse) == ((0, 0, 1, 1), (1, 0, 0, 1))
+
+
+def test_unknown_name_is_one_warning_and_the_default(caplog):
+    assert visual_with("<script><name>Gazebo/Gren</name></script>") is None
+    assert len(caplog.records) == 1
+    assert "material 'Gazebo/Gren' not found" in caplog.text
+
+
+def test_missing_texture_is_one_warning_with_folders(tmp_path, caplog):
+    (tmp_path / "a.material").write_text(TEXTURED.format("a", "gone.png"))
+    material = visual_with(f"<script><uri>file://{tmp_path}</uri><name>a</name></script>")
+    assert material == Material()
+    assert len(caplog.records) == 1
+    assert "texture gone.png not found" in caplog.text and str(tmp_path) in caplog.text
+
+
+def test_missing_script_folder_is_in_the_warning(tmp_path, caplog):
+    uri = f"model://gone/{tmp_path.name}"
+    visual_with(f"<script><uri>{uri}</uri><name>a</name></script>", Resources([tmp_path]))
+    assert len(caplog.records) == 1
+    assert uri in caplog.text and str(tmp_path) in caplog.text
+
+
+def test_scripts_of_media_folders_are_known_everywhere(tmp_path):
+    scripts = tmp_path / "media/materials/scripts"
+    scripts.mkdir(parents=True)
+    (tmp_path / "media/materials/textures").mkdir()
+    (tmp_path / "media/materials/textures/t.png").write_bytes(b"")
+    (scripts / "mine.material").write_text(TEXTURED.format("Mine/X", "t.png"))
+    material = visual_with("<script><name>Mine/X</name></script>", Resources([], [tmp_path]))
+    assert material.texture == str(tmp_path / "media/materials/textures/t.png")

@@ -1,0 +1,65 @@
+"""Search paths: order, URI prefixes, and errors that name the folders."""
+
+from pathlib import Path
+
+import pytest
+
+from bullet_sim.errors import ResourceNotFound
+from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import DATA_FOLDER
+
+
+def touch(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("")
+    return path
+
+
+def test_order_of_the_environment(tmp_path):
+    environ = {"HOME": str(tmp_path), "GAZEBO_MODEL_PATH": "/a::/b", "GAZEBO_RESOURCE_PATH": "/r"}
+    paths = Resources.from_environment(environ, ["/exported", "/a"], ["/media"])
+    assert paths.model_paths == (
+        tmp_path / ".gazebo/models", DATA_FOLDER / "models",
+        Path("/a"), Path("/b"), Path("/exported"))
+    assert paths.resource_paths == (DATA_FOLDER, Path("/r"), Path("/media"))
+
+
+def test_first_model_path_wins(tmp_path):
+    touch(tmp_path / "two/X/model.sdf")
+    both = Resources([tmp_path / "one", tmp_path / "two"])
+    assert both.resolve("model://X/model.sdf") == tmp_path / "two/X/model.sdf"
+    first = touch(tmp_path / "one/X/model.sdf")
+    assert both.resolve("model://X/model.sdf") == first
+
+
+def test_package_file_absolute_and_relative(tmp_path):
+    mesh = touch(tmp_path / "pkg/meshes/a.stl")
+    paths = Resources([], [tmp_path], {"pkg": str(tmp_path / "pkg")}.__getitem__)
+    assert paths.resolve("package://pkg/meshes/a.stl") == mesh
+    assert paths.resolve(f"file://{mesh}") == mesh
+    assert paths.resolve("file://pkg/meshes/a.stl") == mesh
+    assert paths.resolve(str(mesh)) == mesh
+    assert paths.resolve("meshes/a.stl", base=tmp_path / "pkg") == mesh
+    assert paths.resolve("meshes/../meshes/a.stl", base=tmp_path / "pkg") == mesh
+
+
+def test_world_is_looked_up_here_then_in_the_resource_paths(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    paths = Resources([], [tmp_path / "share"])
+    deep = touch(tmp_path / "share/media/models/w.world")
+    assert paths.find_world("w.world") == deep
+    share = touch(tmp_path / "share/w.world")
+    assert paths.find_world("w.world") == share
+    here = touch(tmp_path / "w.world")
+    assert paths.find_world("w.world") == here
+
+
+@pytest.mark.parametrize("uri, message", [
+    ("model://X/y", r"model://X/y not found \(searched: /m/X\)"),
+    ("http://host/x", "unknown URI prefix"),
+    ("package://gone/x", r"package gone not found \(searched: no package finder was given\)"),
+    ("/abs/x.stl", r"/abs/x.stl not found \(searched: /abs\)"),
+])
+def test_what_is_not_there(uri, message):
+    with pytest.raises(ResourceNotFound, match=message):
+        Resources(["/m"]).resolve(uri)

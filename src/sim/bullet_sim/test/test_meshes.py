@@ -1,0 +1,204 @@
+"""Mesh files of every kind against boxes whose numbers are known."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+import trimesh
+
+from bullet_sim.description import Mesh
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes import collision_mesh, load_mesh, to_obj
+
+DAE = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><created>2020-01-01T00:00:00</created><modified>2020-01-01T00:00:00</modified>
+    <unit name="part" meter="{unit}"/><up_axis>{up}</up_axis></asset>
+  <library_images><image id="img"><init_from>{image}</init_from></image></library_images>
+  <library_effects>
+    <effect id="painted"><profile_COMMON><technique sid="t"><lambert>
+      <diffuse><color>0.2 0.4 0.6 1</color></diffuse>
+      <transparent opaque="A_ONE"><color>1 1 1 1</color></transparent>
+      <transparency><float>0.25</float></transparency>
+    </lambert></technique></profile_COMMON></effect>
+    <effect id="pictured"><profile_COMMON>
+      <newparam sid="surface"><surface type="2D"><init_from>img</init_from></surface></newparam>
+      <newparam sid="sampler"><sampler2D><source>surface</source></sampler2D></newparam>
+      <technique sid="t"><lambert>
+        <diffuse><texture texture="sampler" texcoord="UV"/></diffuse>
+      </lambert></technique></profile_COMMON></effect>
+  </library_effects>
+  <library_materials>
+    <material id="m1"><instance_effect url="#painted"/></material>
+    <material id="m2"><instance_effect url="#pictured"/></material>
+  </library_materials>
+  <library_geometries><geometry id="tri"><mesh>
+    <source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 2 0</float_array>
+      <technique_common><accessor source="#pa" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <source id="t"><float_array id="ta" count="6">0 0 1 0 0 1</float_array>
+      <technique_common><accessor source="#ta" count="3" stride="2">
+        <param name="S" type="float"/><param name="T" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="1" material="sym"><input semantic="VERTEX" source="#v" offset="0"/>
+      <input semantic="TEXCOORD" source="#t" offset="1" set="0"/><p>0 0 1 1 2 2</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s">
+    <node id="a" name="left"><translate>10 0 0</translate>
+      <instance_geometry url="#tri"><bind_material><technique_common>
+        <instance_material symbol="sym" target="#m1"/></technique_common></bind_material>
+      </instance_geometry></node>
+    <node id="b" name="right"><scale>-1 1 1</scale>
+      <instance_geometry url="#tri"><bind_material><technique_common>
+        <instance_material symbol="sym" target="#m2"/></technique_common></bind_material>
+      </instance_geometry></node>
+  </visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+"""
+
+
+@pytest.fixture
+def dae(tmp_path):
+    """A triangle twice, in centimetres and Y_UP: painted and moved, and with a picture and mirrored."""
+    (tmp_path / "picture.png").write_bytes(b"not looked at when loading")
+    path = tmp_path / "two.dae"
+    path.write_text(DAE.format(unit="0.01", up="Y_UP", image="picture.png"))
+    return path
+
+
+@pytest.fixture
+def box():
+    mesh = trimesh.creation.box((1.0, 2.0, 3.0))
+    mesh.apply_translation((0.1, 0.2, 0.3))
+    return mesh
+
+
+def winding_normals(part):
+    corners = part.vertices[part.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("name", ["box.stl", "box_ascii.stl", "box.obj", "box.dae"])
+def test_box_of_every_format_has_its_size_and_faces_outwards(tmp_path, box, name):
+    path = tmp_path / name
+    if "ascii" in name:
+        path.write_text(trimesh.exchange.stl.export_stl_ascii(box))
+    else:
+        box.export(path)
+    (part,) = load_mesh(Mesh(str(path), scale=(2.0, 1.0, 0.5)))
+    assert part.vertices.dtype == part.normals.dtype == np.float32
+    np.testing.assert_allclose(part.vertices.min(axis=0), (-0.8, -0.8, -0.6), atol=1e-6)
+    np.testing.assert_allclose(part.vertices.max(axis=0), (1.2, 1.2, 0.9), atol=1e-6)
+    outward = part.vertices[part.faces].mean(axis=1) - (0.2, 0.2, 0.15)
+    assert (np.sum(winding_normals(part) * outward, axis=1) > 0).all()
+    np.testing.assert_allclose(np.linalg.norm(part.normals, axis=1), 1, atol=1e-5)
+
+
+def test_mirroring_scale_keeps_the_outside_out(tmp_path, box):
+    box.export(tmp_path / "box.stl")
+    (part,) = load_mesh(Mesh(str(tmp_path / "box.stl"), scale=(1.0, -1.0, 1.0)))
+    outward = part.vertices[part.faces].mean(axis=1) - (0.1, -0.2, 0.3)
+    assert (np.sum(winding_normals(part) * outward, axis=1) > 0).all()
+    np.testing.assert_allclose(part.normals[part.faces[:, 0]], winding_normals(part), atol=1e-6)
+
+
+def test_collada_unit_counts_and_up_axis_does_not(dae):
+    left, right = load_mesh(Mesh(str(dae)))
+    np.testing.assert_allclose(
+        left.vertices, [(0.1, 0, 0), (0.11, 0, 0), (0.1, 0.02, 0)], atol=1e-7
+    )
+    np.testing.assert_allclose(right.vertices.min(axis=0), (-0.01, 0, 0), atol=1e-7)
+    np.testing.assert_allclose(winding_normals(left), [(0, 0, 1)], atol=1e-6)
+    np.testing.assert_allclose(winding_normals(right), [(0, 0, 1)], atol=1e-6)
+
+
+def test_collada_materials(dae):
+    left, right = load_mesh(Mesh(str(dae)))
+    assert left.material.diffuse == pytest.approx((0.2, 0.4, 0.6, 0.25))
+    assert left.material.texture is None
+    assert right.material.texture == str(dae.parent / "picture.png")
+    np.testing.assert_allclose(right.uv, [(0, 0), (1, 0), (0, 1)])
+
+
+def test_submesh_is_a_collada_node_and_can_be_centred(dae):
+    (part,) = load_mesh(Mesh(str(dae), submesh="left", centre_submesh=True))
+    np.testing.assert_allclose(part.vertices.min(axis=0), (-0.005, -0.01, 0), atol=1e-7)
+    np.testing.assert_allclose(part.vertices.max(axis=0), (0.005, 0.01, 0), atol=1e-7)
+    with pytest.raises(FormatError, match="'middle'; there are: left, right"):
+        load_mesh(Mesh(str(dae), submesh="middle"))
+
+
+def test_obj_with_two_materials(tmp_path):
+    (tmp_path / "sign.png").write_bytes(b"not looked at when loading")
+    (tmp_path / "two.mtl").write_text(
+        "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl signed\nKd 1 1 1\nKs 0.5 0.5 0.5\nNs 20\nmap_Kd sign.png\n"
+    )
+    (tmp_path / "two.obj").write_text(
+        "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "o first\nusemtl red\nf 1/1 2/2 3/3\no second\nusemtl signed\nf 1/1 3/3 4/4\n"
+    )
+    geometry = Mesh(str(tmp_path / "two.obj"))
+    parts = {part.material.diffuse: part for part in load_mesh(geometry)}
+    signed = parts[(1.0, 1.0, 1.0, 1.0)].material
+    assert set(parts) == {(1.0, 0.0, 0.0, 0.5), (1.0, 1.0, 1.0, 1.0)}
+    assert (signed.texture, signed.shininess) == (str(tmp_path / "sign.png"), 20.0)
+    (second,) = load_mesh(Mesh(geometry.path, submesh="second"))
+    assert sorted(second.uv.tolist()) == [[0, 0], [0, 1], [1, 1]]
+
+
+def test_obj_without_its_material_library_still_loads(tmp_path):
+    (tmp_path / "alone.obj").write_text(
+        "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl red\nf 1 2 3\n"
+    )
+    (part,) = load_mesh(Mesh(str(tmp_path / "alone.obj")))
+    assert part.material is None and len(part.faces) == 1
+
+
+@pytest.mark.parametrize(("name", "content", "reason"), [
+    ("junk.stl", b"nonsense" * 30, "neither text nor binary STL"),
+    ("empty.stl", b"", "neither text nor binary STL"),
+    ("cut.dae", b"<COLLADA", "XML Parsing Error"),
+    ("text.obj", b"hello", "no triangles"),
+    ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "out of bounds"),
+    ("shape.step", b"ISO-10303", "unknown kind '.step'; there are: .dae, .obj, .stl"),
+    ("gone.stl", None, "No such file"),
+])
+def test_unreadable_mesh_is_one_line_with_file_and_reason(tmp_path, capfd, name, content, reason):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(FormatError) as caught:
+        load_mesh(Mesh(str(path)))
+    message = str(caught.value)
+    assert str(path) in message and reason in message and "\n" not in message
+    assert capfd.readouterr() == ("", "")
+
+
+def test_loaded_once_until_the_file_changes(tmp_path, box):
+
+
+    geometry = Mesh(str(tmp_path / "box.stl"))
+    box.export(geometry.path)
+    first = load_mesh(geometry)
+    assert load_mesh(geometry) is first
+    box.apply_scale(2)
+    box.export(geometry.path)
+    os.utime(geometry.path, ns=(1, 1))
+    assert np.ptp(load_mesh(geometry)[0].vertices[:, 0]) == pytest.approx(2.0)
+
+
+def test_collision_mesh_merges_corners(tmp_path, box):
+    box.export(tmp_path / "box.stl")
+    geometry = Mesh(str(tmp_path / "box.stl"), scale=(1.0, 1.0, 2.0))
+    vertices, faces = collision_mesh(geometry)
+    assert (vertices.shape, faces.shape) == ((8, 3), (12, 3))
+    assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(12.0)
+    written = trimesh.load(to_obj(geometry, tmp_path))
+    assert written.volume == pytest.approx(12.0)

@@ -1,0 +1,1 @@
+"""The ROS side of bullet_sim: one node that answers where Gazebo would."""

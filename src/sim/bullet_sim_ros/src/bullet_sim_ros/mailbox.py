@@ -1,0 +1,60 @@
+"""Carries calls from ROS threads to the loop, which alone may touch the physics. The only lock."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotYet
+from typing import Any
+
+
+class Closed(Exception):
+    """The loop has ended; nobody will answer any more."""
+
+
+class Mailbox:
+    """Calls wait here until the loop runs them between two steps."""
+
+    def __init__(self):
+        self._calls: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
+        self._closed = threading.Event()
+
+    def call(self, function: Callable[[], Any]) -> Any:
+        """From any thread: run `function` in the loop and give back what it returns or raises."""
+        future: Future = Future()
+        self._calls.put((function, future))
+        while True:
+            try:
+                return future.result(timeout=0.5)
+            except NotYet:
+                if future.done():
+                    raise  # the function itself timed out
+                if self._closed.is_set():
+                    raise Closed("the simulator is shutting down") from None
+
+    def leave(self, function: Callable[[], Any]) -> None:
+        """From any thread: have `function` run in the loop, without waiting."""
+        self._calls.put((function, Future()))
+
+    def run_pending(self, wait: float = 0.0) -> None:
+        """From the loop: run what has come in; `wait` for a first one (s, wall)."""
+        try:
+            item = self._calls.get(timeout=wait) if wait else self._calls.get_nowait()
+            while True:
+                self._run(*item)
+                item = self._calls.get_nowait()
+        except queue.Empty:
+            return
+
+    def close(self) -> None:
+        """From the loop: refuse what still waits."""
+        self._closed.set()
+
+    @staticmethod
+    def _run(function: Callable[[], Any], future: Future) -> None:
+        try:
+            future.set_result(function())
+        except Exception as error:
+            future.set_exception(error)

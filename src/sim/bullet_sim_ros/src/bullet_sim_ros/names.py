@@ -1,0 +1,44 @@
+"""Every topic and service name of the simulator, and how plugins' relative names resolve."""
+
+from __future__ import annotations
+
+import rospy
+
+CLOCK = "/clock"
+MODEL_STATES = "~model_states"
+LINK_STATES = "~link_states"
+SET_MODEL_STATE = "~set_model_state"
+
+SPAWN_URDF_MODEL = "~spawn_urdf_model"
+SPAWN_SDF_MODEL = "~spawn_sdf_model"
+DELETE_MODEL = "~delete_model"
+GET_MODEL_STATE = "~get_model_state"
+SET_MODEL_CONFIGURATION = "~set_model_configuration"
+GET_MODEL_PROPERTIES = "~get_model_properties"
+GET_WORLD_PROPERTIES = "~get_world_properties"
+PAUSE_PHYSICS = "~pause_physics"
+UNPAUSE_PHYSICS = "~unpause_physics"
+RESET_WORLD = "~reset_world"
+RESET_SIMULATION = "~reset_simulation"
+
+USE_SIM_TIME = "/use_sim_time"
+PUB_CLOCK_FREQUENCY = "~pub_clock_frequency"
+PUB_STATE_FREQUENCY = "~pub_state_frequency"
+ENABLE_ROS_NETWORK = "~enable_ros_network"
+
+
+def join(namespace: str, name: str) -> str:
+    """`name` below `namespace`; absolute names stay, a relative namespace is below the node's."""
+    if name.startswith("/"):
+        return name
+    base = namespace if namespace.startswith("/") else rospy.get_namespace() + namespace
+    parts = [part for part in f"{base}/{name}".split("/") if part]
+    return "/" + "/".join(parts)
+
+
+def frame(prefix: str, name: str) -> str:
+    """A tf frame: a leading slash is only stripped, other names get the tf_prefix."""
+    if name.startswith("/"):
+        return name.lstrip("/")
+    prefix = prefix.strip("/")
+    return f"{prefix}/{name}" if prefix else name

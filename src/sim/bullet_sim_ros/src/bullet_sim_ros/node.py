@@ -1,0 +1,73 @@
+"""The node /gazebo: reads a world, offers Gazebo's topics and services, and runs the loop."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import rospy
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.formats import load_world
+from bullet_sim.world import World
+from bullet_sim_ros.log_bridge import forward_core_log
+from bullet_sim_ros.package_paths import open_resources
+from bullet_sim_ros.params import read_node_parameters
+from bullet_sim_ros.services.models import offer_model_services
+from bullet_sim_ros.services.states import offer_state_services
+from bullet_sim_ros.services.worlds import offer_world_services
+from bullet_sim_ros.simulation import Simulation
+
+
+def parse(arguments: list[str]) -> argparse.Namespace:
+    """Command line without ROS remappings."""
+    parser = argparse.ArgumentParser(prog="gzserver", description=__doc__)
+    parser.add_argument("--world", default="worlds/empty.world", help="world file")
+    parser.add_argument("--paused", action="store_true", help="start with time standing still")
+    parser.add_argument("--physics", default="ode", help="accepted, no effect: Bullet computes")
+    parser.add_argument("--seed", type=int, default=0, help="of everything random")
+    parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
+    parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
+    parser.add_argument("--initial-sim-time", type=float, default=0.0, help="s")
+    return parser.parse_args(arguments)
+
+
+def open_world(options: argparse.Namespace, resources) -> World:
+    """The world of the command line."""
+    path = resources.find_world(options.world)
+    world = World(load_world(path, resources), options.seed, options.initial_sim_time)
+    world.paused = options.paused
+    return world
+
+
+def main() -> int:
+    """Run until shutdown; 1 if the world cannot be opened."""
+    options = parse(rospy.myargv(sys.argv)[1:])
+    # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
+    rospy.init_node("gazebo", disable_rostime=True)
+    rospy.rostime.set_rostime_initialized(True)
+    forward_core_log(options.verbose)
+    resources = open_resources()
+    try:
+        world = open_world(options, resources)
+    except SimulationError as error:
+        rospy.logfatal("Could not open world %s: %s", options.world, error)
+        return 1
+    parameters = read_node_parameters()
+    simulation = Simulation(world, parameters)
+    if parameters.enable_ros_network:
+        offer_model_services(simulation, resources)
+        offer_state_services(simulation)
+        offer_world_services(simulation)
+    else:
+        rospy.loginfo("ROS gazebo topics/services are disabled")
+    rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
+    try:
+        simulation.run(options.iters)
+    finally:
+        simulation.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,134 @@
+"""libgazebo_ros_diff_drive.so: cmd_vel in; odometry, tf and wheel joint states out."""
+
+from __future__ import annotations
+
+import logging
+
+import rospy
+import tf2_ros
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
+from bullet_sim.model import Joint
+from bullet_sim.schedule import Schedule
+from bullet_sim.sensors.joint_states import sample_joints
+from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.plugins.registry import Host, plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_diff_drive.so")
+class DiffDrivePlugin:
+    """Publishes first, then moves the wheels, as upstream does; there is no command time-out."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._host = host
+        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+        self._joints = self._wheels(p.text("leftJoint", "left_joint"),
+                                    p.text("rightJoint", "right_joint"))
+        geometry = DiffDriveParameters(
+            p.number("wheelSeparation", 0.34), p.number("wheelDiameter", 0.15),
+            p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0),
+        )
+        self._drive = DiffDrive(*self._joints, geometry)
+        self._wheel_odometry = WheelOdometry(geometry.wheel_separation, geometry.wheel_diameter)
+        self._true = self._source(p.text("odometrySource", "world")) == "world"
+        self._schedule = Schedule(p.number("updateRate", 100.0), host.world.timestep)
+        self._schedule.restart(host.world.tick)
+        self._updated = host.world.time
+        self._publish_tf = p.flag("publishTf", True)
+        self._publish_odom_tf = p.flag("publishOdomTF", True)
+        self._publish_wheel_tf = p.flag("publishWheelTF", False)
+        prefix = params.tf_prefix(namespace)
+        self._odom_frame = names.frame(prefix, p.text("odometryFrame", "odom"))
+        self._base_frame = names.frame(prefix, p.text("robotBaseFrame", "base_footprint"))
+        self._prefix = prefix
+        self._open_topics(namespace, p.text("commandTopic", "cmd_vel"),
+                          p.text("odometryTopic", "odom"), p.flag("publishWheelJointState", False))
+
+    def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
+        return self._host.model.joint(left), self._host.model.joint(right)
+
+    @staticmethod
+    def _source(text: str) -> str:
+        if text not in ("world", "encoder"):
+            log.warning("<odometrySource> is %r; there are world and encoder; world is used", text)
+            return "world"
+        return text
+
+    def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
+        self._odometry = rospy.Publisher(names.join(namespace, odometry), Odometry, queue_size=1)
+        self._states = rospy.Publisher(
+            names.join(namespace, "joint_states"), JointState, queue_size=1000,
+        ) if joints else None
+        self._tf = tf2_ros.TransformBroadcaster()
+        self._command = rospy.Subscriber(names.join(namespace, command), Twist, self._on_command,
+                                         queue_size=1, tcp_nodelay=True)
+
+    def _on_command(self, msg: Twist) -> None:
+        if not convert.is_finite(msg):
+            log.warning("%s: a command with a number that is not finite is ignored",
+                        self._command.resolved_name)
+            return
+        forward, yaw_rate = msg.linear.x, msg.angular.z
+        self._host.leave(lambda: self._drive.command(forward, yaw_rate))
+
+    def update(self) -> None:
+        """Publish and drive when due; wheels are counted every step."""
+        world = self._host.world
+        if not self._true:
+            left, right = self._joints
+            self._wheel_odometry.update(world.time, left.velocity, right.velocity)
+        if not self._schedule.due(world.tick):
+            return
+        if self._states:
+            reading = sample_joints(world, self._joints)
+            self._states.publish(convert.joints_to_msg(reading, velocities=False))
+        if self._publish_tf:
+            self._publish(self._reading())
+        self._drive.update(world.time - self._updated)
+        self._updated = world.time
+
+    def _reading(self) -> OdometryReading:
+        if self._true:
+            return true_odometry(self._host.world, self._host.model)
+        return self._wheel_odometry.sample()
+
+    def _publish(self, reading: OdometryReading) -> None:
+        """Upstream's publishTf switches the odometry topic as well as the transforms."""
+        self._odometry.publish(
+            convert.odometry_to_msg(reading, self._odom_frame, self._base_frame))
+        transforms = []
+        if self._publish_odom_tf:
+            transforms.append(convert.transform_to_msg(reading.pose, reading.time,
+                                                       self._odom_frame, self._base_frame))
+        if self._publish_wheel_tf:
+            transforms += [self._wheel_transform(joint, reading.time) for joint in self._joints]
+        if transforms:
+            self._tf.sendTransform(transforms)
+
+    def _wheel_transform(self, joint: Joint, time: float):
+        links = self._host.model.links
+        parent, child = joint.description.parent, joint.description.child
+        pose = links[parent].pose.inverse() * links[child].pose
+        return convert.transform_to_msg(pose, time, names.frame(self._prefix, parent),
+                                        names.frame(self._prefix, child))
+
+    def reset(self) -> None:
+        """Back to standing still at the start."""
+        self._drive.stop()
+        self._wheel_odometry.restart(self._host.world.time)
+        self._schedule.restart(self._host.world.tick)
+        self._updated = self._host.world.time
+
+    def close(self) -> None:
+        """End the topics."""
+        self._command.unregister()
+        self._odometry.unregister()
+        if self._states:
+            self._states.unregister()

@@ -1,0 +1,48 @@
+"""libgazebo_ros_joint_state_publisher.so: joint_states of a list of joints."""
+
+from __future__ import annotations
+
+import logging
+
+import rospy
+from sensor_msgs.msg import JointState
+
+from bullet_sim.schedule import Schedule
+from bullet_sim.sensors.joint_states import sample_joints
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.plugins.registry import Host, plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_joint_state_publisher.so")
+class JointStatePublisherPlugin:
+    """A name that is no joint is left out with an error line (upstream crashes on it)."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._world = host.world
+        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+        wanted = [name.strip() for name in p.text("jointName").split(",") if name.strip()]
+        self._joints = [host.model.joints[name] for name in wanted if name in host.model.joints]
+        for name in wanted:
+            if name not in host.model.joints:
+                log.error("model %s: joint_state_publisher: no joint named %r; there are: %s",
+                          host.model.name, name, ", ".join(host.model.joints))
+        self._schedule = Schedule(p.number("updateRate", 100.0), host.world.timestep)
+        self._schedule.restart(host.world.tick)
+        self._states = rospy.Publisher(names.join(namespace, "joint_states"), JointState,
+                                       queue_size=1000)
+
+    def update(self) -> None:
+        """Publish when due."""
+        if self._schedule.due(self._world.tick) and self._states.get_num_connections():
+            self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))
+
+    def reset(self) -> None:
+        """Count the rate from here."""
+        self._schedule.restart(self._world.tick)
+
+    def close(self) -> None:
+        """End the topic."""
+        self._states.unregister()

@@ -1,0 +1,40 @@
+"""libgazebo_ros_laser.so and its GPU twin: LaserScan while somebody listens."""
+
+from __future__ import annotations
+
+import rospy
+from sensor_msgs.msg import LaserScan
+
+from bullet_sim.schedule import Schedule
+from bullet_sim.sensors.laser import Laser
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.plugins.registry import Host, plugin
+
+
+@plugin("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
+class LaserPlugin:
+    """The rate is the sensor's `<update_rate>`; the plugin has none."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._world = host.world
+        namespace = p.namespace(missing="/", empty=host.model.name)
+        self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
+        self._laser = Laser(host.world, host.link, host.sensor)
+        self._schedule = Schedule(host.sensor.update_rate, host.world.timestep)
+        self._schedule.restart(host.world.tick)
+        topic = names.join(namespace, p.text("topicName", "/world"))
+        self._scans = rospy.Publisher(topic, LaserScan, queue_size=1)
+
+    def update(self) -> None:
+        """Sweep when due."""
+        if self._schedule.due(self._world.tick) and self._scans.get_num_connections():
+            self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))
+
+    def reset(self) -> None:
+        """Count the rate from here."""
+        self._schedule.restart(self._world.tick)
+
+    def close(self) -> None:
+        """End the topic."""
+        self._scans.unregister()

@@ -1,0 +1,75 @@
+"""Reads the tags of a `<plugin>`: types, defaults, and errors that name plugin and tag."""
+
+from __future__ import annotations
+
+import logging
+
+from bullet_sim.description import PluginDescription
+
+log = logging.getLogger("bullet_sim.plugins")
+
+TRUE, FALSE = ("true", "1"), ("false", "0")
+
+
+class PluginError(Exception):
+    """A plugin that cannot work as written; the message names the tag."""
+
+
+class PluginParameters:
+    """Typed access to the children of one `<plugin>` element."""
+
+    def __init__(self, model: str, description: PluginDescription):
+        self._model = model
+        self._plugin = description.name
+        self._element = description.element
+
+    def has(self, tag: str) -> bool:
+        """Whether the tag is there, empty or not."""
+        return self._element.find(tag) is not None
+
+    def text(self, tag: str, default: str = "") -> str:
+        """Trimmed text of the first such tag; the default if it is absent or empty."""
+        found = self._element.findtext(tag)
+        return found.strip() if found and found.strip() else default
+
+    def required(self, tag: str) -> str:
+        """Trimmed text of a tag that has to be there."""
+        found = self.text(tag)
+        if not found:
+            raise PluginError(f"it needs a <{tag}>")
+        return found
+
+    def number(self, tag: str, default: float) -> float:
+        """A float."""
+        text = self.text(tag)
+        if not text:
+            return default
+        try:
+            return float(text)
+        except ValueError:
+            raise PluginError(f"<{tag}> is {text!r}, which is no number") from None
+
+    def flag(self, tag: str, default: bool) -> bool:
+        """true/1/false/0 in any case; anything else is a warning and the default."""
+        text = self.text(tag).lower()
+        if text in TRUE or text in FALSE:
+            return text in TRUE
+        if text:
+            log.warning("model %s: plugin %s: <%s> is %r, neither true nor false; %s is used",
+                        self._model, self._plugin, tag, text, str(default).lower())
+        return default
+
+    def vector(self, tag: str) -> tuple[float, float, float]:
+        """Three numbers; zeros if absent."""
+        text = self.text(tag, "0 0 0")
+        try:
+            x, y, z = (float(part) for part in text.split())
+        except ValueError:
+            raise PluginError(f"<{tag}> is {text!r}, which is not three numbers") from None
+        return (x, y, z)
+
+    def namespace(self, missing: str, empty: str) -> str:
+        """`robotNamespace`; families of plugins differ in what an absent or an empty one means."""
+        if not self.has("robotNamespace"):
+            return missing
+        return self.text("robotNamespace", empty)

@@ -1,0 +1,1 @@
+"""The services of /gazebo: each handler runs in the loop, and turns an exception into a status."""

@@ -1,0 +1,46 @@
+"""How a service call reaches the loop and how its failure comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+
+from bullet_sim.errors import SimulationError
+from bullet_sim_ros.mailbox import Closed, Mailbox
+
+
+class CallFails(Exception):
+    """The call itself is to fail, so that the client sees a ServiceException."""
+
+
+def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any], None]) -> None:
+    """Advertise a service. `handler(request, response)` fills the response in the loop's thread."""
+    made = kind._response_class
+
+    def answer(request):
+        response = made()
+        try:
+            mailbox.call(lambda: handler(request, response))
+        except SimulationError as error:
+            if "success" not in response.__slots__:
+                raise rospy.ServiceException(str(error)) from None
+            response.success = False
+            response.status_message = str(error)
+            rospy.logerr("%s", error)
+        except (CallFails, Closed) as error:
+            raise rospy.ServiceException(str(error)) from None
+        return response
+
+    rospy.Service(name, kind, answer)
+
+
+def done(response, message: str) -> None:
+    """Mark a response as successful."""
+    response.success = True
+    response.status_message = message
+
+
+class ServiceError(SimulationError):
+    """A request that cannot be met, in upstream's words."""

@@ -1,0 +1,68 @@
+"""Spawning and deleting models."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import re
+from xml.etree.ElementTree import SubElement
+
+from gazebo_msgs.srv import DeleteModel, SpawnModel
+
+from bullet_sim.description import ModelDescription, PluginDescription
+from bullet_sim.formats import Resources, load_model
+from bullet_sim_ros import names
+from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer
+from bullet_sim_ros.services.states import spawn_pose
+
+URDF_ROOT = re.compile(r"<robot[\s>/]")
+
+
+def offer_model_services(simulation, resources: Resources) -> None:
+    """spawn_urdf_model, spawn_sdf_model, delete_model."""
+
+    def spawn(request, response):
+        name = request.model_name
+        pose = spawn_pose(simulation.world, request)
+        if name in simulation.world.models:
+            raise ServiceError("SpawnModel: Failure - entity already exists.")
+        description = load_model(request.model_xml, resources, name or None)
+        if request.robot_namespace:
+            description = with_namespace(description, request.robot_namespace)
+        simulation.spawn(description, pose, description.name)
+        done(response, "SpawnModel: Successfully spawned entity")
+
+    def spawn_urdf(request, response):
+        if not URDF_ROOT.search(request.model_xml):
+            raise CallFails("SpawnModel: Failure - entity format is invalid.")
+        spawn(request, response)
+
+    def delete(request, response):
+        if request.model_name not in simulation.world.models:
+            raise ServiceError("DeleteModel: model does not exist")
+        simulation.delete(request.model_name)
+        done(response, "DeleteModel: successfully deleted model")
+
+    offer(simulation.mailbox, names.SPAWN_URDF_MODEL, SpawnModel, spawn_urdf)
+    offer(simulation.mailbox, names.SPAWN_SDF_MODEL, SpawnModel, spawn)
+    offer(simulation.mailbox, names.DELETE_MODEL, DeleteModel, delete)
+
+
+def with_namespace(description: ModelDescription, namespace: str) -> ModelDescription:
+    """Give every plugin without a `<robotNamespace>` this one, at any depth."""
+    def named(plugin: PluginDescription) -> PluginDescription:
+        if plugin.element.find("robotNamespace") is not None:
+            return plugin
+        element = copy.deepcopy(plugin.element)
+        SubElement(element, "robotNamespace").text = namespace
+        return dataclasses.replace(plugin, element=element)
+
+    def in_link(link):
+        sensors = tuple(
+            dataclasses.replace(sensor, plugins=tuple(map(named, sensor.plugins)))
+            for sensor in link.sensors
+        )
+        return dataclasses.replace(link, sensors=sensors)
+
+    return dataclasses.replace(description, plugins=tuple(map(named, description.plugins)),
+                               links=tuple(map(in_link, description.links)))

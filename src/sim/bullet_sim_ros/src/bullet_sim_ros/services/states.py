@@ -1,0 +1,104 @@
+"""Where models are, and putting them elsewhere."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
+
+from bullet_sim.errors import UnknownName
+from bullet_sim.model import twist_in
+from bullet_sim.physics.body import Twist
+from bullet_sim.pose import Pose, rotate
+from bullet_sim.world import World
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.services.answers import ServiceError, done, offer
+
+
+def offer_state_services(simulation) -> None:
+    """get_model_state, set_model_state, set_model_configuration."""
+    world, calls = simulation.world, Counter()
+
+    def get(request, response):
+        calls[request.model_name] += 1
+        get_model_state(world, request, response)
+        response.header.seq = calls[request.model_name]
+
+    def set_(request, response):
+        set_model_state(world, request.model_state)
+        done(response, "SetModelState: set model state done")
+
+    def configure(request, response):
+        set_model_configuration(world, request)
+        done(response, "SetModelConfiguration: success")
+
+    offer(simulation.mailbox, names.GET_MODEL_STATE, GetModelState, get)
+    offer(simulation.mailbox, names.SET_MODEL_STATE, SetModelState, set_)
+    offer(simulation.mailbox, names.SET_MODEL_CONFIGURATION, SetModelConfiguration, configure)
+
+
+def get_model_state(world: World, request, response) -> None:
+    """Pose and twist of a model, in the world or relative to another entity."""
+    response.header.stamp = convert.stamp(world.time)
+    response.header.frame_id = request.relative_entity_name
+    if request.model_name not in world.models:
+        raise ServiceError("GetModelState: model does not exist")
+    model = world.models[request.model_name]
+    try:
+        frame, frame_twist = world.frame(request.relative_entity_name)
+    except UnknownName:
+        raise ServiceError("GetModelState: reference relative_entity_name not found, did you "
+                           "forget to scope the body by model name?") from None
+    difference = Twist(_minus(model.twist.linear, frame_twist.linear),
+                       _minus(model.twist.angular, frame_twist.angular))
+    response.pose = convert.pose_to_msg(frame.inverse() * model.pose)
+    response.twist = convert.twist_to_msg(twist_in(frame, difference))
+    done(response, "GetModelState: got properties")
+
+
+def set_model_state(world: World, state: ModelState) -> None:
+    """Move a model and set its velocity; both are in the axes of the reference entity."""
+    if state.model_name not in world.models:
+        raise ServiceError("SetModelState: model does not exist")
+    if not convert.is_finite(state.pose, state.twist):
+        raise ServiceError("SetModelState: pose and twist must be finite numbers")
+    model = world.models[state.model_name]
+    try:
+        frame, _ = world.frame(state.reference_frame)
+    except UnknownName:
+        raise ServiceError("SetModelState: specified reference frame entity does not exist") \
+            from None
+    twist = convert.twist_from_msg(state.twist)
+    model.set_pose(frame * convert.pose_from_msg(state.pose))
+    model.set_twist(Twist(rotate(frame.orientation, twist.linear),
+                          rotate(frame.orientation, twist.angular)))
+
+
+def set_model_configuration(world: World, request) -> None:
+    """Joint positions at once; unknown joints are ignored, as upstream does."""
+    if request.model_name not in world.models:
+        raise ServiceError("SetModelConfiguration: model does not exist")
+    if len(request.joint_names) != len(request.joint_positions):
+        raise ServiceError(
+            "SetModelConfiguration: joint name and position list have different lengths")
+    joints = world.models[request.model_name].joints
+    for name, position in zip(request.joint_names, request.joint_positions, strict=True):
+        if name in joints:
+            joints[name].reset(position)
+
+
+def _minus(a, b):
+    return tuple(x - y for x, y in zip(a, b, strict=True))
+
+
+def spawn_pose(world: World, request) -> Pose:
+    """The wanted pose of a spawn request, in the world."""
+    if not convert.is_finite(request.initial_pose):
+        raise ServiceError("SpawnModel: initial_pose must be finite numbers")
+    try:
+        frame, _ = world.frame(request.reference_frame)
+    except UnknownName:
+        raise ServiceError("SpawnModel: reference reference_frame not found, did you forget to "
+                           "scope the link by model name?") from None
+    return frame * convert.pose_from_msg(request.initial_pose)

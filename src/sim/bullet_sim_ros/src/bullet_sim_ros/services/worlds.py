@@ -1,0 +1,54 @@
+"""The world as a whole: what is in it, pause, reset."""
+
+from __future__ import annotations
+
+from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
+from std_srvs.srv import Empty
+
+from bullet_sim.world import World
+from bullet_sim_ros import names
+from bullet_sim_ros.services.answers import ServiceError, done, offer
+
+
+def offer_world_services(simulation) -> None:
+    """What is in the world, pausing and resetting it."""
+    world = simulation.world
+
+    def pause(_request, _response):
+        world.paused = True
+
+    def unpause(_request, _response):
+        world.paused = False
+
+    offer(simulation.mailbox, names.GET_WORLD_PROPERTIES, GetWorldProperties,
+          lambda _request, response: get_world_properties(world, response))
+    offer(simulation.mailbox, names.GET_MODEL_PROPERTIES, GetModelProperties,
+          lambda request, response: get_model_properties(world, request.model_name, response))
+    offer(simulation.mailbox, names.PAUSE_PHYSICS, Empty, pause)
+    offer(simulation.mailbox, names.UNPAUSE_PHYSICS, Empty, unpause)
+    offer(simulation.mailbox, names.RESET_WORLD, Empty,
+          lambda _request, _response: world.reset_models())
+    offer(simulation.mailbox, names.RESET_SIMULATION, Empty,
+          lambda _request, _response: simulation.reset())
+
+
+def get_world_properties(world: World, response) -> None:
+    """Time and the models' names, in the order they came."""
+    response.sim_time = world.time
+    response.model_names = list(world.models)
+    response.rendering_enabled = True
+    done(response, "GetWorldProperties: got properties")
+
+
+def get_model_properties(world: World, name: str, response) -> None:
+    """Names of what a model consists of, unscoped."""
+    if name not in world.models:
+        raise ServiceError("GetModelProperties: model does not exist")
+    description = world.models[name].description
+    response.body_names = [link.name for link in description.links]
+    response.geom_names = [
+        collision.name for link in description.links for collision in link.collisions]
+    response.joint_names = [joint.name for joint in description.joints]
+    response.child_model_names = list(description.child_models)
+    response.is_static = description.static
+    done(response, "GetModelProperties: got properties")

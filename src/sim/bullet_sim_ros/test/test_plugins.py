@@ -1,0 +1,105 @@
+"""The plugin registry and how plugins read their tags, without a master."""
+
+import logging
+from xml.etree.ElementTree import fromstring
+
+import pytest
+
+from bullet_sim.description import (
+    LinkDescription,
+    ModelDescription,
+    PluginDescription,
+    SensorDescription,
+)
+from bullet_sim.world import World
+from bullet_sim_ros.plugins import load_plugins, plugin, registry
+from bullet_sim_ros.plugins.parameters import PluginError, PluginParameters
+from bullet_sim_ros.plugins.registry import Host
+from bullet_sim_ros.services.models import with_namespace
+
+
+def described(filename: str = "libx.so", body: str = "") -> PluginDescription:
+    return PluginDescription("p", filename, fromstring(f"<plugin>{body}</plugin>"))
+
+
+def parameters(body: str) -> PluginParameters:
+    return PluginParameters("robot", described(body=body))
+
+
+def test_values_are_trimmed_and_typed():
+    p = parameters("<a> x </a><n> 2.5 </n><v>1 -2 3</v><t>TRUE</t><z>0</z><e/>")
+    assert p.text("a") == "x"
+    assert p.number("n", 0.0) == 2.5
+    assert p.vector("v") == (1.0, -2.0, 3.0)
+    assert p.flag("t", False) is True
+    assert p.flag("z", True) is False
+    assert (p.text("e", "d"), p.number("missing", 7.0), p.vector("none")) == ("d", 7.0, (0, 0, 0))
+
+
+def test_a_bad_flag_warns_and_a_bad_number_is_an_error(caplog):
+    p = parameters("<f>maybe</f><n>fast</n><v>1 2</v>")
+    with caplog.at_level(logging.WARNING):
+        assert p.flag("f", True) is True
+    assert "<f> is 'maybe', neither true nor false" in caplog.text
+    for read in (lambda: p.number("n", 0.0), lambda: p.vector("v"), lambda: p.required("x")):
+        with pytest.raises(PluginError, match="<[nvx]>"):
+            read()
+
+
+@pytest.mark.parametrize("body, found", [
+    ("", "missing"), ("<robotNamespace/>", "empty"), ("<robotNamespace>/</robotNamespace>", "/")])
+def test_namespace_tells_absent_from_empty(body, found):
+    assert parameters(body).namespace(missing="missing", empty="empty") == found
+
+
+@pytest.fixture
+def world():
+    made = World()
+    yield made
+    made.close()
+
+
+def load(world, *plugins, sensor: SensorDescription | None = None):
+    link = LinkDescription("link", sensors=(sensor,) if sensor else ())
+    model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
+
+    def host(model, description, sensor=None, link=None):
+        return Host(world, model, description, None, None, sensor, link)
+    return load_plugins(host, model)
+
+
+def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):
+    sensor = SensorDescription("eye", "camera", plugins=(described("libnothing_at_all.so"),))
+    with caplog.at_level(logging.WARNING):
+        assert load(world, described("libgazebo_ros_diff_driv.so"), sensor=sensor) == []
+    first, second = [record.getMessage() for record in caplog.records]
+    assert "model robot: plugin p (libgazebo_ros_diff_driv.so) is not known" in first
+    assert "did you mean libgazebo_ros_diff_drive.so?" in first
+    assert "sensor eye publishes nothing" in second
+
+
+def test_a_plugin_that_fails_is_one_error_and_the_others_load(world, caplog, monkeypatch):
+    monkeypatch.setattr(registry, "_registry", dict(registry._registry))
+
+    @plugin("libgood.so")
+    class Good:
+        def __init__(self, host):
+            self.host = host
+
+    body = "<leftJoint>nope</leftJoint>"
+    with caplog.at_level(logging.WARNING):
+        loaded = load(world, described("libgazebo_ros_diff_drive.so", body), described("libgood.so"))
+    assert [type(made) for made in loaded] == [Good]
+    assert "is not loaded: no joint of model robot named 'nope'; there are: none" in caplog.text
+
+
+def test_the_namespace_is_injected_where_there_is_none():
+    sensor = SensorDescription("s", "ray", plugins=(described(),))
+    own = described(body="<robotNamespace>mine</robotNamespace>")
+    model = ModelDescription("m", plugins=(described(), own),
+                             links=(LinkDescription("l", sensors=(sensor,)),))
+    named = with_namespace(model, "/tb3_0/")
+    assert [p.element.findtext("robotNamespace") for p in named.plugins] == ["/tb3_0/", "mine"]
+    inner = named.links[0].sensors[0].plugins[0]
+    assert inner.element.findtext("robotNamespace") == "/tb3_0/"
+    assert model.plugins[0].element.find("robotNamespace") is None
