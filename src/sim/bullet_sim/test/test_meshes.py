@@ -64,7 +64,7 @@ DAE = """<?xml version="1.0"?>
 
 @pytest.fixture
 def dae(tmp_path):
-    """A triangle twice, in centimetres and Y_UP: painted and moved, and with a picture and mirrored."""
+    """A triangle twice, in centimetres and Y_UP: painted and moved, then pictured and mirrored."""
     (tmp_path / "picture.png").write_bytes(b"not looked at when loading")
     path = tmp_path / "two.dae"
     path.write_text(DAE.format(unit="0.01", up="Y_UP", image="picture.png"))
@@ -137,7 +137,8 @@ def test_submesh_is_a_collada_node_and_can_be_centred(dae):
 def test_obj_with_two_materials(tmp_path):
     (tmp_path / "sign.png").write_bytes(b"not looked at when loading")
     (tmp_path / "two.mtl").write_text(
-        "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl signed\nKd 1 1 1\nKs 0.5 0.5 0.5\nNs 20\nmap_Kd sign.png\n"
+        "newmtl red\nKd 1 0 0\nd 0.5\n"
+        "newmtl signed\nKd 1 1 1\nKs 0.5 0.5 0.5\nNs 20\nmap_Kd sign.png\n"
     )
     (tmp_path / "two.obj").write_text(
         "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"

@@ -70,7 +70,7 @@ def test_without_egl_one_warning_with_reason_and_frame_rate(monkeypatch, caplog)
 
 def test_insisting_on_a_broken_egl_is_an_error(monkeypatch):
     monkeypatch.setitem(choice._OPENERS, "egl", broken)
-    with pytest.raises(SimulationError, match="renderer egl does not start: libEGL.so.1 is missing"):
+    with pytest.raises(SimulationError, match=r"egl does not start: libEGL\.so\.1 is missing"):
         open_renderer("egl")
 
 

@@ -145,4 +145,5 @@ def test_plane_faces_along_its_normal(normal):
     corners = part.vertices[part.faces[0]]
     facing = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     np.testing.assert_allclose(facing / np.linalg.norm(facing), part.normals[0], atol=1e-6)
-    np.testing.assert_allclose(part.normals[0], np.array(normal) / np.linalg.norm(normal), atol=1e-6)
+    expected = np.array(normal) / np.linalg.norm(normal)
+    np.testing.assert_allclose(part.normals[0], expected, atol=1e-6)

@@ -56,7 +56,7 @@ def collision_mesh(geometry: Mesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def to_obj(geometry: Mesh, folder: Path | str) -> Path:
-    """Write the collision triangles as plain OBJ into `folder`; a mesh always gets the same name."""
+    """Write the collision triangles as plain OBJ into `folder`; equal meshes, equal names."""
     vertices, faces = collision_mesh(geometry)
     key = f"{geometry.path}|{geometry.scale}|{geometry.submesh}|{geometry.centre_submesh}"
     path = Path(folder) / f"{Path(geometry.path).stem}-{_short_hash(key)}.obj"

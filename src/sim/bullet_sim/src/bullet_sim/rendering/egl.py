@@ -39,6 +39,7 @@ from bullet_sim.rendering.surfaces import (
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
 # A highlight of less than half a grey level is not worth working out for each pixel.
 _VISIBLE = 0.5 / 255
+_MOST_DEVICES = 8
 
 
 @dataclass(eq=False)
@@ -62,7 +63,7 @@ class EglRenderer:
     """See `renderer.Renderer`."""
 
     def __init__(self) -> None:
-        self._context = moderngl.create_context(standalone=True, backend="egl", require=330)
+        self._context = _open_context()
         with self._context:  # leaving it lets go of the context, so that any thread may draw
             self._context.gc_mode = "context_gc"
             self.name = f"EGL, {self._context.info['GL_RENDERER']}"
@@ -121,7 +122,8 @@ class EglRenderer:
         prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
         target.start(self._context, scene.description.background)
         seen = _near_first(prepared, clip_world, view)
-        for _, opaque, _ in seen:
+        for node, opaque, _ in seen:
+            self._context.polygon_offset = (0.0, node.shape.recess)
             _render(opaque, clip_world)
         if any(see_through for _, _, see_through in seen):
             target.blend(self._context)
@@ -152,7 +154,7 @@ class _Target:
         self._framebuffer.depth_mask = False
 
     def read(self, view: CameraView, depth: bool) -> Frame:
-        """RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would (measured)."""
+        """RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would."""
         self._framebuffer.read_into(self._rgba, components=4, alignment=1)
         rgb = cv2.cvtColor(self._rgba, cv2.COLOR_RGBA2RGB)
         if not depth:
@@ -162,8 +164,21 @@ class _Target:
         return Frame(rgb, metres_from_depth(raw, view.near, view.far))
 
 
+def _open_context() -> moderngl.Context:
+    """On the first EGL device that works: after a card that refuses comes llvmpipe."""
+    refusals = []
+    for index in range(_MOST_DEVICES):
+        try:
+            return moderngl.create_context(
+                standalone=True, backend="egl", require=330, device_index=index
+            )
+        except Exception as error:  # glcontext raises bare exceptions
+            refusals.append(error)
+    raise refusals[0]
+
+
 def _near_first(prepared: _Prepared, clip_world: np.ndarray, view: CameraView) -> list[tuple]:
-    """Nodes that can be in the picture, nearest first; of those around the camera the floor last."""
+    """Nodes that can be in the picture, nearest first; of those around the camera, small first."""
     planes = frustum_planes(clip_world)
     eye = np.array(view.pose.position)
     seen = []

@@ -1,9 +1,9 @@
 """The pinhole camera as matrices.
 
-The optical axis meets the picture in its middle: (width / 2, height / 2) when pixel edges are whole
-numbers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the camera frame
-(x forward, y left, z up) falls at column (width - 1) / 2 - f y / x and row (height - 1) / 2 - f z / x,
-with f the focal length in pixels.
+The optical axis meets the picture in its middle: (width / 2, height / 2) when pixel edges are
+whole numbers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the
+camera frame (x forward, y left, z up) falls at column (width - 1) / 2 - f y / x and at row
+(height - 1) / 2 - f z / x, with f the focal length in pixels.
 """
 
 from __future__ import annotations

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
 import numpy as np
 
-from bullet_sim.description import LightDescription, Material, Mesh, SceneDescription, Visual
+from bullet_sim.description import (
+    LightDescription,
+    Material,
+    Mesh,
+    Plane,
+    SceneDescription,
+    Visual,
+)
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.meshes import load_mesh
@@ -31,6 +39,7 @@ class LinkShape:
     parts: tuple[MeshPart, ...]  # in the link frame, each with a material, one per material
     centre: np.ndarray  # (3,) m, of a sphere around all parts, in the link frame
     radius: float  # m
+    recess: float = 0.0  # smallest steps of the depth buffer that it is drawn behind where it is
 
 
 class Node:
@@ -124,7 +133,14 @@ def link_shape(visuals: Sequence[Visual]) -> LinkShape:
     high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
     centre = (low.astype(float) + high) / 2
     reach = [np.linalg.norm(part.vertices - centre, axis=1).max() for part in parts]
-    return LinkShape(parts, centre, float(max(reach)))
+    return LinkShape(parts, centre, float(max(reach)), _recess(visuals))
+
+
+def _recess(visuals: Sequence[Visual]) -> float:
+    """Courses lie on the ground plane at the same height: of two planes the larger gives way."""
+    if not all(isinstance(visual.geometry, Plane) for visual in visuals):
+        return 0.0
+    return 8.0 * math.log2(1.0 + max(max(visual.geometry.size) for visual in visuals))
 
 
 def _visual_parts(visual: Visual) -> list[MeshPart]:

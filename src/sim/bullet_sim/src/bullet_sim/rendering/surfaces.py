@@ -112,7 +112,7 @@ class SurfaceStore:
 
 
 def _material_block(material: Material) -> bytes:
-    """The shader's `Surface` block; a texture is scaled about the middle of the image, as OGRE does."""
+    """The shader's `Surface` block; a texture is scaled about the image's middle, as by OGRE."""
     shrink = [1 / scale if scale else 1.0 for scale in material.texture_scale]
     offset = [0.5 - 0.5 * factor for factor in shrink]
     return np.array([

@@ -131,7 +131,7 @@ class TinyRenderer:
 
 
 def _pieces(part: MeshPart) -> Iterator[MeshPart]:
-    """The part itself, or pieces of it with corners of their own if it is too large for one call."""
+    """The part itself, or pieces with corners of their own if it is too large for one call."""
     if len(part.faces) <= _TRIANGLES_PER_BODY:
         yield part
         return
@@ -170,7 +170,7 @@ def _light(scene: Scene) -> dict:
 
 
 def _half_pixel(view: CameraView) -> np.ndarray:
-    """TinyRenderer takes a pixel's corner for its middle: a shift of the picture makes up for it."""
+    """TinyRenderer takes a pixel's corner for its middle: a shift makes up for it."""
     shift = np.eye(4)
     shift[0, 3], shift[1, 3] = -1 / view.width, -1 / view.height
     return shift
