@@ -114,6 +114,21 @@ def test_tiny_and_egl_draw_the_same_picture(tiny, tmp_path):
     assert off.mean() < 0.05
 
 
+def test_tiny_shows_a_course_at_the_height_of_the_ground(tiny):
+    scene = Scene(SceneDescription((1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 1.0)))
+    for name, size, level in [("ground", 100.0, 0.0), ("course", 4.0, 1.0)]:
+        colour = Material(diffuse=(level, level, level, 1.0))
+        plane = Visual(name, Plane((0.0, 0.0, 1.0), (size, size)), material=colour)
+        scene.add_link((name, "link"), [plane], Pose())
+    view = CameraView(320, 240, 1.3439, 0.02, 300.0, Pose((-1.2, 0.0, 0.1)))
+    rows = np.arange(240)
+    height_per_depth = (rows - 119.5) / view.focal_length_px
+    with np.errstate(divide="ignore"):
+        x = np.where(height_per_depth > 0, -1.2 + 0.1 / height_per_depth, np.inf)
+    seen = tiny.draw(scene, view).rgb[:, 160, 0] > 127
+    assert (seen == (x < 2.0)).mean() > 0.98
+
+
 def test_tiny_follows_the_scene(tiny):
     view = CameraView(64, 48, 1.0, 0.05, 50.0, Pose((-2.0, 0.0, 0.0)))
     scene = Scene()

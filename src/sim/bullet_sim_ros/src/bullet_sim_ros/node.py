@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 
+import rosgraph
 import rospy
 
 from bullet_sim.errors import SimulationError
@@ -40,9 +42,20 @@ def open_world(options: argparse.Namespace, resources) -> World:
     return world
 
 
+def wait_for_master() -> None:
+    """Say once that roscore is missing, then wait for it."""
+    if rosgraph.is_master_online():
+        return
+    print(f"[WARN] No ROS master at {rosgraph.get_master_uri()} - start roscore to continue...",
+          file=sys.stderr, flush=True)
+    while not rosgraph.is_master_online():
+        time.sleep(0.5)
+
+
 def main() -> int:
     """Run until shutdown; 1 if the world cannot be opened."""
     options = parse(rospy.myargv(sys.argv)[1:])
+    wait_for_master()
     # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
     rospy.init_node("gazebo", disable_rostime=True)
     rospy.rostime.set_rostime_initialized(True)
@@ -70,4 +83,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -80,7 +80,10 @@ class Resources:
             return [path]
         nearby = [base / path] if base is not None else []
         return nearby + [
-            folder / sub / path for folder in self.resource_paths for sub in RESOURCE_SUBFOLDERS
+            folder / sub / path
+            for folder in self.resource_paths
+            for sub in RESOURCE_SUBFOLDERS
+            if (folder / sub).is_dir()
         ]
 
     @staticmethod

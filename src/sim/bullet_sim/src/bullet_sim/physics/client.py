@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.physics.assembly import Tree
-from bullet_sim.physics.quiet import pybullet, quiet_stdout
+from bullet_sim.physics.quiet import STDOUT, pybullet, quiet
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 
@@ -65,7 +65,7 @@ class PhysicsClient:
         with tempfile.TemporaryDirectory(prefix="bullet_sim-") as folder:
             path = Path(folder) / "body.urdf"
             path.write_text(urdf_text(tree.links, MeshFiles(Path(folder))), encoding="utf-8")
-            with quiet_stdout():
+            with quiet(STDOUT):
                 return self.call(
                     pybullet.loadURDF, str(path), pose.position, pose.orientation,
                     useFixedBase=tree.fixed, flags=flags,

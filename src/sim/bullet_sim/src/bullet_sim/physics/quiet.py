@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 import sys
 from collections.abc import Iterator
 
 
 @contextlib.contextmanager
-def quiet_stdout() -> Iterator[None]:
-    """Send file descriptor 1 to /dev/null: PyBullet's C++ prints there, past sys.stdout."""
+def quiet(*descriptors: int) -> Iterator[None]:
+    """Send file descriptors to /dev/null: PyBullet's C prints there, past sys.stdout."""
     sys.stdout.flush()
-    kept = os.dup(1)
+    sys.stderr.flush()
+    kept = {descriptor: os.dup(descriptor) for descriptor in descriptors}
     sink = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(sink, 1)
+        for descriptor in descriptors:
+            os.dup2(sink, descriptor)
         yield
     finally:
-        os.dup2(kept, 1)
+        ctypes.CDLL(None).fflush(None)  # what C still holds in its buffer goes the same way
+        for descriptor, copy in kept.items():
+            os.dup2(copy, descriptor)
+            os.close(copy)
         os.close(sink)
-        os.close(kept)
 
 
-with quiet_stdout():  # it prints its build time when first imported
+STDOUT, STDERR = 1, 2
+
+with quiet(STDOUT, STDERR):  # it prints its build time when first imported
     import pybullet
 
-__all__ = ["pybullet", "quiet_stdout"]
+__all__ = ["STDERR", "STDOUT", "pybullet", "quiet"]

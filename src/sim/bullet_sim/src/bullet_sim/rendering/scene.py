@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
@@ -39,7 +38,7 @@ class LinkShape:
     parts: tuple[MeshPart, ...]  # in the link frame, each with a material, one per material
     centre: np.ndarray  # (3,) m, of a sphere around all parts, in the link frame
     radius: float  # m
-    recess: float = 0.0  # smallest steps of the depth buffer that it is drawn behind where it is
+    plane_size: float = 0.0  # m, longest side if it is all planes; 0 if not
 
 
 class Node:
@@ -115,6 +114,14 @@ class Scene:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
         node.pose = pose
 
+    def plane_ranks(self) -> dict[float, int]:
+        """Rank by size of the planes that links are made of, the smallest 0.
+
+        Courses lie on the ground plane at the same height: where planes meet, the larger gives way.
+        """
+        sizes = sorted({node.shape.plane_size for node in self.nodes.values()} - {0.0})
+        return {size: rank for rank, size in enumerate(sizes)}
+
     def set_poses(self, poses: Mapping[LinkKey, Pose]) -> None:
         for key, pose in poses.items():
             self.set_pose(key, pose)
@@ -133,14 +140,13 @@ def link_shape(visuals: Sequence[Visual]) -> LinkShape:
     high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
     centre = (low.astype(float) + high) / 2
     reach = [np.linalg.norm(part.vertices - centre, axis=1).max() for part in parts]
-    return LinkShape(parts, centre, float(max(reach)), _recess(visuals))
+    return LinkShape(parts, centre, float(max(reach)), _plane_size(visuals))
 
 
-def _recess(visuals: Sequence[Visual]) -> float:
-    """Courses lie on the ground plane at the same height: of two planes the larger gives way."""
+def _plane_size(visuals: Sequence[Visual]) -> float:
     if not all(isinstance(visual.geometry, Plane) for visual in visuals):
         return 0.0
-    return 8.0 * math.log2(1.0 + max(max(visual.geometry.size) for visual in visuals))
+    return max(max(visual.geometry.size) for visual in visuals)
 
 
 def _visual_parts(visual: Visual) -> list[MeshPart]:

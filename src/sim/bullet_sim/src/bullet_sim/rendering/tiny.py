@@ -23,6 +23,7 @@ log = logging.getLogger(__name__)
 
 # PyBullet takes 8 MiB a call; so many triangles with corners of their own stay well below.
 _TRIANGLES_PER_BODY = 20_000
+_RECESS = 0.002  # m, of a plane behind the next smaller one; depth is no finer near the horizon
 
 
 class TinyRenderer:
@@ -36,6 +37,7 @@ class TinyRenderer:
         self._version = -1
         self._bodies: dict[Node, list[int]] = {}
         self._poses: dict[Node, Pose] = {}
+        self._ranks: dict[float, int] = {}  # of planes, by size
         self._textures: dict[str, int] = {}
 
     def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
@@ -78,6 +80,8 @@ class TinyRenderer:
                 pieces = [piece for part in node.shape.parts for piece in _pieces(part)]
                 self._bodies[node] = [self._body(piece) for piece in pieces]
             self._version = scene.version
+            self._ranks = scene.plane_ranks()
+            self._poses.clear()  # ranks move planes
         for node, bodies in self._bodies.items():
             if self._poses.get(node) is not node.pose:
                 self._place(node, bodies)
@@ -88,10 +92,14 @@ class TinyRenderer:
         self._poses.pop(node, None)
 
     def _place(self, node: Node, bodies: list[int]) -> None:
-        self._poses[node] = node.pose
+        self._poses[node] = pose = node.pose
+        rank = self._ranks.get(node.shape.plane_size, 0)
+        if rank:
+            normal = node.shape.parts[0].normals[0].astype(float)
+            pose = pose * Pose(tuple(-rank * _RECESS * normal))
         for body in bodies:
             pybullet.resetBasePositionAndOrientation(
-                body, node.pose.position, node.pose.orientation, physicsClientId=self._client
+                body, pose.position, pose.orientation, physicsClientId=self._client
             )
 
     def _body(self, part: MeshPart) -> int:
