@@ -1,0 +1,1 @@
+"""OpenCV's windows as image topics, for machines without a screen."""
