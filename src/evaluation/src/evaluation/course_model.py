@@ -1,0 +1,199 @@
+"""Makes the course a Gazebo model, a painted plane, from the track file."""
+
+from __future__ import annotations
+
+import math
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from evaluation.track import Piece, Track, TrackError, TrackFile, build_track
+
+SIDE_PX = 2048
+EDGE_MARGIN = 0.1  # m of bare plane that must stay around every line
+BACKGROUND, WHITE, YELLOW = (10, 10, 10), (255, 255, 255), (255, 255, 0)  # RGB
+
+MODEL_CONFIG = """<?xml version="1.0"?>
+<model>
+  <name>{name}</name>
+  <version>1.0</version>
+  <sdf version="1.4">model.sdf</sdf>
+  <description>
+    A black floor with one closed lane: yellow line on its left, white line on its right.
+    Written by make_course.py of the package evaluation.
+  </description>
+</model>
+"""
+
+MODEL_SDF = """<?xml version="1.0"?>
+<sdf version="1.4">
+  <model name="{name}">
+    <static>true</static>
+    <link name="course_link">
+      <collision name="course_collision">
+        <geometry>
+          <plane>
+            <normal>0 0 1</normal>
+            <size>{size:g} {size:g}</size>
+          </plane>
+        </geometry>
+        <surface>
+          <friction>
+            <ode>
+              <mu>100</mu>
+              <mu2>50</mu2>
+            </ode>
+          </friction>
+        </surface>
+      </collision>
+      <visual name="course_visual">
+        <cast_shadows>false</cast_shadows>
+        <geometry>
+          <plane>
+            <normal>0 0 1</normal>
+            <size>{size:g} {size:g}</size>
+          </plane>
+        </geometry>
+        <material>
+          <script>
+            <uri>model://turtlebot3_autorace/course/materials/scripts</uri>
+            <uri>model://turtlebot3_autorace/course/materials/textures</uri>
+            <name>{name}</name>
+          </script>
+        </material>
+      </visual>
+    </link>
+  </model>
+</sdf>
+"""
+
+MATERIAL = """material {name}
+{{
+  technique
+  {{
+    pass
+    {{
+      texture_unit
+      {{
+        texture {name}.png
+      }}
+    }}
+  }}
+}}
+"""
+
+
+def write_model(track_file: TrackFile, folder: Path) -> list[Path]:
+    """Write the model's four files below this folder; the same track gives the same bytes."""
+    name, size = track_file.name, track_file.size
+    files = {
+        "model.config": MODEL_CONFIG.format(name=name).encode(),
+        "model.sdf": MODEL_SDF.format(name=name, size=size).encode(),
+        f"materials/scripts/{name}.material": MATERIAL.format(name=name).encode(),
+        f"materials/textures/{name}.png": encode_png(draw_course(track_file)),
+    }
+    for relative, data in files.items():
+        path = folder / relative
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    return [folder / relative for relative in files]
+
+
+def draw_course(track_file: TrackFile, side_px: int = SIDE_PX) -> np.ndarray:
+    """The plane's picture, RGB uint8: up is the plane's +y, right is its +x.
+
+    The world file turns the plane by model_yaw, so the lines are turned back here: once the model
+    stands in the world they lie where the track file says.
+    """
+    yellow = build_track(track_file)
+    white = yellow.offset(-track_file.lane_width)
+    image = np.full((side_px, side_px, 3), BACKGROUND, np.uint8)
+    for track, colour in ((white, WHITE), (yellow, YELLOW)):
+        cover = _coverage(track_file, track, side_px)[..., None]
+        mixed = (image * (255.0 - cover) + np.array(colour, float) * cover) / 255.0
+        image = np.floor(mixed + 0.5).astype(np.uint8)
+    return image
+
+
+def encode_png(image: np.ndarray) -> bytes:
+    """An RGB picture as PNG: written here, because image libraries differ in their bytes."""
+    height, width, _ = image.shape
+    above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
+    rows = np.full(
+        (height, 1 + width * 3), 2, np.uint8
+    )  # 2: each byte is stored minus the one above
+    rows[:, 1:] = (image - above).reshape(height, width * 3)
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks
+    )
+
+
+def _coverage(track_file: TrackFile, track: Track, side_px: int) -> np.ndarray:
+    """How much of each pixel the line covers, as whole numbers from 0 to 255."""
+    half, metres_per_px = track_file.size / 2, track_file.size / side_px
+    reach = track_file.line_width / 2 + metres_per_px
+    centres = (np.arange(side_px) + 0.5) * metres_per_px - half
+    cover = np.zeros((side_px, side_px))
+    for piece in track.pieces:
+        turned = _turned(piece, -track_file.model_yaw)
+        columns, rows = _bounds(turned, centres, reach, half)
+        distance = _distances(turned, centres[columns][None, :], -centres[rows][:, None])
+        part = np.clip((track_file.line_width / 2 - distance) / metres_per_px + 0.5, 0.0, 1.0)
+        cover[rows, columns] = np.maximum(cover[rows, columns], part)
+    return np.floor(cover * 255 + 0.5)
+
+
+def _turned(piece: Piece, angle: float) -> Piece:
+    """The piece after turning the whole course about the origin."""
+    x = math.cos(angle) * piece.x - math.sin(angle) * piece.y
+    y = math.sin(angle) * piece.x + math.cos(angle) * piece.y
+    return Piece(x, y, piece.heading + angle, piece.length, piece.curvature)
+
+
+def _bounds(piece: Piece, centres: np.ndarray, reach: float, half: float) -> tuple[slice, slice]:
+    """Columns and rows of the pixels that the piece can touch."""
+    count = max(2, math.ceil(piece.length / 0.01))
+    points = [piece.pose(piece.length * i / (count - 1))[:2] for i in range(count)]
+    (left, low), (right, high) = np.min(points, axis=0), np.max(points, axis=0)
+    if max(-left, -low, right, high) > half - EDGE_MARGIN:
+        raise TrackError(
+            f"a line at x={piece.x:.2f}, y={piece.y:.2f} of the plane comes closer than"
+            f" {EDGE_MARGIN} m to its edge"
+        )
+    columns = np.searchsorted(centres, (left - reach, right + reach))
+    rows = np.searchsorted(centres, (-high - reach, -low + reach))
+    return slice(*columns), slice(*rows)
+
+
+def _distances(piece: Piece, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Distance (m) of points from the piece, rounded so that no last digit can change a pixel."""
+    along = _straight_distance if abs(piece.curvature) < 1e-12 else _arc_distance
+    return np.round(along(piece, x - piece.x, y - piece.y), 9)
+
+
+def _straight_distance(piece: Piece, dx: np.ndarray, dy: np.ndarray) -> np.ndarray:
+    ahead = math.cos(piece.heading) * dx + math.sin(piece.heading) * dy
+    left = -math.sin(piece.heading) * dx + math.cos(piece.heading) * dy
+    beyond = np.maximum(np.maximum(-ahead, ahead - piece.length), 0.0)
+    return np.sqrt(left * left + beyond * beyond)
+
+
+def _arc_distance(piece: Piece, dx: np.ndarray, dy: np.ndarray) -> np.ndarray:
+    """Distance from the circle where the point's angle is on the arc, else from the nearer end."""
+    radius, side = 1.0 / abs(piece.curvature), math.copysign(1.0, piece.curvature)
+    ahead = math.cos(piece.heading) * dx + math.sin(piece.heading) * dy
+    inward = side * (-math.sin(piece.heading) * dx + math.cos(piece.heading) * dy)
+    from_centre = np.sqrt(ahead * ahead + (radius - inward) * (radius - inward))
+    angle = np.arctan2(ahead, radius - inward)
+    angle = np.where(angle < piece.length / radius / 2 - math.pi, angle + 2 * math.pi, angle)
+    on_arc = (angle >= 0) & (angle <= piece.length / radius)
+    end_x, end_y, _ = piece.pose(piece.length)
+    to_start = np.sqrt(dx * dx + dy * dy)
+    ex, ey = dx + piece.x - end_x, dy + piece.y - end_y
+    to_end = np.sqrt(ex * ex + ey * ey)
+    return np.where(on_arc, np.abs(from_centre - radius), np.minimum(to_start, to_end))

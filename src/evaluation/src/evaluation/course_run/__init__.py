@@ -1,0 +1,1 @@
+"""The main job: start course and follower without a screen, watch, score, report, clean up."""

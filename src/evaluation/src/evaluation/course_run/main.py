@@ -1,0 +1,202 @@
+"""The run from beginning to end: bring up, watch, score, end everything, report."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.launch import Launched
+from evaluation.course_run.observer import Observer
+from evaluation.course_run.options import Options, parse_options
+from evaluation.course_run.processes import Family, strip_terminal_codes
+from evaluation.course_run.progress import Progress
+from evaluation.course_run.report import summarize, table, versions, write_report
+from evaluation.course_run.video import Film
+from evaluation.lap import LapScorer, Verdict
+from evaluation.picture import path_picture
+from evaluation.track import TrackError, TrackFile, build_track, load_track_file
+
+RESULTS = ("path.png", "run.mp4", "report.json")
+LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
+CLOSED, NOT_CLOSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(arguments: list[str]) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        with _interruptible():
+            return _run(parse_options(arguments))
+    except RunError as failure:
+        if failure.details:
+            print(failure.details, file=sys.stderr)
+        print(f"course_run: {failure}", file=sys.stderr)
+        return NOT_RUN
+    except KeyboardInterrupt:
+        print("course_run: interrupted; all processes ended", file=sys.stderr)
+        return INTERRUPTED
+
+
+class CourseRun:
+    """One run: what is watched and what was found."""
+
+    def __init__(self, options: Options, track_file: TrackFile, progress: Progress):
+        self.options, self.track_file, self.progress = options, track_file, progress
+        self.drive = LapScorer(build_track(track_file), options.laps)
+        self.film = Film(options.out / "run.mp4", track_file, self.drive)
+        self._began = self._ended = 0.0  # s, wall: first and last sample
+        self._moved_at = time.monotonic()  # when simulated time last went on
+        self._observer: Observer | None = None
+
+    def bring_up(self, launched: Launched) -> None:
+        """Start everything and wait until the car stands on the course."""
+        options = self.options
+        self.progress.status("starting roscore")
+        launched.start_roscore()
+        self._observer = Observer(launched.master_uri, options.robot)
+        arguments = ("gui:=false", f"follower:={options.follower}", *options.launch_args)
+        launched.start("roslaunch", ["roslaunch", *options.launch, *arguments])
+        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+        self._observer.start()
+        until = time.monotonic() + options.startup_timeout
+        while not self._take_samples():
+            launched.check(None)
+            self.progress.status(f"waiting for {self._missing()}")
+            if time.monotonic() > until:
+                limit = f"{options.startup_timeout:.0f} s"
+                raise RunError(f"{self._missing()} was not there within {limit}", launched.tail())
+        self._began = time.monotonic()
+        if options.video:
+            self.film.start()
+
+    def watch(self, launched: Launched) -> tuple[str, str]:
+        """Follow the car until its verdict or the duration's end; returns outcome and reason."""
+        first = self.drive.samples[0].time
+        while self.drive.verdict is Verdict.DRIVING:
+            self._take_samples()
+            self._ended = time.monotonic()
+            self.progress.show(self.drive)
+            now = self.drive.samples[-1].time
+            launched.check(now)
+            self._check_time_moves(now)
+            if now - first > self.options.duration:
+                share = f"lap {len(self.drive.laps) + 1} was {self.drive.driven_share:.0%} driven"
+                return "time is up", f"{self.options.duration:g} simulated s are over: {share}"
+        return self.drive.verdict.value, self.drive.why
+
+    def _take_samples(self) -> int:
+        samples = self._observer.samples(LOOK_PERIOD)
+        for sample in samples:
+            if not self.drive.samples or sample.time > self.drive.samples[-1].time:
+                self._moved_at = time.monotonic()
+            self.drive.add(sample)
+        return len(samples)
+
+    def _check_time_moves(self, now: float) -> None:
+        still = time.monotonic() - self._moved_at
+        if still > self.options.stuck_timeout:
+            raise RunError(
+                f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                " the simulator is paused or hangs"
+            )
+
+    def _missing(self) -> str:
+        if not self._observer.simulator_up:
+            return "the simulator (service /gazebo/get_world_properties)"
+        return f"the car (model {self.options.robot})"
+
+    def close(self) -> None:
+        """Ask and film no more."""
+        if self._observer is not None:
+            self._observer.stop()
+        self.film.close()
+
+    def report(self, outcome: tuple[str, str], log: Path) -> None:
+        """Write path.png and report.json, print the table and where the files are."""
+        out, follower, seen = self.options.out, self.options.follower, self._observer
+        wall = self._ended - self._began
+        summary = summarize(self.drive, outcome, seen.frames_sent, seen.commands, wall)
+        lines = strip_terminal_codes(log.read_text(encoding="utf-8", errors="replace")).splitlines()
+        made_with = versions(Path(__file__).parent, lines)
+        summary |= {"film": self.film.codec or None, "versions": made_with}
+        picture = path_picture(self.track_file, self.drive, *_titles(follower, summary))
+        cv2.imwrite(str(out / "path.png"), picture)
+        runs = write_report(out, follower, summary)
+        self.progress.say("\n" + table(runs, follower))
+        made = [str(_short(out / name)) for name in RESULTS if (out / name).exists()]
+        self.progress.say(f"files: {'  '.join(made)}")
+
+
+def _prepare(options: Options) -> CourseRun:
+    try:
+        track_file = load_track_file(options.track)
+        options.out.mkdir(parents=True, exist_ok=True)
+        for name in RESULTS:  # what is there afterwards is of this run
+            (options.out / name).unlink(missing_ok=True)
+        return CourseRun(options, track_file, Progress())
+    except (TrackError, OSError) as error:
+        raise RunError(str(error)) from error
+
+
+def _run(options: Options) -> int:
+    run = _prepare(options)
+    outcome, end, log = ("", ""), None, Path()
+    with Family() as family:
+        launched = Launched(family, options.out / "log", options.follower)
+        log = launched.log_folder / "roslaunch.log"
+        try:
+            run.bring_up(launched)
+            outcome = run.watch(launched)
+        except (KeyboardInterrupt, RunError) as ended_early:
+            end, outcome = ended_early, ("ended early", str(ended_early) or "interrupted")
+        family.interrupt(spare=run.film.process_id)  # they end while the film is being finished
+        run.close()
+    if run.drive.samples:
+        run.report(outcome, log)
+    if end is not None:
+        raise end
+    if run.drive.verdict is Verdict.CLOSED:
+        return CLOSED
+    print(f"course_run: {outcome[1]}", file=sys.stderr)
+    return NOT_CLOSED
+
+
+@contextlib.contextmanager
+def _interruptible() -> Iterator[None]:
+    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end."""
+
+    def interrupt(_number: int, _frame: object) -> None:
+        for number in caught:
+            signal.signal(number, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    caught = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    for number in caught:
+        signal.signal(number, interrupt)
+    yield
+
+
+def _titles(follower: str, summary: dict) -> tuple[str, str]:
+    """Headline and figures for the picture of the path."""
+    times = summary["lap_times_s"]
+    laps = ", ".join(f"{time:.1f} s" for time in times[:3]) + (", ..." if len(times) > 3 else "")
+    closed = f"{summary['laps_closed']} of {summary['laps_wanted']} laps closed"
+    figures = (
+        f"lap {laps or '-'}",
+        f"{summary['distance_m']:.2f} m",
+        f"beside the line RMS {summary['rms_lateral_m'] * 100:.1f} cm,"
+        f" max {summary['max_lateral_m'] * 100:.1f} cm",
+        f"real time x{summary['real_time_factor'] or 0:.2f}",
+    )
+    return f"{follower}: {closed}", "   |   ".join(figures)
+
+
+def _short(path: Path) -> Path:
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

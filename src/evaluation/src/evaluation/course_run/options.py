@@ -1,0 +1,159 @@
+"""The command line of course_run, checked: a mistake is one line that says what to type instead."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import rospkg
+
+from evaluation.course_run.failure import RunError
+
+DEFAULT_FOLLOWER = "05follower_proporation.py"
+COURSE_LAUNCH = ("learning_topic", "course_follow.launch")
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to run and where to write."""
+
+    laps: int
+    duration: float  # s, simulated
+    follower: str
+    out: Path
+    track: Path
+    launch: tuple[str, str]  # package and launch file
+    launch_args: tuple[str, ...]
+    video: bool
+    startup_timeout: float  # s, wall
+    stuck_timeout: float  # s, wall
+
+    @property
+    def robot(self) -> str:
+        """The car's model name in the simulator, as 0course.launch spawns it."""
+        given = [arg.split(":=", 1)[1] for arg in self.launch_args if arg.startswith("model:=")]
+        kind = given[-1] if given else os.environ.get("TURTLEBOT3_MODEL") or "waffle"
+        return f"turtlebot3_{kind}"
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:
+        raise RunError(f"{message} (see: rosrun evaluation course_run.py --help)")
+
+
+def parse_options(arguments: list[str]) -> Options:
+    """Options from the command line, or RunError."""
+    given = _parser().parse_args(arguments)
+    laps = _number("--laps (LAPS=)", given.laps, int, "a whole number, 1 or more")
+    default_duration = str(300 * laps)
+    duration = _number(
+        "--duration (DURATION=)",
+        given.duration or default_duration,
+        float,
+        "seconds of simulated time, more than 0",
+    )
+    launch = tuple(given.launch)
+    if launch == COURSE_LAUNCH:
+        _check_follower(given.follower)
+    for argument in given.launch_arg:
+        if ":=" not in argument:
+            raise RunError(f"--launch-arg must look like name:=value, got {argument!r}")
+    return Options(
+        laps,
+        duration,
+        given.follower,
+        given.out.resolve(),
+        given.track or _own_track(),
+        launch,
+        tuple(given.launch_arg),
+        given.video,
+        given.startup_timeout,
+        given.stuck_timeout,
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="course_run.py",
+        description="Drive a follower round the course without a screen, score it, write a report.",
+        epilog="Exit code: 0 laps closed, 1 left the course or stalled, 2 could not run.",
+    )
+    parser.add_argument("--laps", default="1", metavar="N", help="laps to close (1)")
+    parser.add_argument("--duration", metavar="S", help="simulated seconds at most (300 a lap)")
+    parser.add_argument(
+        "--follower",
+        default=DEFAULT_FOLLOWER,
+        metavar="FILE",
+        help=f"script of learning_topic that drives ({DEFAULT_FOLLOWER})",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("out/course"),
+        metavar="DIR",
+        help="where path.png, run.mp4, report.json and log/ go (out/course)",
+    )
+    parser.add_argument(
+        "--launch-arg",
+        action="append",
+        default=[],
+        metavar="NAME:=VALUE",
+        help="passed on to roslaunch; may be given again",
+    )
+    parser.add_argument(
+        "--launch",
+        nargs=2,
+        default=COURSE_LAUNCH,
+        metavar=("PACKAGE", "FILE"),
+        help="another launch file that brings up simulator, car and follower",
+    )
+    parser.add_argument(
+        "--track", type=Path, metavar="YAML", help="track file (tracks/course.yaml)"
+    )
+    parser.add_argument("--no-video", dest="video", action="store_false", help="write no run.mp4")
+    parser.add_argument(
+        "--startup-timeout",
+        type=float,
+        default=60.0,
+        metavar="S",
+        help="wall seconds until the car must stand on the course (60)",
+    )
+    parser.add_argument(
+        "--stuck-timeout",
+        type=float,
+        default=20.0,
+        metavar="S",
+        help="wall seconds that simulated time may stand still (20)",
+    )
+    return parser
+
+
+def _number(name: str, text: str, kind: type, wanted: str) -> int | float:
+    try:
+        value = kind(text)
+    except ValueError:
+        value = 0
+    if not 0 < value < 1e9:
+        raise RunError(f"{name} must be {wanted}; got {text!r}")
+    return value
+
+
+def _own_track() -> Path:
+    return Path(rospkg.RosPack().get_path("evaluation")) / "tracks" / "course.yaml"
+
+
+def _check_follower(name: str) -> None:
+    try:
+        scripts = Path(rospkg.RosPack().get_path("learning_topic")) / "scripts"
+    except rospkg.ResourceNotFound as error:
+        raise RunError("package learning_topic not found: source devel/setup.bash") from error
+    known = sorted(path.name for path in scripts.glob("*follower*.py") if _drives(path))
+    if name not in known:
+        listed = ", ".join(known) or "none"
+        raise RunError(f"no follower {name!r} that drives (FOLLOWER=); there are: {listed}")
+
+
+def _drives(script: Path) -> bool:
+    return "cmd_vel" in script.read_text(encoding="utf-8", errors="replace")

@@ -1,0 +1,138 @@
+"""report.json and the table at the end: this run beside the last run of every other follower."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import platform
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+from evaluation.lap import LapScorer
+
+PACKAGES = ("pybullet", "moderngl", "opencv-python-headless", "numpy")
+RENDERER_SAYS = "Cameras are drawn by"  # the simulator's log line
+COLUMNS = (  # heading, key, factor, digits
+    ("laps", "laps_closed", 1, 0),
+    ("lap s", "mean_lap_s", 1, 1),
+    ("m", "distance_m", 1, 2),
+    ("RMS cm", "rms_lateral_m", 100, 1),
+    ("max cm", "max_lateral_m", 100, 1),
+    ("sent", "frames_sent", 1, 0),
+    ("dropped", "frames_dropped", 1, 0),
+    ("real time", "real_time_factor", 1, 2),
+)
+
+
+def summarize(
+    drive: LapScorer, outcome: tuple[str, str], frames_sent: int, commands: int, wall: float
+) -> dict:
+    """The figures of one drive; lengths in m, times in s, all simulated but wall_s.
+
+    A follower answers each picture with one command, so pictures without a command were dropped
+    on the way to it or by it.
+    """
+    times = [lap.time for lap in drive.laps]
+    simulated = drive.samples[-1].time - drive.samples[0].time if drive.samples else 0.0
+    return {
+        "outcome": outcome[0],
+        "why": outcome[1] or None,
+        "laps_wanted": drive.wanted_laps,
+        "laps_closed": len(times),
+        "lap_times_s": [round(time, 3) for time in times],
+        "mean_lap_s": round(sum(times) / len(times), 3) if times else None,
+        "distance_m": round(drive.total.distance, 3),
+        "rms_lateral_m": round(drive.total.rms_lateral, 4),
+        "max_lateral_m": round(drive.total.max_lateral, 4),
+        "laps": [
+            {
+                "time_s": round(lap.time, 3),
+                "distance_m": round(lap.distance, 3),
+                "rms_lateral_m": round(lap.rms_lateral, 4),
+                "max_lateral_m": round(lap.max_lateral, 4),
+            }
+            for lap in drive.laps
+        ],
+        "frames_sent": frames_sent,
+        "frames_answered": min(commands, frames_sent),
+        "frames_dropped": max(frames_sent - commands, 0),
+        "frames_per_simulated_s": round(frames_sent / simulated, 2) if simulated > 0 else None,
+        "simulated_s": round(simulated, 3),
+        "wall_s": round(wall, 3),
+        "real_time_factor": round(simulated / wall, 3) if wall > 0 else None,
+    }
+
+
+def versions(root: Path, log: Iterable[str]) -> dict:
+    """What the run was made with; the renderer is what the simulator logged about it."""
+    found = {"python": platform.python_version(), "machine": platform.platform()}
+    for package in PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = None
+    drawn = (line.partition(RENDERER_SAYS)[2].strip() for line in log if RENDERER_SAYS in line)
+    found["renderer"] = next(drawn, None)
+    found["revision"] = _revision(root)
+    return found
+
+
+def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
+    """Write report.json and <follower>.json; returns the latest run of each follower, by name."""
+    _write(folder / f"{Path(follower).stem}.json", {"follower": follower, **run})
+    runs = {follower: run}
+    for path in sorted(folder.glob("*.json")):
+        if path.name != "report.json":
+            other = _read(path)
+            runs.setdefault(other.get("follower", path.stem), other)
+    runs.pop(None, None)
+    known = {name: runs[name] for name in sorted(runs) if "outcome" in runs[name]}
+    side_by_side = {
+        name: {key: known[name].get(key) for key in ("outcome", *(column[1] for column in COLUMNS))}
+        for name in known
+    }
+    _write(folder / "report.json", {"follower": follower, **run, "followers": side_by_side})
+    return side_by_side
+
+
+def table(runs: dict[str, dict], current: str) -> str:
+    """All followers' figures, a row each; the present run's row is marked."""
+    rows = [["  follower", *(heading for heading, *_ in COLUMNS), "outcome"]]
+    for name, run in runs.items():
+        cells = [_cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
+        rows.append([f"{'>' if name == current else ' '} {name}", *cells, run["outcome"]])
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    last = len(widths) - 1
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if column in (0, last) else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    )
+
+
+def _cell(value: float | None, factor: float, digits: int) -> str:
+    return "-" if value is None else f"{value * factor:.{digits}f}"
+
+
+def _revision(root: Path) -> str | None:
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=0.5, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()
+
+
+def _write(path: Path, values: dict) -> None:
+    path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+
+
+def _read(path: Path) -> dict:
+    try:
+        values = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return values if isinstance(values, dict) else {}

@@ -1,0 +1,138 @@
+"""Writes run.mp4 while the car drives: the camera's picture with the mask, beside the map."""
+
+from __future__ import annotations
+
+import threading
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import rospy
+from cv_bridge import CvBridge
+from sensor_msgs.msg import Image
+
+from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
+from evaluation.lap import LapScorer
+from evaluation.picture import PAPER, TEXT, CourseMap, draw_line, lap_colour, write_text
+from evaluation.track import TrackFile
+
+CAMERA = "/camera/rgb/image_raw"
+FRAME_PERIOD = 0.2  # s, simulated, between two pictures of the film
+FILM_RATE_HZ = 10  # so the film runs at twice the speed
+LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
+VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
+MAP_WIDTH_PX, BAR_PX = 520, 44
+MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow
+MASK_TINT = (80, 60, 240)
+
+
+class Film:
+    """Adds one camera picture in FRAME_PERIOD to the film; works in the camera's thread.
+
+    The callback waits until the next picture is due, so the rest of the 190 MB/s that the camera
+    sends is dropped by the publisher's queue and never copied here.
+    """
+
+    def __init__(self, path: Path, track_file: TrackFile, drive: LapScorer):
+        self._path, self._drive = path, drive
+        self._map = CourseMap(track_file, MAP_WIDTH_PX)
+        self._floor, self._drawn = self._map.empty(), 0
+        self._last_time: float | None = None  # s, simulated
+        self._ended = threading.Event()
+        self._lock = threading.Lock()
+        self._writer: FfmpegEncoder | OpenCvEncoder | None = None
+        self._subscriber: rospy.Subscriber | None = None
+        self.codec = ""
+
+    def start(self) -> None:
+        """Begin to film."""
+        # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
+        self._subscriber = rospy.Subscriber(
+            CAMERA, Image, self._take, queue_size=1, buff_size=2**20
+        )
+
+    @property
+    def process_id(self) -> int | None:
+        """Of the encoder, if it is a process."""
+        return getattr(self._writer, "process_id", None)
+
+    def close(self) -> None:
+        """Finish the file, if any picture came."""
+        self._ended.set()
+        with self._lock:
+            if self._writer is not None:
+                self._writer.close()
+
+    def _take(self, message: Image) -> None:
+        began, now = time.monotonic(), message.header.stamp.to_sec()
+        if self._ended.is_set():
+            return
+        if self._last_time is not None and 0 <= now - self._last_time < FRAME_PERIOD:
+            return
+        gap = FRAME_PERIOD if self._last_time is None else now - self._last_time
+        self._last_time = now
+        frame = cv2.resize(CvBridge().imgmsg_to_cv2(message), VIEW_PX, interpolation=cv2.INTER_AREA)
+        if message.encoding == "rgb8":
+            frame = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
+        with self._lock:
+            if not self._ended.is_set():
+                self._add(
+                    self._page(frame, now), min(max(round(gap / FRAME_PERIOD), 1), LONGEST_GAP)
+                )
+        self._ended.wait(max(0.0, began + 0.8 * FRAME_PERIOD - time.monotonic()))
+
+    def _add(self, page: np.ndarray, times: int) -> None:
+        if self._writer is None:
+            self._path.unlink(missing_ok=True)
+            height, width, _ = page.shape
+            self._writer = open_encoder(self._path, width, height, FILM_RATE_HZ)
+            self.codec = self._writer.codec
+        for _ in range(times):  # the film keeps simulated time even where pictures are missing
+            self._writer.write(page)
+
+    def _page(self, frame: np.ndarray, now: float) -> np.ndarray:
+        """Camera view and map side by side under a bar of figures."""
+        view, plan = mark_line(frame), self._plan()
+        height = max(view.shape[0], plan.shape[0]) + BAR_PX
+        page = np.full((height + height % 2, VIEW_PX[0] + MAP_WIDTH_PX, 3), PAPER, np.uint8)
+        page[BAR_PX : BAR_PX + view.shape[0], : VIEW_PX[0]] = view
+        top = BAR_PX + (height - BAR_PX - plan.shape[0]) // 2
+        page[top : top + plan.shape[0], VIEW_PX[0] :] = plan
+        drive = self._drive
+        lap = min(len(drive.laps) + 1, drive.wanted_laps)
+        write_text(page, f"simulated time {now:5.1f} s", (16, 29), 14, TEXT)
+        figures = f"lap {lap}/{drive.wanted_laps}   {drive.total.distance:5.2f} m"
+        write_text(
+            page, f"{figures}   beside the line {drive.lateral * 100:+5.1f} cm", (270, 29), 14
+        )
+        write_text(page, "film at 2x", (page.shape[1] - 110, 29), 12)
+        return page
+
+    def _plan(self) -> np.ndarray:
+        """The map with the path so far and the car."""
+        samples = self._drive.samples[:]
+        if len(samples) - self._drawn > 1:
+            fresh = self._map.to_px([(sample.x, sample.y) for sample in samples[self._drawn :]])
+            draw_line(self._floor, fresh, lap_colour(self._drive.lap_numbers[len(samples) - 1]), 2)
+            self._drawn = len(samples) - 1
+        plan = self._floor.copy()
+        if samples:
+            self._map.draw_car(plan, samples[-1].x, samples[-1].y, samples[-1].yaw)
+        return plan
+
+
+def mark_line(view: np.ndarray) -> np.ndarray:
+    """Tint what the lessons' mask keeps, and put their red dot where lesson 05 finds the line."""
+    mask = cv2.inRange(cv2.cvtColor(view, cv2.COLOR_BGR2HSV), MASK_LOW, MASK_HIGH)
+    marked, line = view.copy(), mask > 0
+    marked[line] = 0.35 * view[line] + 0.65 * np.array(MASK_TINT)
+    height = view.shape[0]
+    top, deep = 5 * height // 6, max(1, round(20 * height / 1080))
+    cv2.rectangle(marked, (0, top), (view.shape[1] - 1, top + deep), (120, 120, 120), 1)
+    moments = cv2.moments(mask[top : top + deep], binaryImage=True)
+    if moments["m00"] > 0:
+        centre = round(moments["m10"] / moments["m00"]), top + deep // 2
+        cv2.circle(marked, centre, 9, (0, 0, 255), -1, cv2.LINE_AA)
+        cv2.circle(marked, centre, 9, (255, 255, 255), 1, cv2.LINE_AA)
+    return marked

@@ -1,0 +1,165 @@
+"""Scores a drive along a track: laps, distance, lateral error, leaving it, stalling."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+
+from evaluation.track import Track
+
+OFF_COURSE = 0.25  # m beside the line: farther than this and the car has left the course
+STALL_TIME, STALL_DISTANCE = 5.0, 0.02  # s and m: less progress than this in that time is a stall
+START_TIME = 30.0  # s that a follower may take until the car moves for the first time
+MOVED = 0.005  # m from where it stood: now it drives
+REVERSED = 0.3  # m driven against the course's direction
+LAP_SHARE = 0.8  # of the line must be driven before its start counts as the end of a lap
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Where the car is: simulated s, and base_footprint in the world, m and rad."""
+
+    time: float
+    x: float
+    y: float
+    yaw: float
+
+
+class Verdict(Enum):
+    """How a drive stands; all but DRIVING end it."""
+
+    DRIVING = "driving"
+    CLOSED = "closed"
+    LEFT = "left the course"
+    STALLED = "stalled"
+    REVERSED = "drove the wrong way"
+
+
+@dataclass(frozen=True)
+class Lap:
+    """One closed lap: s, m, and m beside the line."""
+
+    time: float
+    distance: float
+    rms_lateral: float
+    max_lateral: float
+
+
+@dataclass
+class _Tally:
+    """What adds up over a lap, or over the whole drive."""
+
+    distance: float = 0.0
+    squares: float = 0.0  # m² s
+    time: float = 0.0
+    max_lateral: float = 0.0
+
+    def add(self, step: float, lateral: float, seconds: float) -> None:
+        self.distance += step
+        self.squares += lateral * lateral * seconds
+        self.time += seconds
+        self.max_lateral = max(self.max_lateral, abs(lateral))
+
+    @property
+    def rms_lateral(self) -> float:
+        return math.sqrt(self.squares / self.time) if self.time > 0 else 0.0
+
+
+@dataclass
+class LapScorer:
+    """Takes samples in the order of time; the verdict stays once it is not DRIVING."""
+
+    track: Track
+    wanted_laps: int = 1
+    verdict: Verdict = Verdict.DRIVING
+    why: str = ""  # one line on a verdict that is not CLOSED
+    laps: list[Lap] = field(default_factory=list)
+    samples: list[Sample] = field(default_factory=list)
+    lap_numbers: list[int] = field(default_factory=list)  # of each sample, from 0
+    lateral: float = 0.0  # m, now; positive to the left of the line
+    total: _Tally = field(default_factory=_Tally)
+    _lap: _Tally = field(default_factory=_Tally)
+    _lap_start: float = 0.0  # s
+    _lap_from: float = 0.0  # m, position at which this lap began
+    _position: float = 0.0  # m along the line, counted on from lap to lap
+    _farthest: float = 0.0
+    _mark: tuple[float, float] = (0.0, 0.0)  # time and position of the last progress
+    _moving: bool = False
+
+    @property
+    def driven_share(self) -> float:
+        """Share of the present lap, 0 to 1."""
+        return min(max((self._position - self._lap_from) / self.track.length, 0.0), 1.0)
+
+    def add(self, sample: Sample) -> Verdict:
+        """Score one more sample."""
+        nearest = self.track.nearest(sample.x, sample.y)
+        self.lateral = nearest.lateral
+        if not self.samples:
+            self._begin(sample, nearest.s)
+        elif sample.time > self.samples[-1].time and self.verdict is Verdict.DRIVING:
+            self._advance(sample, nearest.s)
+        else:
+            return self.verdict
+        self.samples.append(sample)
+        self.lap_numbers.append(len(self.laps))
+        return self.verdict
+
+    def _begin(self, sample: Sample, s: float) -> None:
+        self._position = math.remainder(s, self.track.length)
+        self._lap_from = self._farthest = self._position
+        self._mark = (sample.time, self._position)
+        self._lap_start = sample.time
+
+    def _advance(self, sample: Sample, s: float) -> None:
+        before, last = self._position, self.samples[-1]
+        self._position += math.remainder(s - before, self.track.length)
+        self._farthest = max(self._farthest, self._position)
+        if not self._moving:
+            first = self.samples[0]
+            self._moving = math.hypot(sample.x - first.x, sample.y - first.y) > MOVED
+            self._lap_start = last.time
+            if self._moving:
+                self._mark = (sample.time, self._position)
+        if self._moving:
+            step = math.hypot(sample.x - last.x, sample.y - last.y)
+            for tally in (self.total, self._lap):
+                tally.add(step, self.lateral, sample.time - last.time)
+            self._cross_start(before, last.time, sample.time)
+        self._judge(sample)
+
+    def _cross_start(self, before: float, before_time: float, now: float) -> None:
+        """Close a lap, or begin the first one, where the start of the line was passed."""
+        length = self.track.length
+        line = math.floor(self._position / length) * length
+        if not before < line <= self._position:
+            return
+        passed = before_time + (now - before_time) * (line - before) / (self._position - before)
+        if line - self._lap_from > LAP_SHARE * length:
+            lap = self._lap
+            seconds = passed - self._lap_start
+            self.laps.append(Lap(seconds, lap.distance, lap.rms_lateral, lap.max_lateral))
+        self._lap, self._lap_start, self._lap_from = _Tally(), passed, line
+
+    def _judge(self, sample: Sample) -> None:
+        where = f"at x={sample.x:.2f}, y={sample.y:.2f}, simulated time {sample.time:.1f} s"
+        if abs(self._position - self._mark[1]) > STALL_DISTANCE:
+            self._mark = (sample.time, self._position)
+        waited = sample.time - self._mark[0]
+        if abs(self.lateral) > OFF_COURSE:
+            side = "left" if self.lateral > 0 else "right"
+            beside = f"{abs(self.lateral):.2f} m to the {side} of the yellow line"
+            self._end(Verdict.LEFT, f"the car left the course {where}: {beside}")
+        elif self._farthest - self._position > REVERSED:
+            self._end(Verdict.REVERSED, f"the car drove the wrong way {where}")
+        elif not self._moving and waited > START_TIME:
+            self._end(Verdict.STALLED, f"the car stalled {where}: it never moved in {waited:.0f} s")
+        elif self._moving and waited > STALL_TIME:
+            little = f"less than {STALL_DISTANCE} m of progress in {STALL_TIME:.0f} s"
+            self._end(Verdict.STALLED, f"the car stalled {where}: {little}")
+        elif len(self.laps) >= self.wanted_laps:
+            self._end(Verdict.CLOSED, "")
+
+    def _end(self, verdict: Verdict, why: str) -> None:
+        self.verdict, self.why = verdict, why

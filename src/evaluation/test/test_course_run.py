@@ -1,0 +1,226 @@
+"""The main job against a stand-in simulator: each way to end, exit codes, nothing left running."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import cv2
+import pytest
+
+SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
+FAKE = ("--launch", "evaluation", "fake_course.launch")
+END_TIME = 3.0  # s that Ctrl-C may take
+LIMIT = 60.0  # s for anything else
+
+
+def left_running(out: Path) -> list[int]:
+    """Processes of the run: roscore and roslaunch hand their log folder down to all they start."""
+    needle, found = f"ROS_LOG_DIR={out}/".encode(), []
+    for environ in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if needle in environ.read_bytes():
+                found.append(int(environ.parent.name))
+        except OSError:
+            continue
+    return found
+
+
+def wait_until(condition: Callable[[], object], limit: float, what: str) -> object:
+    """The condition's value once it is true."""
+    until = time.monotonic() + limit
+    while time.monotonic() < until:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"not within {limit:g} s: {what}")
+
+
+class Run:
+    """course_run.py as a process, with its output in a file."""
+
+    def __init__(self, out: Path, *arguments: str):
+        self.out, self._log = out, out.parent / "output.txt"
+        with self._log.open("wb") as output:
+            self.process = subprocess.Popen(
+                [sys.executable, str(SCRIPT), "--out", str(out), *arguments],
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    @property
+    def output(self) -> str:
+        return self._log.read_text()
+
+    def wait(self, limit: float = LIMIT) -> int:
+        code = self.process.wait(limit)
+        assert not left_running(self.out)
+        return code
+
+    def wait_for_driving(self) -> None:
+        wait_until(lambda: "simulated" in self.output, LIMIT, "the car drives")
+
+    def pid_of(self, pattern: str) -> int:
+        """The only process of this run whose command line matches."""
+        found = [
+            pid
+            for pid in left_running(self.out)
+            if re.search(pattern, Path(f"/proc/{pid}/cmdline").read_bytes().decode())
+        ]
+        assert len(found) == 1, f"{pattern}: {found}"
+        return found[0]
+
+    @property
+    def last_line(self) -> str:
+        return self.output.splitlines()[-1]
+
+
+@pytest.fixture
+def start(tmp_path) -> Iterator[Callable[..., Run]]:
+    """Starts runs with the stand-in, and ends what a failed test leaves."""
+    runs = []
+
+    def start_run(*arguments: str) -> Run:
+        runs.append(Run(tmp_path / "course", *arguments))
+        return runs[-1]
+
+    yield start_run
+    for run in runs:
+        run.process.kill()
+        run.process.wait()
+        for pid in left_running(run.out):
+            os.kill(pid, signal.SIGKILL)
+
+
+def test_closed_laps_are_reported_and_drawn(start):
+    run = start(*FAKE, "--laps", "2", "--launch-arg", "factor:=30")
+    assert run.wait() == 0, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert report["outcome"] == "closed" and report["laps_closed"] == 2
+    assert report["rms_lateral_m"] == pytest.approx(0.03, abs=1e-3)
+    assert report["lap_times_s"][1] == pytest.approx(10.023 / 0.15, rel=0.01)
+    assert report["frames_sent"] > 1000
+    assert report["frames_dropped"] < 0.1 * report["frames_sent"]
+    assert report["versions"]["numpy"]
+    assert cv2.imread(str(run.out / "path.png")).shape[1] == 1400
+    film = cv2.VideoCapture(str(run.out / "run.mp4"))
+    assert film.read()[0]
+    assert film.get(cv2.CAP_PROP_FRAME_COUNT) * 0.2 == pytest.approx(report["simulated_s"], rel=0.1)
+
+
+def test_the_report_shows_followers_side_by_side(start):
+    slow = ("--duration", "3", "--no-video")
+    assert start(*FAKE, *slow, "--follower", "05follower_proporation.py").wait() == 1
+    run = start(*FAKE, *slow, "--follower", "06follower_pid.py")
+    assert run.wait() == 1
+    report = json.loads((run.out / "report.json").read_text())
+    assert list(report["followers"]) == ["05follower_proporation.py", "06follower_pid.py"]
+    assert "> 06follower_pid.py" in run.output and "  05follower_proporation.py" in run.output
+    assert "3 simulated s are over" in run.last_line
+    assert not (run.out / "run.mp4").exists()
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "words"),
+    [("leaves", "the car left the course at x="), ("stalls", "the car stalled at x=")],
+)
+def test_a_bad_drive_ends_with_1_and_says_where(start, behaviour, words):
+    run = start(*FAKE, "--launch-arg", f"behaviour:={behaviour}")
+    assert run.wait() == 1
+    assert words in run.last_line and "simulated time" in run.last_line
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "options", "words"),
+    [
+        (
+            "fails",
+            (),
+            "the follower 05follower_proporation.py (process follower-2) died (exit code 3)",
+        ),
+        ("no_car", ("--startup-timeout", "4"), "the car (model turtlebot3_waffle) was not there"),
+        ("pauses", ("--stuck-timeout", "3"), "simulated time has stood still at 6.7 s"),
+        ("hangs", ("--stuck-timeout", "3"), "the simulator is paused or hangs"),
+    ],
+)
+def test_what_cannot_run_ends_with_2_and_says_why(start, behaviour, options, words):
+    run = start(*FAKE, "--launch-arg", f"behaviour:={behaviour}", *options)
+    assert run.wait() == 2
+    assert words in run.last_line
+
+
+@pytest.mark.parametrize(
+    ("pattern", "words"),
+    [
+        ("fake_follower", "the follower 05follower_proporation.py"),
+        ("fake_simulator", "the simulator"),
+        ("rosmaster", "roscore"),
+        (r"bin/roscore", "roscore"),
+        (r"bin/roslaunch", "roslaunch"),
+    ],
+)
+def test_a_killed_part_ends_the_run_with_2(start, pattern, words):
+    run = start(*FAKE, "--launch-arg", "factor:=3")
+    run.wait_for_driving()
+    os.kill(run.pid_of(pattern), signal.SIGKILL)
+    assert run.wait(limit=15.0) == 2
+    assert run.last_line.startswith(f"course_run: {words}")
+    assert "SIGKILL" in run.last_line and "at simulated time" in run.last_line
+    assert "log: " in run.last_line
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_all_within_three_seconds(start, number):
+    run = start(*FAKE, "--launch-arg", "factor:=3")
+    run.wait_for_driving()
+    began = time.monotonic()
+    os.kill(run.process.pid, number)
+    assert run.wait(limit=10.0) == 130
+    assert time.monotonic() - began < END_TIME
+    assert json.loads((run.out / "report.json").read_text())["why"] == "interrupted"
+
+
+def test_ctrl_c_while_starting_leaves_nothing(start):
+    run = start(*FAKE)
+    wait_until(lambda: left_running(run.out), LIMIT, "roscore starts")
+    began = time.monotonic()
+    os.kill(run.process.pid, signal.SIGINT)
+    assert run.wait(limit=10.0) == 130
+    assert time.monotonic() - began < END_TIME
+
+
+def test_even_a_killed_run_leaves_nothing(start):
+    run = start(*FAKE, "--launch-arg", "factor:=3")
+    run.wait_for_driving()
+    os.kill(run.process.pid, signal.SIGKILL)
+    run.process.wait()
+    wait_until(lambda: not left_running(run.out), 30.0, "all processes have ended")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--laps", "0"), "--laps (LAPS=) must be a whole number, 1 or more; got '0'"),
+        (("--laps", "-1"), "got '-1'"),
+        (("--laps", "abc"), "got 'abc'"),
+        (("--laps", "1.5"), "got '1.5'"),
+        (("--duration", "0"), "--duration (DURATION=) must be seconds of simulated time"),
+        (("--duration", "nan"), "got 'nan'"),
+        (("--follower", "07nothing.py"), "there are: 05follower_proporation.py, 06follower_pid.py"),
+        (("--launch-arg", "x_pos=1"), "--launch-arg must look like name:=value, got 'x_pos=1'"),
+        (("--track", "nowhere.yaml"), "nowhere.yaml: No such file or directory"),
+        (("--fast",), "unrecognized arguments: --fast"),
+    ],
+)
+def test_a_mistyped_command_is_one_line_and_2(start, arguments, words):
+    run = start(*arguments)
+    assert run.wait() == 2
+    assert len(run.output.splitlines()) == 1
+    assert words in run.output

@@ -1,0 +1,127 @@
+"""The track's geometry against known answers, the shipped tracks, and broken track files."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from evaluation.kinematic import drive
+from evaluation.track import (
+    Corner,
+    Piece,
+    Track,
+    TrackError,
+    TrackFile,
+    build_track,
+    load_track,
+    load_track_file,
+)
+
+HERE = Path(__file__).parent
+SHIPPED = sorted((HERE.parent / "tracks").glob("*.yaml"))
+BROKEN = {
+    "missing_key": "key 'lane_width' is missing",
+    "unknown_key": "unknown key 'sizes'; there are: name, size",
+    "corner_not_a_number": "corners[4].radius: must be a number, is 'wide'",
+    "corner_key_missing": "corners[4]: key 'radius' is missing",
+    "bends_overlap": "corners[0] and [1]: the bends overlap by",
+    "start_beside_line": "start: 0.500 m beside the line",
+    "negative_width": "line_width: must be more than 0, is -0.019",
+    "no_yaml": "no YAML: ",
+    "no_mapping": "must have the keys name, size",
+}
+
+
+def rounded_square(side: float = 2.0, radius: float = 0.5) -> Track:
+    """Counter-clockwise, from the middle of its lower side at (0, 0)."""
+    half = side / 2
+    xy = ((half, 0.0), (half, side), (-half, side), (-half, 0.0))
+    corners = tuple(Corner(x, y, radius) for x, y in xy)
+    return build_track(TrackFile("square", 4.0, 0.0, 0.02, 0.3, (0.0, 0.0), corners))
+
+
+def test_rounded_square_has_the_length_of_its_straights_and_its_circle():
+    assert rounded_square().length == pytest.approx(4 * 1.0 + 2 * math.pi * 0.5, abs=1e-12)
+
+
+def test_poses_of_a_rounded_square():
+    track = rounded_square()
+    assert track.pose(0.25) == pytest.approx((0.25, 0.0, 0.0))
+    bend = math.pi * 0.5 / 4  # half of a quarter circle
+    x, y, heading = track.pose(0.5 + bend)
+    assert (x, y) == pytest.approx((0.5 + 0.5 * math.sqrt(0.5), 0.5 - 0.5 * math.sqrt(0.5)))
+    assert heading == pytest.approx(math.pi / 4)
+    assert track.pose(track.length + 0.25)[:2] == pytest.approx((0.25, 0.0))
+    assert track.pose(-0.25)[:2] == pytest.approx((-0.25, 0.0))
+
+
+@pytest.mark.parametrize("left", [-0.2, -0.01, 0.01, 0.2])
+def test_nearest_finds_back_what_pose_gave(left):
+    track = rounded_square()
+    for i in range(200):
+        s = track.length * i / 200
+        x, y, heading = track.pose(s)
+        near = track.nearest(x - left * math.sin(heading), y + left * math.cos(heading))
+        assert near.lateral == pytest.approx(left, abs=1e-9)
+        assert math.remainder(near.s - s, track.length) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_offset_to_the_right_of_a_left_circle_is_longer():
+    track = rounded_square()
+    assert track.offset(-0.3).length == pytest.approx(track.length + 2 * math.pi * 0.3)
+    with pytest.raises(TrackError, match="no line"):
+        track.offset(0.6)
+
+
+def test_an_open_line_is_refused():
+    with pytest.raises(TrackError, match="gap of"):
+        Track((Piece(0, 0, 0, 1.0, 0.0), Piece(1.0, 1e-6, 0.0, 1.0, 0.0)))
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_track_keeps_its_promises(path):
+    track_file, track = load_track_file(path), load_track(path)
+    curvatures = [piece.curvature for piece in track.pieces]
+    radii = [1 / abs(curvature) for curvature in curvatures if curvature]
+    assert min(curvatures) < 0 < max(curvatures) and 0.0 in curvatures
+    assert 0.5 <= min(radii) <= max(radii) <= 1.1
+    assert track.pose(0.0) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    lines = track.points(0.02) + track.offset(-track_file.lane_width).points(0.02)
+    assert max(max(abs(x), abs(y)) for x, y in lines) < track_file.size / 2 - 0.1
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_parts_of_the_yellow_line_stay_apart(path):
+    track, spacing = load_track(path), 0.05
+    points = track.points(spacing)
+    apart = round(1.4 / spacing)  # samples; nearer along the line than this is the same part
+    count = len(points)
+    for i in range(count):
+        for j in range(i + apart, min(count, i + count - apart)):
+            assert math.dist(points[i], points[j]) > 0.7
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_lesson_05_stays_on_a_shipped_track_for_three_laps(path):
+    track = load_track(path)
+    result = drive(track, duration=3 * track.length / 0.15)
+    lateral = [track.nearest(x, y).lateral for x, y, _ in result.poses]
+    rms = math.sqrt(sum(value * value for value in lateral) / len(lateral))
+    assert result.lost == 0
+    assert 0.03 < rms < 0.06
+    assert max(map(abs, lateral)) < 0.15
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (HERE / "broken_tracks").glob("*")))
+def test_broken_track_file_is_named_with_its_mistake(name):
+    path = HERE / "broken_tracks" / f"{name}.yaml"
+    with pytest.raises(TrackError) as caught:
+        load_track(path)
+    assert str(path) in str(caught.value)
+    assert BROKEN[name] in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_track_file_is_named():
+    with pytest.raises(TrackError, match=r"nowhere\.yaml: No such file"):
+        load_track("nowhere.yaml")
