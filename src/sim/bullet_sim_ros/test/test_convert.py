@@ -100,8 +100,8 @@ def test_points_are_in_optical_axes_with_colour():
     rgb[2, 4] = (255, 128, 1)
     msg = convert.points_to_msg(depth, rgb, 4.0, 0.0, "optical")
     cloud = np.frombuffer(msg.data, np.dtype("<f4,<f4,<f4,<u4")).reshape(3, 5)
-    assert tuple(cloud[1, 2])[:3] == (0.0, 0.0, 2.0)
-    assert tuple(cloud[2, 4])[:3] == (1.0, 0.5, 2.0)  # right and down are positive
+    assert cloud[1, 2].item()[:3] == (0.0, 0.0, 2.0)
+    assert cloud[2, 4].item()[:3] == (1.0, 0.5, 2.0)  # right and down are positive
     assert cloud[2, 4][3] == 0xFF8001
     assert math.isnan(cloud[0, 0][0])
     assert not msg.is_dense
@@ -112,6 +112,6 @@ def test_camera_info_has_gazebos_principal_point():
     camera = CameraDescription(horizontal_fov=1.3439, width=1920, height=1080)
     msg = convert.camera_info_to_msg(camera, 0.0, "f", baseline=0.07)
     focal = 1920 / (2 * math.tan(1.3439 / 2))
-    assert msg.K == pytest.approx([focal, 0, 960.5, 0, focal, 540.5, 0, 0, 1])
+    assert list(msg.K) == pytest.approx([focal, 0, 960.5, 0, focal, 540.5, 0, 0, 1])
     assert msg.P[3] == pytest.approx(-focal * 0.07)
     assert (msg.distortion_model, len(msg.D)) == ("plumb_bob", 5)

@@ -42,7 +42,7 @@ def test_a_bad_flag_warns_and_a_bad_number_is_an_error(caplog):
         assert p.flag("f", True) is True
     assert "<f> is 'maybe', neither true nor false" in caplog.text
     for read in (lambda: p.number("n", 0.0), lambda: p.vector("v"), lambda: p.required("x")):
-        with pytest.raises(PluginError, match="<[nvx]>"):
+        with pytest.raises(PluginError, match=r"<[nvx]>"):
             read()
 
 
@@ -88,7 +88,8 @@ def test_a_plugin_that_fails_is_one_error_and_the_others_load(world, caplog, mon
 
     body = "<leftJoint>nope</leftJoint>"
     with caplog.at_level(logging.WARNING):
-        loaded = load(world, described("libgazebo_ros_diff_drive.so", body), described("libgood.so"))
+        loaded = load(world, described("libgazebo_ros_diff_drive.so", body),
+                      described("libgood.so"))
     assert [type(made) for made in loaded] == [Good]
     assert "is not loaded: no joint of model robot named 'nope'; there are: none" in caplog.text
 

@@ -11,7 +11,8 @@ class Schedule:
     """Due `rate_hz` times a simulated second; 0 means every step.
 
     A period that is no whole number of steps alternates between two lengths, so that the long-run
-    rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps, as in Gazebo's accumulating plugins.
+    rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps, as in Gazebo's plugins that
+    accumulate.
     """
 
     def __init__(self, rate_hz: float, timestep: float):

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Removes what setup, build and tests made in this folder; out/course and Debian's packages stay.
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+cd "$root"
+rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace
+[ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
+find src test scripts -name __pycache__ -type d -prune -exec rm -rf {} +

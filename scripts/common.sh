@@ -1,0 +1,23 @@
+# What every script here starts with: the root, one-line messages, and an environment without the caller's Python and ROS.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+self=$(basename "$0" .sh)
+
+say() { printf '%s\n' "$*"; }
+fail() { printf '%s: %s\n' "$self" "$1" >&2; exit "${failure_code:-1}"; }
+
+# `sudo make course` would leave root's files in a person's folder: go on as that person.
+if [ "$(id -u)" = 0 ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
+  exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
+fi
+
+# Another python3, an active venv or conda, a sourced ROS workspace: none of it may leak in.
+unset "${!PYTHON@}" "${!CONDA_@}" "${!ROS_@}" VIRTUAL_ENV CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
+  PKG_CONFIG_PATH MAKEFLAGS MFLAGS MAKELEVEL CC CXX CFLAGS CXXFLAGS BASH_ENV ENV CDPATH
+export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+
+# Gives this shell what a learner's terminal has after `source devel/setup.bash`.
+enter_workspace() {
+  set +u; . "$root/devel/setup.bash"; set -u
+  export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
+}

@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Lists the Makefile's verbs.
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+echo "usage: make VERB"
+sed -n 's/^\([a-z]*\):.*## \(.*\)/  \1\t\2/p' "$root/Makefile" | expand -t 12
+echo "Then, in each new terminal: source devel/setup.bash"

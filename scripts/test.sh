@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Sets up what is missing, then runs every check and test. The last line says how many passed and failed.
+#
+#   scripts/test.sh [--jobs N]     N rostest files at a time (1)
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+"$root/scripts/setup.sh" --tests
+enter_workspace
+cd "$root"
+exec python3 scripts/run_tests.py "$@"

@@ -1,0 +1,120 @@
+"""Imports follow the house's arrows: see arrows.yaml beside this file."""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+RULES = yaml.safe_load((Path(__file__).parent / "arrows.yaml").read_text(encoding="utf-8"))
+ROS = re.compile(
+    r"ros|ros[a-z]+|\w+_(msgs|srvs)|tf|tf2\w*|cv_bridge|genpy|genmsg|catkin\w*|message_filters"
+    r"|actionlib\w*|dynamic_reconfigure|topic_tools|image_geometry|laser_geometry|turtlesim"
+)
+
+
+def our_packages() -> set[str]:
+    """Names of catkin packages and of the Python packages in them."""
+    manifests = list(ROOT.glob("src/**/package.xml"))
+    modules = [init.parent for m in manifests for init in m.parent.glob("src/*/__init__.py")]
+    return {m.parent.name for m in manifests} | {folder.name for folder in modules}
+
+
+OURS = our_packages()
+
+
+def python_files() -> Iterator[Path]:
+    """Everything written in Python below src/, but for tests: these may look anywhere."""
+    for path in sorted(p for p in ROOT.glob("src/**/*") if p.is_file()):
+        if {"test", "__pycache__"} & set(path.relative_to(ROOT).parts):
+            continue
+        if path.suffix == ".py" or (path.suffix == "" and first_line(path).endswith("python3")):
+            yield path
+
+
+def first_line(path: Path) -> str:
+    with path.open("rb") as file:
+        return file.readline(80).decode("utf-8", "replace").strip()
+
+
+def imported(source: str) -> list[tuple[int, str]]:
+    """(line, top-level module) of each absolute import, wherever in the file it stands."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found += [(node.lineno, alias.name.split(".")[0]) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            found.append((node.lineno, (node.module or "").split(".")[0]))
+    return found
+
+
+def room_of(path: str) -> str | None:
+    return max((room for room in RULES if path.startswith(room + "/")), key=len, default=None)
+
+
+def own_name(path: str) -> str:
+    """The catkin package that a file lies in."""
+    folder = (ROOT / path).parent
+    while folder not in (ROOT, folder.parent):
+        if (folder / "package.xml").exists():
+            return folder.name
+        folder = folder.parent
+    return ""
+
+
+def complaint(room: str, package: str, module: str) -> str | None:
+    """Why this room may not import this module, or None."""
+    rule = RULES[room]
+    if module == package or module in rule["ours"] or module in sys.stdlib_module_names:
+        return None
+    if module == "pybullet" and room != "src/sim/bullet_sim":
+        return "pybullet belongs to src/sim/bullet_sim alone"
+    if module in OURS:
+        return f"{room} may import of ours only {rule['ours']}"
+    if ROS.fullmatch(module):
+        return None if rule["ros"] else f"{room} may not import ROS"
+    if "only" in rule and module not in rule["only"]:
+        return f"{room} may import besides the standard library only {rule['only']}"
+    return None
+
+
+def broken_arrows(path: str, source: str) -> list[str]:
+    room = room_of(path)
+    if room is None:
+        return [f"{path}: no room in test/arrows.yaml has this folder"]
+    found = []
+    for line, module in imported(source):
+        why = complaint(room, own_name(path), module)
+        if why:
+            found.append(f"{path}:{line}: imports {module}: {why}")
+    return found
+
+
+def test_imports_follow_the_arrows() -> None:
+    broken = []
+    for path in python_files():
+        broken += broken_arrows(str(path.relative_to(ROOT)), path.read_text(encoding="utf-8"))
+    assert not broken, "\n" + "\n".join(broken)
+
+
+@pytest.mark.parametrize(
+    ("path", "source", "broken"),
+    [
+        ("src/sim/bullet_sim/src/bullet_sim/world.py", "import rospy", True),
+        ("src/sim/bullet_sim/src/bullet_sim/world.py", "def f():\n  import std_msgs.msg", True),
+        ("src/sim/bullet_sim/src/bullet_sim/world.py", "from bullet_sim import pose", False),
+        ("src/sim/bullet_sim/src/bullet_sim/world.py", "import bullet_sim_ros", True),
+        ("src/learning_topic/scripts/x.py", "import bullet_sim", True),
+        ("src/learning_topic/scripts/x.py", "import scipy", True),
+        ("src/learning_topic/scripts/x.py", "import cv2, rospy, learning_topic.msg", False),
+        ("src/evaluation/scripts/x.py", "import bullet_sim_ros", True),
+        ("src/evaluation/scripts/x.py", "import pybullet", True),
+        ("src/nowhere/x.py", "import os", True),
+    ],
+)
+def test_the_check_itself(path: str, source: str, broken: bool) -> None:
+    assert bool(broken_arrows(path, source)) is broken

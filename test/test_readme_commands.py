@@ -1,0 +1,129 @@
+"""Every command that README.md shows is run by something: see readme_commands.yaml beside this."""
+
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+READMES = ("README.md", "README.zh-CN.md")
+RUNNERS = yaml.safe_load(
+    (Path(__file__).parent / "readme_commands.yaml").read_text(encoding="utf-8")
+)
+FENCE = re.compile(r"^```(bash|console|sh|shell)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
+INLINE = re.compile(r"`((?:make|source|docker|sudo|git|ros[a-z]+) [^`<>…]+)`")
+BUILT = (ROOT / "devel" / "setup.bash").exists()
+
+
+def commands_in(text: str) -> list[str]:
+    """Those between backquotes in sentences and tables, then those of the shell fences.
+
+    In a console fence what follows `$ ` is a command, in the others all but comments.
+    """
+    commands = [" ".join(found.split()) for found in INLINE.findall(FENCE.sub("", text))]
+    for language, body in FENCE.findall(text):
+        for line in body.replace("\\\n", " ").splitlines():
+            if language == "console":
+                line = line[2:] if line.startswith("$ ") else ""
+            line = " ".join(re.sub(r"(^|\s)#.*", "", line).split())
+            if line:
+                commands.append(line)
+    return commands
+
+
+def commands_of(name: str) -> list[str]:
+    path = ROOT / name
+    return commands_in(path.read_text(encoding="utf-8")) if path.exists() else []
+
+
+COMMANDS = sorted(set(commands_of("README.md")))
+
+
+def runner_of(command: str) -> dict | None:
+    return next((r for r in RUNNERS if re.fullmatch(r["match"], command)), None)
+
+
+def in_workspace(command: str, limit: float = 30.0) -> subprocess.CompletedProcess:
+    """Runs it as a person would who has sourced the workspace, where there is a built one."""
+    enter = "source devel/setup.bash; " if BUILT else ""
+    return subprocess.run(["bash", "-c", enter + command], cwd=ROOT, timeout=limit, text=True,
+                          capture_output=True, stdin=subprocess.DEVNULL)
+
+
+def not_there(command: str) -> str | None:
+    """What a make, rosrun or roslaunch line names and the workspace does not have."""
+    words = shlex.split(command)
+    if words[0] == "make":
+        targets = [word for word in words[1:] if "=" not in word]
+        done = in_workspace("make -n " + " ".join(targets))
+        variables = {word.split("=")[0] for word in words[1:] if "=" in word}
+        unknown = variables - set(re.findall(r"\$\((\w+)\)", (ROOT / "Makefile").read_text()))
+        return f"make does not know {unknown}" if unknown else done.stderr or None
+    if words[0] == "roslaunch" and len(words) > 2:
+        return launch_error(words[1:]) if BUILT else None
+    if words[0] == "rosrun" and len(words) > 2 and BUILT:
+        package, executable = shlex.quote(words[1]), shlex.quote(words[2])
+        found = in_workspace(
+            f"find -L $(catkin_find --libexec --share {package} 2>/dev/null;"
+            f" rospack find {package}) -name {executable} -type f -perm /111 | head -1")
+        return None if found.stdout.strip() else f"{words[1]} has no executable {words[2]}"
+    return None
+
+
+def launch_error(words: list[str]) -> str | None:
+    """roslaunch resolves the file with all it includes, its arguments and its nodes' names."""
+    quoted = " ".join(shlex.quote(word) for word in words)
+    done = in_workspace(f"roslaunch --nodes {quoted}")
+    return None if done.returncode == 0 else done.stderr.strip() or done.stdout.strip()
+
+
+def test_readme_shows_commands() -> None:
+    assert (ROOT / "README.md").exists(), "there is no README.md"
+    assert any(c.startswith("make course") for c in COMMANDS), "README.md never says `make course`"
+    assert "make test" in COMMANDS, "README.md never says `make test`"
+
+
+def test_the_chinese_readme_shows_the_same() -> None:
+    assert (ROOT / READMES[1]).exists(), f"there is no {READMES[1]}"
+    assert commands_of(READMES[1]) == commands_of(READMES[0])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_something_runs(command: str) -> None:
+    runner = runner_of(command)
+    assert runner, f"nothing runs `{command}`: give it a line in test/readme_commands.yaml"
+    missing = not_there(command)
+    assert not missing, f"`{command}`: {missing}"
+    if runner.get("here"):
+        done = in_workspace(command)
+        assert done.returncode == 0, done.stdout + done.stderr
+    else:
+        by = ROOT / runner["by"]
+        assert by.is_file() or any(by.glob("*test*")), f"{runner['by']}, which runs it, is missing"
+
+
+def test_docker_services_exist() -> None:
+    services = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text())["services"]
+    for command in COMMANDS:
+        if re.match(r"docker compose .*\b(run|up)\b", command):
+            assert command.split()[-1] in services, command
+
+
+def test_clean_forgets_what_was_made(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts")
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    for made in (".venv", "build", "devel", ".setup", "src", "test", "out/course"):
+        (tmp_path / made).mkdir(parents=True)
+    subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"Makefile", "out", "scripts", "src", "test"}
+
+
+def test_commands_are_found() -> None:
+    shell = "```bash\nmake a  # b\n# c\nd \\\n  e\n```\n"
+    text = shell + "\n```console\n$ f\nanswer\n```\n```python\ng\n```\n"
+    assert commands_in(text + "type `make b` or `this`") == ["make b", "make a", "d e", "f"]
