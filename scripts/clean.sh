@@ -2,6 +2,6 @@
 # Removes what setup, build and tests made in this folder; out/course and Debian's packages stay.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
-rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace
+rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__
 [ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
 find src test scripts -name __pycache__ -type d -prune -exec rm -rf {} +
