@@ -14,8 +14,8 @@ SCRIPTS = Path(__file__).resolve().parents[1] / "scripts"
 FAKE_NODE = """
 import os, signal, sys, time
 def stop(*_):
-    print("stopped", flush=True)
-    sys.exit(3)
+    os.write(1, b"stopped\\n")  # print may be at work below the handler
+    os._exit(3)
 signal.signal(signal.SIGINT, stop)
 print(os.getpid(), sys.flags.dev_mode, sys.flags.safe_path, *sys.argv[1:], flush=True)
 time.sleep(60)

@@ -11,6 +11,7 @@ from bullet_sim.description import (
     Cylinder,
     Inertial,
     JointDescription,
+    LightDescription,
     LinkDescription,
     ModelDescription,
     PhysicsDescription,
@@ -19,7 +20,7 @@ from bullet_sim.description import (
     WorldDescription,
 )
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
-from bullet_sim.errors import NameTaken, UnknownName
+from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.physics.body import Twist
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.schedule import Schedule
@@ -197,6 +198,14 @@ def test_effort_accelerates_a_joint(world):
     assert model.joint("spin").velocity == pytest.approx(1e-4 / inertia * 0.1, rel=0.01)
 
 
+def test_a_joint_that_is_held_says_so(world):
+    links = (box_link("a", (0.1, 0.1, 0.1), 1.0), box_link("b", (0.1, 0.1, 0.1), 1.0))
+    held = JointDescription("j", "screw", "a", "b")
+    model = world.spawn(ModelDescription("m", links=links, joints=(held,)))
+    with pytest.raises(SimulationError, match="joint 'j' of model m is of type screw"):
+        model.joint("j")
+
+
 def test_gravity_off_floats(world):
     link = replace(box_link("link", (0.1, 0.1, 0.1), 2.0), gravity=False)
     model = world.spawn(ModelDescription("balloon", links=(link,)), Pose((0, 0, 1.0)))
@@ -239,6 +248,30 @@ def test_set_pose_and_twist_are_read_back(world):
     assert model.pose.rpy() == pytest.approx(pose.rpy(), abs=1e-6)
     assert model.twist.linear == pytest.approx((0.3, 0.2, 0.1), abs=1e-6)
     assert model.twist.angular == pytest.approx((0.0, 0.0, 0.5), abs=1e-6)
+
+
+def test_a_zero_twist_stops_the_joints_too(world):
+    model = world.spawn(robot(), Pose((0, 0, 1.0)))
+    model.joint("left_joint").reset(0.5, velocity=5.0)
+    model.set_twist(Twist())
+    assert model.joint("left_joint").velocity == 0.0
+    assert model.joint("left_joint").position == pytest.approx(0.5)
+
+
+def test_a_model_that_cannot_be_shown_leaves_nothing_behind(world):
+    lamp = LightDescription("lamp")
+    link = replace(box_link("link", (0.1, 0.1, 0.1), 1.0), lights=(lamp, lamp))
+    with pytest.raises(NameTaken):
+        world.spawn(ModelDescription("twice_lit", links=(link,)))
+    assert (world.models, world.lights, world.scene.nodes) == ({}, {}, {})
+    world.spawn(box(), name="twice_lit")
+
+
+def test_wheels_without_size_are_an_error(world):
+    model = world.spawn(robot())
+    joints = model.joint("left_joint"), model.joint("right_joint")
+    with pytest.raises(SimulationError, match=r"wheel diameter 0 and separation 0\.3"):
+        DiffDrive(*joints, DiffDriveParameters(0.3, 0))
 
 
 def test_a_static_model_can_be_moved_and_still_collides(world):
@@ -299,4 +332,6 @@ def test_schedule_keeps_its_long_run_rate():
     assert due[:3] == [34, 67, 100]
     assert len(due) == 90
     every = Schedule(0.0, 0.001)
+    assert schedule.due(1)  # the clock was set back: a new count
+    assert [tick for tick in range(2, 101) if schedule.due(tick)] == [35, 68]
     assert all(every.due(tick) for tick in range(1, 10))

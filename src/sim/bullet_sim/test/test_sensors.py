@@ -106,6 +106,12 @@ def test_noise_has_its_deviation_and_repeats_with_the_seed():
     assert np.mean(first) == pytest.approx(2.0, abs=0.001)
 
 
+def test_a_scan_may_have_more_beams_than_the_engine_takes_at_once():
+    reading = scan(RayDescription(samples=20000, min_angle=-0.01, max_angle=0.01, range_min=0.1,
+                                  range_max=5.0), Pose((0, 0, 0.5)))
+    assert reading.ranges == pytest.approx(np.full(20000, 2.0), abs=0.002)
+
+
 def test_imu_of_a_falling_and_of_a_turning_link():
     world = World()
     model = world.spawn(ModelDescription("thing", links=(LinkDescription("link"),)))

@@ -118,6 +118,33 @@ class Services(unittest.TestCase):
             self.put(xml="<sdf version='1.6'/>")
         self.assertTrue(self.put().success)
 
+    def test_texts_that_are_no_models(self):
+        spawn_sdf = service("spawn_sdf_model", SpawnModel)
+        answer = spawn_sdf("x", "hello", "", Pose(), "")
+        self.assertFalse(answer.success)
+        self.assertIn("input model_xml not SDF or URDF", answer.status_message)
+        mesh = '<mesh filename="package://no_such_package/a.stl"/>'
+        with self.assertRaisesRegex(rospy.ServiceException, "urdf reference package name does not"):
+            self.put(xml=BOX.format(visual=mesh, extra=""))
+
+    def test_a_light_is_spawned_as_a_light(self):
+        spawn_sdf = service("spawn_sdf_model", SpawnModel)
+        lamp = "<sdf version='1.6'><light type='point' name='l'/></sdf>"
+        self.assertTrue(spawn_sdf("lamp", lamp, "", Pose(), "").success)
+        self.assertFalse(spawn_sdf("lamp", lamp, "", Pose(), "").success)
+
+    def test_a_model_without_a_wanted_name_keeps_its_own(self):
+        self.assertTrue(self.put(name="", xml=PLAIN).success)
+        again = self.put(name="", xml=PLAIN)
+        self.assertEqual(again.status_message, "SpawnModel: Failure - entity already exists.")
+        self.assertTrue(self.state("box", "").success)
+
+    def test_a_broken_plugin_leaves_the_model_and_a_topic_name_is_checked(self):
+        extra = ('<gazebo><plugin name="p" filename="libgazebo_ros_joint_state_publisher.so">'
+                 "<robotNamespace>a b</robotNamespace></plugin></gazebo>")
+        self.assertTrue(self.put(xml=BOX.format(visual='<box size="1 1 1"/>', extra=extra)).success)
+        wait_until(lambda: any("no legal topic name" in line for line in self.log), "an error")
+
     def test_a_missing_mesh_is_one_warning_and_the_model_spawns(self):
         mesh = '<mesh filename="package://gazebo_ros/meshes/not_there.stl"/>'
         self.assertTrue(self.put(xml=BOX.format(visual=mesh, extra="")).success)
@@ -162,8 +189,9 @@ class Services(unittest.TestCase):
     def test_a_pose_that_is_no_number_is_refused(self):
         self.put()
         state = ModelState(model_name="box")
-        state.pose.position.x = math.nan
-        self.assertFalse(service("set_model_state", SetModelState)(state).success)
+        for value in (math.nan, math.inf, 1e200):
+            state.pose.position.x = value
+            self.assertFalse(service("set_model_state", SetModelState)(state).success)
 
     def test_calls_are_counted_per_model(self):
         self.put()
@@ -225,6 +253,12 @@ class Services(unittest.TestCase):
         self.assertEqual(properties().sim_time, 0.0)
         service("unpause_physics", Empty)()
         wait_until(lambda: 0 < self.clock < time, "a clock that was set back")
+        states = []
+        watcher = rospy.Subscriber("/gazebo/model_states", ModelStates, states.append)
+        wait_until(lambda: len(states) > 10, "model_states that go on")
+        before = self.clock
+        wait_until(lambda: self.clock > before, "a clock that goes on")
+        watcher.unregister()
 
 
 if __name__ == "__main__":

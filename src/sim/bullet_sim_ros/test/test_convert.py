@@ -37,11 +37,12 @@ def test_a_default_pose_message_is_no_rotation():
     assert convert.pose_from_msg(PoseMsg()).orientation == (0.0, 0.0, 0.0, 1.0)
 
 
-@pytest.mark.parametrize("value, finite", [(1.0, True), (math.nan, False), (math.inf, False)])
-def test_numbers_that_are_not_finite_are_found_at_any_depth(value, finite):
+@pytest.mark.parametrize("value, sane", [
+    (1.0, True), (-1e5, True), (math.nan, False), (-math.inf, False), (1e200, False)])
+def test_numbers_that_no_engine_can_take_are_found_at_any_depth(value, sane):
     twist = TwistMsg()
     twist.angular.z = value
-    assert convert.is_finite(PoseMsg(), twist) is finite
+    assert convert.is_sane(PoseMsg(), twist) is sane
 
 
 def test_laser_keeps_infinities_and_spreads_the_angles():

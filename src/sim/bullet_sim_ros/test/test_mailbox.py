@@ -49,6 +49,15 @@ def test_what_was_left_runs_in_order():
     assert seen == [0, 1, 2]
 
 
+def test_what_was_left_and_fails_is_logged_and_the_rest_runs(caplog):
+    mailbox, seen = Mailbox(), []
+    mailbox.leave(lambda: 1 / 0)
+    mailbox.leave(lambda: seen.append(1))
+    mailbox.run_pending()
+    assert seen == [1]
+    assert "ZeroDivisionError: division by zero" in caplog.text
+
+
 def test_a_closed_mailbox_answers_instead_of_hanging():
     mailbox = Mailbox()
     result = in_thread(lambda: mailbox.call(lambda: None))

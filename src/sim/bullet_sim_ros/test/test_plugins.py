@@ -13,8 +13,8 @@ from bullet_sim.description import (
 )
 from bullet_sim.world import World
 from bullet_sim_ros.plugins import load_plugins, plugin, registry
+from bullet_sim_ros.plugins.host import Shared
 from bullet_sim_ros.plugins.parameters import PluginError, PluginParameters
-from bullet_sim_ros.plugins.registry import Host
 from bullet_sim_ros.services.models import with_namespace
 
 
@@ -62,10 +62,7 @@ def world():
 def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
-
-    def host(model, description, sensor=None, link=None):
-        return Host(world, model, description, None, None, sensor, link)
-    return load_plugins(host, model)
+    return load_plugins(Shared(world, None, None), model)
 
 
 def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):
@@ -75,23 +72,50 @@ def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, cap
     first, second = [record.getMessage() for record in caplog.records]
     assert "model robot: plugin p (libgazebo_ros_diff_driv.so) is not known" in first
     assert "did you mean libgazebo_ros_diff_drive.so?" in first
-    assert "sensor eye publishes nothing" in second
+    assert "model robot: sensor eye: plugin p (libnothing_at_all.so) is not known" in second
 
 
-def test_a_plugin_that_fails_is_one_error_and_the_others_load(world, caplog, monkeypatch):
+@pytest.fixture
+def good(monkeypatch):
+    """A plugin of the test's own, under libgood.so."""
     monkeypatch.setattr(registry, "_registry", dict(registry._registry))
 
     @plugin("libgood.so")
     class Good:
         def __init__(self, host):
-            self.host = host
+            self.updates = 0
+            self.broken = host.parameters.has("broken")
 
-    body = "<leftJoint>nope</leftJoint>"
+        def update(self):
+            self.updates += 1
+            if self.broken:
+                raise ZeroDivisionError("division by zero")
+    return Good
+
+
+@pytest.mark.parametrize("filename, body, said", [
+    ("libgazebo_ros_diff_drive.so", "<leftJoint>nope</leftJoint>",
+     "no joint of model robot named 'nope'; there are: none"),
+    ("libgazebo_ros_laser.so", "", "it belongs inside a <sensor>"),
+    ("libgazebo_ros_camera.so", "", "it belongs inside a <sensor>"),
+    ("libgazebo_ros_imu.so", "", "it needs a <bodyName>"),
+    ("libgazebo_ros_imu.so", "<bodyName>link</bodyName><gaussianNoise>-1</gaussianNoise>",
+     "<gaussianNoise> is -1.0, and a deviation is not negative"),
+])
+def test_a_plugin_that_cannot_load_is_one_error_and_the_others_load(
+        world, caplog, good, filename, body, said):
     with caplog.at_level(logging.WARNING):
-        loaded = load(world, described("libgazebo_ros_diff_drive.so", body),
-                      described("libgood.so"))
-    assert [type(made) for made in loaded] == [Good]
-    assert "is not loaded: no joint of model robot named 'nope'; there are: none" in caplog.text
+        loaded = load(world, described(filename, body), described("libgood.so"))
+    assert len(loaded) == 1
+    assert [record.levelname for record in caplog.records] == ["ERROR"]
+    assert f"({filename}) is not loaded: {said}" in caplog.text
+
+
+def test_a_plugin_that_fails_at_work_is_switched_off_with_one_error(world, caplog, good):
+    loaded = load(world, described("libgood.so", "<broken/>"), described("libgood.so"))
+    with caplog.at_level(logging.ERROR):
+        assert [made.update() for made in loaded] == [False, True]
+    assert "failed and is switched off: ZeroDivisionError: division by zero" in caplog.text
 
 
 def test_the_namespace_is_injected_where_there_is_none():

@@ -1,6 +1,7 @@
 """What spawn_model does after its command line: wait, load, spawn, set joints, unpause, delete."""
 
 import math
+import signal
 import sys
 import threading
 
@@ -79,6 +80,22 @@ def delete(name: str, gazebo: str) -> None:
         rospy.logerr(f"Delete model service call failed: {error}")
 
 
+def delete_when_told(name: str, gazebo: str) -> None:
+    """Stays until a signal or a shutdown by the master, then deletes the model.
+
+    The signal only leaves a mark: rospy's handler would call the service on top of whatever line
+    it interrupted, with that line's locks held.
+    """
+    told: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, _frame: told.append(received))
+    rospy.on_shutdown(lambda: delete(name, gazebo))
+    rospy.loginfo(f"Waiting for shutdown to delete model {name}")
+    while not told and not rospy.is_shutdown():
+        rospy.rostime.wallsleep(POLL_PERIOD)
+    rospy.signal_shutdown("told to end")
+
+
 def run(options, positions: list[float]) -> int:
     """The whole sequence in a started node; returns the exit code."""
     gazebo = options.gazebo_namespace
@@ -89,9 +106,7 @@ def run(options, positions: list[float]) -> int:
     if not spawn(options, positions) or (options.unpause and not unpause(gazebo)):
         return 1
     if options.b:
-        rospy.on_shutdown(lambda: delete(options.model, gazebo))
-        rospy.loginfo(f"Waiting for shutdown to delete model {options.model}")
-        rospy.spin()
+        delete_when_told(options.model, gazebo)
     return 0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bullet_sim.description import JointDescription, LinkDescription, ModelDescription
-from bullet_sim.errors import UnknownName
+from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.physics.assembly import WORLD, assemble
 from bullet_sim.physics.body import STILL, Body, Twist, gravity_compensation
 from bullet_sim.physics.client import PhysicsClient
@@ -83,7 +83,13 @@ class Model:
         self.description = description
         self.static = description.static
         self.initial_pose = pose
-        self.bodies = [Body(client, tree, pose) for tree in assemble(description)]
+        self.bodies: list[Body] = []
+        try:
+            for tree in assemble(description):
+                self.bodies.append(Body(client, tree, pose))
+        except Exception:
+            self.remove()  # what was made before the failure
+            raise
         self._set_pose = pose  # of a model without links
         self._states: dict[str, tuple[Pose, Twist]] | None = None
         owner = {link.described: body for body in self.bodies for link in body.tree.links}
@@ -140,7 +146,9 @@ class Model:
         self.forget()
 
     def set_twist(self, twist: Twist) -> None:
-        """Move as a rigid whole whose model frame has that twist."""
+        """Move as a rigid whole whose model frame has that twist; joints stop turning."""
+        for joint in self.joints.values():
+            joint.reset(joint.position)
         for body in self.bodies:
             if not body.tree.fixed:
                 body.set_twist(twist, self.pose.position)
@@ -172,6 +180,10 @@ class Model:
 
     def joint(self, name: str) -> Joint:
         """The joint of that name."""
+        held = [joint for joint in self.description.joints if joint.name == name]
+        if name not in self.joints and held:
+            raise SimulationError(f"joint {name!r} of model {self.name} is of type "
+                                  f"{held[0].type}, which is held fixed")
         if name not in self.joints:
             raise UnknownName(f"joint of model {self.name}", name, self.joints)
         return self.joints[name]

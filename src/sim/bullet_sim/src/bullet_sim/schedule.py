@@ -24,13 +24,15 @@ class Schedule:
 
     def restart(self, tick: int) -> None:
         """Count from here."""
-        self._origin = tick
+        self._origin = self._asked = tick
         self._count = 1
         self._next = tick + self._steps(1)
 
     def due(self, tick: int) -> bool:
         """Whether the moment has come; true once per period. A clock set back counts anew."""
-        if tick < self._origin:
+        set_back = tick < self._asked
+        self._asked = tick
+        if set_back:
             self.restart(tick)
             return True
         if tick < self._next:

@@ -101,8 +101,17 @@ class World:
         model = Model(name, description, pose * description.pose, self._client,
                       self.description.gravity)
         self.models[name] = model
+        try:
+            self._show(model)
+        except Exception:
+            self.delete(name)
+            raise
+        return model
+
+    def _show(self, model: Model) -> None:
+        """Put a model's visuals and lights into the scene, and note what lasers see of it."""
         for link in model.links.values():
-            self.scene.add_link((name, link.name), link.description.visuals, link.pose)
+            self.scene.add_link((model.name, link.name), link.description.visuals, link.pose)
             for light in link.description.lights:
                 scoped = f"{link.scoped_name}::{light.name}"
                 self.add_light(replace(light, name=scoped, pose=link.pose * light.pose))
@@ -110,7 +119,6 @@ class World:
             for index, link in enumerate(body.tree.links, start=-1):
                 if link.collisions and link.collisions[0].laser_retro:
                     self._retro[(body.number, index)] = link.collisions[0].laser_retro
-        return model
 
     def delete(self, name: str) -> None:
         """Take a model out."""

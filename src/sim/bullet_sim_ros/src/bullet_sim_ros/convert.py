@@ -22,6 +22,8 @@ from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
 
 UNKNOWN_VARIANCE = 1e12
+# m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
+LARGEST = 1e6
 
 
 def stamp(seconds: float) -> rospy.Time:
@@ -51,9 +53,9 @@ def twist_from_msg(msg: TwistMsg) -> Twist:
                  (msg.angular.x, msg.angular.y, msg.angular.z))
 
 
-def is_finite(*messages: PoseMsg | TwistMsg) -> bool:
-    """Whether every number of some Pose and Twist messages is finite."""
-    return all(math.isfinite(value) for message in messages for value in _numbers(message))
+def is_sane(*messages: PoseMsg | TwistMsg) -> bool:
+    """Whether every number of some Pose and Twist messages is finite and not beyond LARGEST."""
+    return all(abs(value) <= LARGEST for message in messages for value in _numbers(message))
 
 
 def _numbers(message) -> list[float]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotYet
 from typing import Any
+
+log = logging.getLogger("bullet_sim.mailbox")
 
 
 class Closed(Exception):
@@ -18,7 +21,8 @@ class Mailbox:
     """Calls wait here until the loop runs them between two steps."""
 
     def __init__(self):
-        self._calls: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
+        # Not SimpleQueue: interrupted by a slow signal handler, its timed get waits for ever.
+        self._calls: queue.Queue[tuple[Callable[[], Any], Future | None]] = queue.Queue()
         self._closed = threading.Event()
 
     def call(self, function: Callable[[], Any]) -> Any:
@@ -35,8 +39,8 @@ class Mailbox:
                     raise Closed("the simulator is shutting down") from None
 
     def leave(self, function: Callable[[], Any]) -> None:
-        """From any thread: have `function` run in the loop, without waiting."""
-        self._calls.put((function, Future()))
+        """From any thread: have `function` run in the loop, without waiting; errors are logged."""
+        self._calls.put((function, None))
 
     def run_pending(self, wait: float = 0.0) -> None:
         """From the loop: run what has come in; `wait` for a first one (s, wall)."""
@@ -53,8 +57,14 @@ class Mailbox:
         self._closed.set()
 
     @staticmethod
-    def _run(function: Callable[[], Any], future: Future) -> None:
+    def _run(function: Callable[[], Any], future: Future | None) -> None:
         try:
-            future.set_result(function())
+            result = function()
         except Exception as error:
-            future.set_exception(error)
+            if future is None:
+                log.error("%s: %s", type(error).__name__, error)
+            else:
+                future.set_exception(error)
+            return
+        if future is not None:
+            future.set_result(result)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 import time
 
@@ -30,8 +31,15 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=0, help="of everything random")
     parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
     parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
-    parser.add_argument("--initial-sim-time", type=float, default=0.0, help="s")
+    parser.add_argument("--initial-sim-time", type=_not_negative, default=0.0, help="s")
     return parser.parse_args(arguments)
+
+
+def _not_negative(text: str) -> float:
+    value = float(text)
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is no time: 0 or more seconds")
+    return value
 
 
 def open_world(options: argparse.Namespace, resources) -> World:
@@ -57,7 +65,8 @@ def main() -> int:
     options = parse(rospy.myargv(sys.argv)[1:])
     wait_for_master()
     # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
-    rospy.init_node("gazebo", disable_rostime=True)
+    # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
+    rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
     rospy.rostime.set_rostime_initialized(True)
     forward_core_log(options.verbose)
     resources = open_resources()
@@ -75,9 +84,12 @@ def main() -> int:
     else:
         rospy.loginfo("ROS gazebo topics/services are disabled")
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: simulation.stop())
     try:
         simulation.run(options.iters)
     finally:
+        rospy.signal_shutdown("the simulation has ended")
         simulation.close()
     return 0
 

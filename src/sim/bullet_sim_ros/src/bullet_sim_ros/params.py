@@ -44,5 +44,9 @@ def _number(name: str, default: float) -> float:
 
 def tf_prefix(namespace: str) -> str:
     """`tf_prefix` as found from a plugin's namespace upwards, else empty."""
-    found = rospy.search_param(names.join(namespace, "tf_prefix"))
-    return str(rospy.get_param(found)) if found else ""
+    parts = [part for part in names.join(namespace, "tf_prefix").split("/") if part][:-1]
+    for depth in range(len(parts), -1, -1):
+        name = "/" + "/".join([*parts[:depth], "tf_prefix"])
+        if rospy.has_param(name):
+            return str(rospy.get_param(name))
+    return ""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import rospy
 from rosgraph_msgs.msg import Clock
 
-from bullet_sim.description import ModelDescription, PluginDescription, SensorDescription
-from bullet_sim.model import Link, Model
+from bullet_sim.description import ModelDescription
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import Renderer, open_renderer
 from bullet_sim.schedule import Schedule
@@ -16,7 +16,8 @@ from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import load_plugins
-from bullet_sim_ros.plugins.registry import Host, Plugin
+from bullet_sim_ros.plugins.host import Shared
+from bullet_sim_ros.plugins.registry import Loaded
 from bullet_sim_ros.state_topics import StateTopics
 
 IDLE = 0.02  # s, wall: how long to wait for a call while paused
@@ -30,8 +31,10 @@ class Simulation:
         self.mailbox = Mailbox()
         self.pacer = Pacer()
         self.set_pace()
+        self._told_to_stop = False
         self._renderer: Renderer | None = None
-        self._plugins: dict[str, list[Plugin]] = {}
+        self._shared = Shared(world, self.mailbox, self._open_renderer)
+        self._plugins: dict[str, list[Loaded]] = {}
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
         self._clock_schedule = Schedule(parameters.pub_clock_frequency, world.timestep)
         self._states = StateTopics(self, parameters) if parameters.enable_ros_network else None
@@ -41,18 +44,23 @@ class Simulation:
     # --- the loop
 
     def run(self, iterations: int = 0) -> None:
-        """Step until ROS shuts down, or for so many steps."""
+        """Step until told to stop or ROS shuts down, or for so many steps."""
         self._publish_clock()
-        while not rospy.is_shutdown():
+        steps = 0
+        while not self._told_to_stop and not rospy.is_shutdown():
             self.mailbox.run_pending(IDLE if self.world.paused else 0.0)
             if self.world.paused:
                 self.pacer.restart()
                 continue
             self._step()
             self.pacer.wait(self.world.time)
-            if self.world.tick == iterations:
+            steps += 1
+            if steps == iterations:
                 break
-        self.mailbox.close()
+
+    def stop(self) -> None:
+        """From a signal handler: end the loop after this step."""
+        self._told_to_stop = True
 
     def _step(self) -> None:
         self.world.step()
@@ -60,9 +68,10 @@ class Simulation:
             self._publish_clock()
         if self._states:
             self._states.update()
-        for plugins in self._plugins.values():
+        for name, plugins in self._plugins.items():
             for plugin in plugins:
-                plugin.update()
+                if not plugin.update():
+                    self._plugins[name] = [other for other in plugins if other is not plugin]
 
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
@@ -93,24 +102,20 @@ class Simulation:
     def reset(self) -> None:
         """Time and models back to the start; plugins are told."""
         self.world.reset_simulation()
-        for plugins in self._plugins.values():
-            for plugin in plugins:
-                plugin.reset()
+        for name, plugins in self._plugins.items():
+            self._plugins[name] = [plugin for plugin in plugins if plugin.reset()]
+        self._publish_clock()
         self.pacer.restart()
 
     def close(self) -> None:
-        """Let go of renderer and engine."""
+        """Answer whoever still waits; let go of renderer and engine."""
+        self.mailbox.close()
         if self._renderer:
             self._renderer.close()
         self.world.close()
 
     def _load_plugins(self, model: Model) -> None:
-        self._plugins[model.name] = load_plugins(self._host, model)
-
-    def _host(self, model: Model, description: PluginDescription,
-              sensor: SensorDescription | None = None, link: Link | None = None) -> Host:
-        return Host(self.world, model, description, self._open_renderer, self.mailbox.leave,
-                    sensor, link)
+        self._plugins[model.name] = load_plugins(self._shared, model)
 
     def _open_renderer(self) -> Renderer:
         if self._renderer is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bullet_sim.errors import SimulationError
 from bullet_sim.model import Joint
 
 SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
@@ -23,6 +24,10 @@ class DiffDrive:
     """Turns (forward, yaw rate) into motor targets; call `update` at the drive's own rate."""
 
     def __init__(self, left: Joint, right: Joint, parameters: DiffDriveParameters):
+        if parameters.wheel_diameter <= 0 or parameters.wheel_separation <= 0:
+            raise SimulationError(
+                f"wheel diameter {parameters.wheel_diameter} and separation "
+                f"{parameters.wheel_separation} must both be more than 0 m")
         self._left, self._right = left, right
         self._parameters = parameters
         self.stop()

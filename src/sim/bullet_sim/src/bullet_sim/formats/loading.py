@@ -17,6 +17,10 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf import read_robot
 from bullet_sim.formats.xml_values import parse_xml, read_xml_file
 
+NOT_A_MODEL = (
+    "GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, or cannot be "
+    "converted to Gazebo compatible format."
+)
 SDF_ROOTS = ("sdf", "gazebo")
 PACKAGE_URI = re.compile(r"package://([^/\s\"'<>]+)")
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -24,23 +28,20 @@ COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
     """The model of a URDF or SDF text; `name` replaces the one in the text."""
-    root = parse_xml(text, "model")
+    root = _parse_model(text)
     if root.tag == "robot":
         root = parse_xml(_with_package_folders(text, resources), "model")
         if name:
             root.set("name", name)
     elif root.tag not in SDF_ROOTS:
-        raise FormatError(
-            "GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, or cannot be "
-            f"converted to Gazebo compatible format. (the root element is <{root.tag}>)"
-        )
+        raise FormatError(f"{NOT_A_MODEL} (the root element is <{root.tag}>)")
     model = _read_root(root, Source(resources))
     return replace(model, name=name) if name else model
 
 
 def load_light(text: str, resources: Resources, name: str | None = None) -> LightDescription | None:
     """The light of an SDF text whose root's first child is one; None for other texts."""
-    root = parse_xml(text, "model")
+    root = _parse_model(text)
     if root.tag not in SDF_ROOTS or len(root) == 0 or root[0].tag != "light":
         return None
     light = read_light(root[0])
@@ -61,6 +62,13 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
         return sdf_world.read_world(world, source, _read_model, _read_include)
     except FormatError as error:
         raise FormatError(f"{path}: {error}") from error
+
+
+def _parse_model(text: str) -> Element:
+    try:
+        return parse_xml(text, "the text")
+    except FormatError as error:
+        raise FormatError(f"{NOT_A_MODEL} ({error})") from None
 
 
 def _with_package_folders(text: str, resources: Resources) -> str:

@@ -9,13 +9,15 @@ from bullet_sim.description import JointDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.sdf_frames import MODEL, Frames, end_of
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import flag, number, vector
+from bullet_sim.formats.xml_values import amount, child_text, flag, number, numbers, vector
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
 
 TYPES = (
     "revolute", "revolute2", "prismatic", "ball", "universal", "screw", "gearbox", "fixed",
     "continuous",
 )
+LIMITS = ("lower", "upper", "effort", "velocity")
+UNLIMITED = JointDescription("", "", "", "")
 AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the joint frame
 
 
@@ -30,6 +32,8 @@ def read_joint(
         raise FormatError(f"{where}: unknown type {kind!r}; there are: {', '.join(TYPES)}")
     parent = _end(element, "parent", links | {"world"}, where)
     child = _end(element, "child", links | {"world"}, where)
+    if parent == child:
+        raise FormatError(f"{where}: parent and child are both {parent!r}; name two links")
     axis = element.find("axis") if element.find("axis") is not None else Element("axis")
     if element.find("axis2") is not None:
         source.warn_once(f"{where}: <axis2> is not supported, left out")
@@ -55,17 +59,23 @@ def _end(element: Element, role: str, known: set[str], where: str) -> str:
 
 
 def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
-    usual = JointDescription("", "", "", "")
-    fields = {
-        "lower": "limit/lower", "upper": "limit/upper",
-        "effort": "limit/effort", "velocity": "limit/velocity",
-        "damping": "dynamics/damping", "friction": "dynamics/friction",
-        "spring_reference": "dynamics/spring_reference",
-        "spring_stiffness": "dynamics/spring_stiffness",
+    limits = {
+        key: read_limit(text, key, f"{where} <limit/{key}>")
+        for key in LIMITS if (text := child_text(axis, f"limit/{key}"))
     }
-    return {
-        field: number(axis, path, getattr(usual, field), where) for field, path in fields.items()
+    return limits | {
+        "damping": amount(axis, "dynamics/damping", 0.0, where),
+        "friction": amount(axis, "dynamics/friction", 0.0, where),
+        "spring_reference": number(axis, "dynamics/spring_reference", 0.0, where),
+        "spring_stiffness": number(axis, "dynamics/spring_stiffness", 0.0, where),
     }
+
+
+def read_limit(text: str, key: str, where: str) -> float:
+    """One number of a joint's limits; infinity is allowed here and says that there is none."""
+    if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
+        return getattr(UNLIMITED, key)
+    return numbers(text, 1, where)[0]
 
 
 def _direction(

@@ -11,9 +11,10 @@ from bullet_sim.formats.sdf_light import read_light
 from bullet_sim.formats.sdf_sensor import read_sensor
 from bullet_sim.formats.sdf_shapes import read_collision, read_visual
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import flag, number, pose
+from bullet_sim.formats.xml_values import amount, flag, number, pose
 from bullet_sim.pose import IDENTITY, Pose
 
+WORLD = "world"
 PLACED_PARTS = ("visual", "collision", "sensor", "light", "inertial")
 TENSOR = (("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0))
 
@@ -25,6 +26,9 @@ def read_link(
     name = element.get("name", "")
     if not name:
         raise FormatError(f"{model}: a <link> has no name")
+    if name == WORLD:
+        raise FormatError(f"{model}: no link can be named 'world', joints have that name for what "
+                          "stands still; choose another")
     where = f"{model}, link {name!r}"
     _warn_of_frames(element, source, where)
     visuals = [read_visual(visual, source, where) for visual in element.findall("visual")]
@@ -40,8 +44,8 @@ def read_link(
         gravity=flag(element, "gravity", True),
         kinematic=flag(element, "kinematic", False),
         self_collide=flag(element, "self_collide", False),
-        linear_damping=number(element, "velocity_decay/linear", 0.0, where),
-        angular_damping=number(element, "velocity_decay/angular", 0.0, where),
+        linear_damping=amount(element, "velocity_decay/linear", 0.0, where),
+        angular_damping=amount(element, "velocity_decay/angular", 0.0, where),
     )
 
 
@@ -52,9 +56,12 @@ def read_inertial(element: Element, where: str) -> Inertial:
         return Inertial()
     where = f"{where} <inertial>"
     return Inertial(
-        mass=number(inertial, "mass", 1.0, where),
+        mass=amount(inertial, "mass", 1.0, where),
         pose=pose(inertial, where),
-        inertia=tuple(number(inertial, f"inertia/{key}", usual, where) for key, usual in TENSOR),
+        inertia=tuple(
+            (amount if usual else number)(inertial, f"inertia/{key}", usual, where)
+            for key, usual in TENSOR  # products of inertia may be negative
+        ),
     )
 
 

@@ -18,9 +18,19 @@ from bullet_sim.description import (
 from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats.sdf_material import read_material
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import child_text, flag, number, numbers, pose, vector
+from bullet_sim.formats.xml_values import (
+    amount,
+    child_text,
+    flag,
+    not_negative,
+    number,
+    numbers,
+    pose,
+    vector,
+)
 
 ONES = (1.0, 1.0, 1.0)
+UNLIMITED_FRICTION = 1e6
 
 
 def read_visual(element: Element, source: Source, link: str) -> Visual | None:
@@ -48,6 +58,10 @@ def read_collision(element: Element, source: Source, link: str) -> Collision | N
     shape = read_geometry(element.find("geometry"), source, where)
     if shape is None:
         return None
+    if _is_flat(shape):
+        source.warn_once(f"{where}: a length of 0 leaves the {type(shape).__name__.lower()} no "
+                         "volume to collide with, left out; make it larger than 0")
+        return None
     return Collision(
         name=name,
         geometry=shape,
@@ -55,6 +69,17 @@ def read_collision(element: Element, source: Source, link: str) -> Collision | N
         surface=read_surface(element.find("surface"), where),
         laser_retro=number(element, "laser_retro", 0.0, where),
     )
+
+
+def _is_flat(shape: Geometry) -> bool:
+    match shape:
+        case Box(lengths) | Mesh(scale=lengths):
+            return 0.0 in lengths
+        case Cylinder(radius, length):
+            return 0.0 in (radius, length)
+        case Sphere(radius):
+            return radius == 0.0
+    return False
 
 
 def _part(link: str, element: Element) -> str:
@@ -70,14 +95,14 @@ def read_surface(element: Element | None, where: str) -> Surface:
         return usual
     friction, contact = "friction/ode/", "contact/ode/"
     return Surface(
-        mu=number(element, friction + "mu", usual.mu, where),
-        mu2=number(element, friction + "mu2", usual.mu2, where),
+        mu=_friction(number(element, friction + "mu", usual.mu, where)),
+        mu2=_friction(number(element, friction + "mu2", usual.mu2, where)),
         fdir1=vector(element, friction + "fdir1", usual.fdir1, where),
         kp=number(element, contact + "kp", usual.kp, where),
         kd=number(element, contact + "kd", usual.kd, where),
         min_depth=number(element, contact + "min_depth", usual.min_depth, where),
         max_vel=number(element, contact + "max_vel", usual.max_vel, where),
-        restitution=number(element, "bounce/restitution_coefficient", usual.restitution, where),
+        restitution=amount(element, "bounce/restitution_coefficient", usual.restitution, where),
     )
 
 
@@ -96,23 +121,24 @@ def read_geometry(element: Element | None, source: Source, where: str) -> Geomet
 
 
 def _box(element: Element, source: Source, where: str) -> Box:
-    return Box(vector(element, "size", ONES, f"{where} <box>"))
+    where = f"{where} <box>"
+    return Box(not_negative(vector(element, "size", ONES, where), f"{where} <size>"))
 
 
 def _cylinder(element: Element, source: Source, where: str) -> Cylinder:
     where = f"{where} <cylinder>"
-    return Cylinder(number(element, "radius", 1.0, where), number(element, "length", 1.0, where))
+    return Cylinder(amount(element, "radius", 1.0, where), amount(element, "length", 1.0, where))
 
 
 def _sphere(element: Element, source: Source, where: str) -> Sphere:
-    return Sphere(number(element, "radius", 1.0, f"{where} <sphere>"))
+    return Sphere(amount(element, "radius", 1.0, f"{where} <sphere>"))
 
 
 def _plane(element: Element, source: Source, where: str) -> Plane:
     where = f"{where} <plane>"
-    size = child_text(element, "size", "1 1")
+    size = numbers(child_text(element, "size", "1 1"), 2, f"{where} <size>")
     return Plane(
-        vector(element, "normal", (0.0, 0.0, 1.0), where), numbers(size, 2, f"{where} <size>")
+        vector(element, "normal", (0.0, 0.0, 1.0), where), not_negative(size, f"{where} <size>")
     )
 
 
@@ -134,3 +160,8 @@ def _mesh(element: Element, source: Source, where: str) -> Mesh | None:
 
 
 READERS = {"box": _box, "cylinder": _cylinder, "sphere": _sphere, "plane": _plane, "mesh": _mesh}
+
+
+def _friction(coefficient: float) -> float:
+    """Below zero means without limit, as ODE has it."""
+    return coefficient if coefficient >= 0 else UNLIMITED_FRICTION

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement
 
-from bullet_sim.formats.xml_values import numbers
+from bullet_sim.formats.xml_values import not_negative, numbers
 
 SURFACE_PATHS = {
     "mu1": "surface/friction/ode/mu",
@@ -88,7 +88,8 @@ def _extend_part(part: Element, tag: Element, link: str) -> None:
         _set_material(part, tag)
     elif tag.tag in SURFACE_PATHS:
         count = 3 if tag.tag == "fdir1" else 1
-        numbers(value_of(tag), count, f"<gazebo reference={link!r}> <{tag.tag}>")
+        where = f"<gazebo reference={link!r}> <{tag.tag}>"
+        numbers(value_of(tag), count, where)
         put(part, SURFACE_PATHS[tag.tag], value_of(tag))
     else:
         for child in tag:
@@ -109,6 +110,8 @@ def _extend_link_itself(link: Element, tag: Element) -> None:
     elif tag.tag == "turnGravityOff":
         put(link, "gravity", str(value.lower() in FALSE_WORDS).lower())
     elif tag.tag == "dampingFactor":
+        where = f"<gazebo reference={link.get('name')!r}> <dampingFactor>"
+        not_negative(numbers(value, 1, where), where)
         put(link, "velocity_decay/linear", value)
         put(link, "velocity_decay/angular", value)
     else:

@@ -8,9 +8,10 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import JointDescription
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.sdf_joint import read_limit
 from bullet_sim.formats.urdf_extensions import Extensions, value_of
 from bullet_sim.formats.urdf_tree import UrdfJoint
-from bullet_sim.formats.xml_values import numbers
+from bullet_sim.formats.xml_values import not_negative, numbers
 from bullet_sim.pose import Vector3
 
 logger = logging.getLogger(__name__)
@@ -72,11 +73,11 @@ def _limits(joint: UrdfJoint, where: str) -> dict[str, float]:
     for key in ("effort", "velocity"):
         if limit.get(key) is None:
             raise FormatError(f"{where} <limit {key}> is missing")
-        result[key] = numbers(limit.get(key, ""), 1, f"{where} <limit {key}>")[0]
+        result[key] = read_limit(limit.get(key, ""), key, f"{where} <limit {key}>")
     if joint.type == "continuous":
         return result
     lower, upper = (
-        numbers(limit.get(key, "0"), 1, f"{where} <limit {key}>")[0] for key in ("lower", "upper")
+        read_limit(limit.get(key, "0"), key, f"{where} <limit {key}>") for key in ("lower", "upper")
     )
     if lower > upper:
         logger.warning("%s: lower limit %g is above upper limit %g; switching the two",
@@ -89,10 +90,11 @@ def _dynamics(element: Element, where: str) -> dict[str, float]:
     dynamics = element.find("dynamics")
     if dynamics is None:
         return {}
-    return {
-        key: numbers(dynamics.get(key, "0"), 1, f"{where} <dynamics {key}>")[0]
-        for key in ("damping", "friction")
-    }
+    result = {}
+    for key in ("damping", "friction"):
+        place = f"{where} <dynamics {key}>"
+        result[key] = not_negative(numbers(dynamics.get(key, "0"), 1, place), place)[0]
+    return result
 
 
 def _springs(name: str, extensions: Extensions) -> dict[str, float]:

@@ -7,10 +7,12 @@ from xml.etree.ElementTree import Element, SubElement
 from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.urdf_tree import read_origin
-from bullet_sim.formats.xml_values import numbers, vector_text
+from bullet_sim.formats.xml_values import not_negative, numbers, vector_text
 
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ()}
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+DIAGONAL = ("ixx", "iyy", "izz")  # the products of inertia may be negative
 
 
 def link_as_sdf(link: Element) -> Element:
@@ -32,6 +34,10 @@ def read_urdf_inertial(link: Element) -> Inertial | None:
     mass = _attribute(element.find("mass"), "value", f"{where} <mass value>")
     tensor = element.find("inertia")
     values = tuple(_attribute(tensor, key, f"{where} <inertia {key}>") for key in TENSOR)
+    not_negative([mass], f"{where} <mass value>")
+    for key, value in zip(TENSOR, values, strict=True):
+        if key in DIAGONAL:
+            not_negative([value], f"{where} <inertia {key}>")
     if mass == 0.0:
         return None
     return Inertial(mass=mass, pose=read_origin(element, where), inertia=values)
@@ -66,7 +72,8 @@ def _geometry_as_sdf(geometry: Element | None, where: str) -> Element:
         text = shape.get(key)
         if text is None:
             raise FormatError(f"{where} {key}> is missing")
-        numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
+        values = numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
+        not_negative(values, f"{where} {key}>")
         SubElement(target, key).text = text
     if shape.tag == "mesh":
         _mesh_as_sdf(shape, target, where)

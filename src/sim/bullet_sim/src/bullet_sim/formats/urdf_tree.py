@@ -93,6 +93,9 @@ def _read_joint(element: Element, links: dict[str, Element]) -> UrdfJoint:
     if kind not in JOINT_TYPES:
         raise FormatError(f"{where}: unknown type {kind!r}; there are: {', '.join(JOINT_TYPES)}")
     parent, child = (_end(element, role, links, where) for role in ("parent", "child"))
+    if child == WORLD:
+        raise FormatError(f"{where}: link 'world' cannot be the child; write "
+                          f'<parent link="world"/><child link="{parent}"/>')
     return UrdfJoint(name, kind, parent, child, read_origin(element, where), element)
 
 

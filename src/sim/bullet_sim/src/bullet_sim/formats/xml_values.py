@@ -40,7 +40,7 @@ def read_xml_file(path: Path) -> Element:
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
-    """`count` numbers parted by any white space."""
+    """`count` finite numbers parted by any white space."""
     words = text.split()
     try:
         values = tuple(float(word) for word in words)
@@ -49,6 +49,16 @@ def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
     if len(values) != count or any(math.isnan(value) for value in values):
         wanted = "a number" if count == 1 else f"{count} numbers"
         raise FormatError(f"{where}: {text.strip()!r} is not {wanted}")
+    if any(math.isinf(value) for value in values):
+        raise FormatError(f"{where}: {text.strip()!r} is not finite")
+    return values
+
+
+def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
+    """The same numbers, or an error that names the first below zero."""
+    for value in values:
+        if value < 0.0:
+            raise FormatError(f"{where}: {value:g} is negative")
     return values
 
 
@@ -61,6 +71,11 @@ def number(parent: Element, path: str, default: float, where: str) -> float:
     """One number at `path`."""
     text = child_text(parent, path)
     return numbers(text, 1, f"{where} <{path}>")[0] if text else default
+
+
+def amount(parent: Element, path: str, default: float, where: str) -> float:
+    """One number at `path` that is not below zero."""
+    return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 
 def integer(parent: Element, path: str, default: int, where: str) -> int:

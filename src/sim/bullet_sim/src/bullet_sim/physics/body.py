@@ -55,7 +55,8 @@ class Body:
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; Gazebo does so only where <velocity_decay> asks for it.
         for link in self.tree.links:
-            values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
+            values = {"linearDamping": link.linear_damping,
+                      "angularDamping": link.angular_damping, "jointDamping": 0.0}
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping
             if link.collisions:

@@ -11,8 +11,6 @@ from bullet_sim.meshes import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.pose import Pose
 
-ENGINE_JOINTS = {"revolute": "revolute", "continuous": "continuous", "prismatic": "prismatic",
-                 "ball": "spherical"}
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 
 
@@ -86,7 +84,7 @@ def _geometry(geometry: Geometry, mesh_path: Callable[[Mesh], str]) -> str:
 
 def _joint(link: PhysicsLink) -> str:
     joint = link.joint
-    kind = "fixed" if joint is None else ENGINE_JOINTS.get(joint.type, "fixed")
+    kind = "fixed" if joint is None else joint.type
     if kind == "revolute" and joint.lower <= -NO_LIMIT and joint.upper >= NO_LIMIT:
         kind = "continuous"
     name = f"{link.name}__weld" if joint is None else joint.name

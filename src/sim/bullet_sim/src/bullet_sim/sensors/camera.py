@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +36,18 @@ class Camera:
         self._link = link
         self._sensor = sensor
         self._renderer = renderer
-        self._random = world.random(f"{link.scoped_name}::{sensor.name}::{number}")
+        self._random_name = f"{link.scoped_name}::{sensor.name}::{number}"
+        if min(self.description.width, self.description.height) < 1:
+            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: an image of "
+                              f"{self.description.width}x{self.description.height} px")
+        if not 0 < self.description.horizontal_fov < math.pi:
+            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: <horizontal_fov> is "
+                              f"{self.description.horizontal_fov}, which is not between 0 and pi")
+        self.restart()
+
+    def restart(self) -> None:
+        """Draw the noise from the start."""
+        self._random = self._world.random(self._random_name)
 
     def view(self) -> CameraView:
         """The pinhole as it stands now."""

@@ -38,7 +38,11 @@ class Laser:
         count = max(1, round(self.ray.samples * self.ray.resolution))
         angles = np.linspace(self.ray.min_angle, self.ray.max_angle, count)
         self._beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(count)], axis=1)
-        self._random = world.random(f"{link.scoped_name}::{description.name}")
+        self.restart()
+
+    def restart(self) -> None:
+        """Draw the noise from the start."""
+        self._random = self._world.random(f"{self._link.scoped_name}::{self._description.name}")
 
     def sample(self) -> LaserReading:
         """Cast all beams from where the sensor is now."""

@@ -3,9 +3,9 @@
 import importlib
 import pkgutil
 
-from bullet_sim_ros.plugins.registry import PluginError, load_plugins, plugin
+from bullet_sim_ros.plugins.registry import load_plugins, plugin
 
 for _module in pkgutil.iter_modules(__path__):
     importlib.import_module(f"{__name__}.{_module.name}")
 
-__all__ = ["PluginError", "load_plugins", "plugin"]
+__all__ = ["load_plugins", "plugin"]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import logging
 
-import rospy
 from sensor_msgs.msg import CameraInfo, Image
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.camera import Camera, CameraReading
 from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.parameters import PluginParameters
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -30,7 +30,8 @@ class CameraSettings:
         self.frame = names.frame(params.tf_prefix(self.namespace), p.text("frameName"))
         self.image_topic = names.join(self.namespace, p.text("imageTopicName", "image_raw"))
         self.info_topic = names.join(self.namespace, p.text("cameraInfoTopicName", "camera_info"))
-        self.rate_hz = host.sensor.update_rate or p.number("updateRate", 0.0) or DEFAULT_RATE
+        self.sensor_rate_hz = host.sensor.update_rate
+        self.plugin_rate_hz = p.number("updateRate", 0.0)
         self.encoding = convert.ENCODINGS.get(description.format)
         if self.encoding is None:
             log.error("model %s: sensor %s: image format %s is not supported; there are %s; rgb8 "
@@ -61,12 +62,14 @@ class CameraPlugin:
 
     def __init__(self, host: Host):
         self._world = host.world
-        self._camera = Camera(host.world, host.link, host.sensor, host.renderer())
+        self._camera = Camera(host.world, host.link, host.sensor, host.shared.renderer())
         self._settings = CameraSettings(host, self._camera.description)
-        self._schedule = Schedule(self._settings.rate_hz, host.world.timestep)
+        settings = self._settings
+        rates = [rate for rate in (settings.sensor_rate_hz, settings.plugin_rate_hz) if rate > 0]
+        self._schedule = Schedule(min(rates, default=DEFAULT_RATE), host.world.timestep)
         self._schedule.restart(host.world.tick)
-        self._images = rospy.Publisher(self._settings.image_topic, Image, queue_size=2, latch=True)
-        self._infos = rospy.Publisher(self._settings.info_topic, CameraInfo, queue_size=2)
+        self._images = host.advertise(settings.image_topic, Image, queue_size=2, latch=True)
+        self._infos = host.advertise(settings.info_topic, CameraInfo, queue_size=2)
 
     def update(self) -> None:
         """Take a picture when due and asked for."""
@@ -80,10 +83,6 @@ class CameraPlugin:
             self._infos.publish(self._settings.info(self._world.time))
 
     def reset(self) -> None:
-        """Count the rate from here."""
+        """Count the rate and draw the noise from the start."""
+        self._camera.restart()
         self._schedule.restart(self._world.tick)
-
-    def close(self) -> None:
-        """End the topics."""
-        self._images.unregister()
-        self._infos.unregister()

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 
-import rospy
-import tf2_ros
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -16,7 +15,8 @@ from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -62,21 +62,20 @@ class DiffDrivePlugin:
         return text
 
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
-        self._odometry = rospy.Publisher(names.join(namespace, odometry), Odometry, queue_size=1)
-        self._states = rospy.Publisher(
+        host = self._host
+        self._odometry = host.advertise(names.join(namespace, odometry), Odometry, queue_size=1)
+        self._states = host.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if joints else None
-        self._tf = tf2_ros.TransformBroadcaster()
-        self._command = rospy.Subscriber(names.join(namespace, command), Twist, self._on_command,
-                                         queue_size=1, tcp_nodelay=True)
+        host.subscribe(names.join(namespace, command), Twist, self._take_command, queue_size=1,
+                       tcp_nodelay=True)
 
-    def _on_command(self, msg: Twist) -> None:
-        if not convert.is_finite(msg):
-            log.warning("%s: a command with a number that is not finite is ignored",
-                        self._command.resolved_name)
-            return
-        forward, yaw_rate = msg.linear.x, msg.angular.z
-        self._host.leave(lambda: self._drive.command(forward, yaw_rate))
+    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
+        if not convert.is_sane(msg):
+            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
+                        self._host.describe(), convert.LARGEST)
+            return None
+        return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 
     def update(self) -> None:
         """Publish and drive when due; wheels are counted every step."""
@@ -110,7 +109,7 @@ class DiffDrivePlugin:
         if self._publish_wheel_tf:
             transforms += [self._wheel_transform(joint, reading.time) for joint in self._joints]
         if transforms:
-            self._tf.sendTransform(transforms)
+            self._host.shared.send_transforms(transforms)
 
     def _wheel_transform(self, joint: Joint, time: float):
         links = self._host.model.links
@@ -125,10 +124,3 @@ class DiffDrivePlugin:
         self._wheel_odometry.restart(self._host.world.time)
         self._schedule.restart(self._host.world.tick)
         self._updated = self._host.world.time
-
-    def close(self) -> None:
-        """End the topics."""
-        self._command.unregister()
-        self._odometry.unregister()
-        if self._states:
-            self._states.unregister()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 
-import rospy
 from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
@@ -12,7 +11,9 @@ from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.imu import Imu, ImuReading
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.parameters import PluginError
+from bullet_sim_ros.plugins.registry import plugin
 
 
 @plugin("libgazebo_ros_imu.so")
@@ -28,13 +29,16 @@ class ImuPlugin:
         self._frame = names.frame("", p.text("frameName", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
         self._noise = p.number("gaussianNoise", 0.0)
-        self._random = host.world.random(f"{link.scoped_name}::{host.description.name}")
+        if self._noise < 0:
+            raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
+        self._random_name = f"{link.scoped_name}::{host.description.name}"
+        self._random = host.world.random(self._random_name)
         self._schedule = Schedule(p.number("updateRate", 0.0), host.world.timestep)
         self._schedule.restart(host.world.tick)
         topic = names.join(namespace, p.text("topicName", "/default_imu"))
         service = names.join(namespace, p.text("serviceName", "/default_imu"))
-        self._readings = rospy.Publisher(topic, ImuMsg, queue_size=1)
-        self._service = rospy.Service(service, Empty, lambda _request: EmptyResponse())
+        self._readings = host.advertise(topic, ImuMsg, queue_size=1)
+        host.serve(service, Empty, lambda _request: EmptyResponse())
 
     def update(self) -> None:
         """Measure when due and asked for."""
@@ -58,11 +62,7 @@ class ImuPlugin:
         return tuple(vector + self._random.normal(0.0, self._noise, 3))
 
     def reset(self) -> None:
-        """Forget the last velocity."""
+        """Forget the last velocity and draw the noise from the start."""
         self._imu.restart()
+        self._random = self._world.random(self._random_name)
         self._schedule.restart(self._world.tick)
-
-    def close(self) -> None:
-        """End topic and service."""
-        self._readings.unregister()
-        self._service.shutdown("the model was deleted")

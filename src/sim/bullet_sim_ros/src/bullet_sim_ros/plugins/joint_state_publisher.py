@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import logging
 
-import rospy
 from sensor_msgs.msg import JointState
 
 from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -31,8 +31,8 @@ class JointStatePublisherPlugin:
                           host.model.name, name, ", ".join(host.model.joints))
         self._schedule = Schedule(p.number("updateRate", 100.0), host.world.timestep)
         self._schedule.restart(host.world.tick)
-        self._states = rospy.Publisher(names.join(namespace, "joint_states"), JointState,
-                                       queue_size=1000)
+        self._states = host.advertise(names.join(namespace, "joint_states"), JointState,
+                                      queue_size=1000)
 
     def update(self) -> None:
         """Publish when due."""
@@ -42,7 +42,3 @@ class JointStatePublisherPlugin:
     def reset(self) -> None:
         """Count the rate from here."""
         self._schedule.restart(self._world.tick)
-
-    def close(self) -> None:
-        """End the topic."""
-        self._states.unregister()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import rospy
 from sensor_msgs.msg import LaserScan
 
 from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
 
 
 @plugin("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
@@ -18,13 +18,13 @@ class LaserPlugin:
     def __init__(self, host: Host):
         p = host.parameters
         self._world = host.world
+        self._laser = Laser(host.world, host.link, host.sensor)
         namespace = p.namespace(missing="/", empty=host.model.name)
         self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
-        self._laser = Laser(host.world, host.link, host.sensor)
         self._schedule = Schedule(host.sensor.update_rate, host.world.timestep)
         self._schedule.restart(host.world.tick)
         topic = names.join(namespace, p.text("topicName", "/world"))
-        self._scans = rospy.Publisher(topic, LaserScan, queue_size=1)
+        self._scans = host.advertise(topic, LaserScan, queue_size=1)
 
     def update(self) -> None:
         """Sweep when due."""
@@ -32,9 +32,6 @@ class LaserPlugin:
             self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))
 
     def reset(self) -> None:
-        """Count the rate from here."""
+        """Count the rate and draw the noise from the start."""
+        self._laser.restart()
         self._schedule.restart(self._world.tick)
-
-    def close(self) -> None:
-        """End the topic."""
-        self._scans.unregister()

@@ -11,8 +11,9 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.camera import Camera, CameraReading
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.camera import CameraSettings
-from bullet_sim_ros.plugins.registry import Host, plugin
+from bullet_sim_ros.plugins.camera import DEFAULT_RATE, CameraSettings
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
 
 
 @plugin("libgazebo_ros_openni_kinect.so")
@@ -22,20 +23,21 @@ class OpenniKinectPlugin:
     def __init__(self, host: Host):
         p = host.parameters
         self._world = host.world
-        self._camera = Camera(host.world, host.link, host.sensor, host.renderer())
+        self._camera = Camera(host.world, host.link, host.sensor, host.shared.renderer())
         self._settings = settings = CameraSettings(host, self._camera.description)
         self._near = p.number("pointCloudCutoff", 0.4)
         self._far = p.number("pointCloudCutoffMax", 5.0)
         self._millimetres = p.flag("useDepth16UC1Format", False)
-        self._schedule = Schedule(settings.rate_hz, host.world.timestep)
+        rate_hz = settings.sensor_rate_hz or settings.plugin_rate_hz or DEFAULT_RATE
+        self._schedule = Schedule(rate_hz, host.world.timestep)
         self._schedule.restart(host.world.tick)
 
         def advertise(tag: str, default: str, kind: type) -> rospy.Publisher:
             topic = names.join(settings.namespace, p.text(tag, default))
-            return rospy.Publisher(topic, kind, queue_size=1)
+            return host.advertise(topic, kind, queue_size=1)
 
-        self._images = rospy.Publisher(settings.image_topic, Image, queue_size=2, latch=True)
-        self._infos = rospy.Publisher(settings.info_topic, CameraInfo, queue_size=2)
+        self._images = host.advertise(settings.image_topic, Image, queue_size=2, latch=True)
+        self._infos = host.advertise(settings.info_topic, CameraInfo, queue_size=2)
         self._depths = advertise("depthImageTopicName", "depth/image_raw", Image)
         self._depth_infos = advertise("depthImageCameraInfoTopicName", "depth/camera_info",
                                       CameraInfo)
@@ -74,10 +76,6 @@ class OpenniKinectPlugin:
                 convert.points_to_msg(metres, reading.rgb, focal_px, reading.time, frame))
 
     def reset(self) -> None:
-        """Count the rate from here."""
+        """Count the rate and draw the noise from the start."""
+        self._camera.restart()
         self._schedule.restart(self._world.tick)
-
-    def close(self) -> None:
-        """End the topics."""
-        for publisher in (self._images, self._infos, self._depths, self._depth_infos, self._points):
-            publisher.unregister()

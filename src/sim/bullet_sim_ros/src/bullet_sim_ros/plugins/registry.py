@@ -5,16 +5,13 @@ from __future__ import annotations
 import difflib
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Protocol
 
-from bullet_sim.description import PluginDescription, SensorDescription
 from bullet_sim.errors import SimulationError
-from bullet_sim.model import Link, Model
-from bullet_sim.rendering.renderer import Renderer
-from bullet_sim.world import World
-from bullet_sim_ros.plugins.parameters import PluginError, PluginParameters
+from bullet_sim.model import Model
+from bullet_sim_ros.plugins.host import Host, Shared
+from bullet_sim_ros.plugins.parameters import PluginError
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -28,30 +25,38 @@ class Plugin(Protocol):
     def reset(self) -> None:
         """After reset_simulation."""
 
+
+class Loaded:
+    """A plugin at work, together with what it has opened."""
+
+    def __init__(self, host: Host, plugin: Plugin):
+        self._host = host
+        self._plugin = plugin
+
+    def update(self) -> bool:
+        """Whether the plugin goes on: one that fails is closed with one error line."""
+        return self._run(self._plugin.update)
+
+    def reset(self) -> bool:
+        """As `update`."""
+        return self._run(self._plugin.reset)
+
     def close(self) -> None:
-        """The model goes away: end publishers and subscribers."""
+        """The model goes away."""
+        self._host.close()
 
-
-@dataclass(frozen=True)
-class Host:
-    """What a plugin may use; `sensor` and `link` are set for sensor plugins only."""
-
-    world: World
-    model: Model
-    description: PluginDescription
-    renderer: Callable[[], Renderer]  # opened by the first camera
-    leave: Callable[[Callable[[], None]], None]  # hands a call to the loop from a ROS thread
-    sensor: SensorDescription | None = None
-    link: Link | None = None
-
-    @property
-    def parameters(self) -> PluginParameters:
-        """The plugin's tags."""
-        return PluginParameters(self.model.name, self.description)
+    def _run(self, method: Callable[[], None]) -> bool:
+        try:
+            method()
+        except Exception as error:  # a plugin's fault must not take the simulation with it
+            log.error("%s failed and is switched off: %s", self._host.describe(), told(error))
+            self._host.close()
+            return False
+        return True
 
 
 _registry: dict[str, Callable[[Host], Plugin]] = {}
-# Tags that make sense only inside Gazebo's own process; silence is right for these.
+# Libraries that only make sense inside Gazebo's own process: nothing is missing without them.
 _NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 
 
@@ -64,30 +69,36 @@ def plugin(*filenames: str) -> Callable[[type], type]:
     return register
 
 
-def load_plugins(host_for: Callable[..., Host], model: Model) -> list[Plugin]:
+def load_plugins(shared: Shared, model: Model) -> list[Loaded]:
     """All plugins of a model and its sensors; one that fails is an error line, the rest goes on."""
-    hosts = [host_for(model, description) for description in model.description.plugins]
+    hosts = [Host(shared, model, description) for description in model.description.plugins]
     for link in model.links.values():
         for sensor in link.description.sensors:
-            hosts += [host_for(model, made, sensor, link) for made in sensor.plugins]
+            hosts += [Host(shared, model, made, sensor, link) for made in sensor.plugins]
     loaded = [_load(host) for host in hosts]
     return [made for made in loaded if made is not None]
 
 
-def _load(host: Host) -> Plugin | None:
+def told(error: Exception) -> str:
+    """One line for the terminal; the kind of error where it is none of ours."""
+    text = " ".join(str(error).split())
+    known = isinstance(error, (PluginError, SimulationError))
+    return text if known else f"{type(error).__name__}: {text}"
+
+
+def _load(host: Host) -> Loaded | None:
     filename = PurePosixPath(host.description.filename).name
     if filename in _NOT_NEEDED:
         return None
     made = _registry.get(filename)
-    where = f"model {host.model.name}: plugin {host.description.name or '(no name)'} ({filename})"
     if made is None:
         close = difflib.get_close_matches(filename, _registry, 1, cutoff=0.85)
         hint = f"; did you mean {close[0]}?" if close else ""
-        part = f"sensor {host.sensor.name} publishes nothing" if host.sensor else "it has no effect"
-        log.warning("%s is not known here, %s%s", where, part, hint)
+        log.warning("%s is not known here and has no effect%s", host.describe(), hint)
         return None
     try:
-        return made(host)
-    except (PluginError, SimulationError) as error:
-        log.error("%s is not loaded: %s", where, error)
+        return Loaded(host, made(host))
+    except Exception as error:
+        log.error("%s is not loaded: %s", host.describe(), told(error))
+        host.close()
         return None

@@ -9,6 +9,7 @@ import rospy
 
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros.mailbox import Closed, Mailbox
+from bullet_sim_ros.plugins.registry import told
 
 
 class CallFails(Exception):
@@ -23,14 +24,15 @@ def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any],
         response = made()
         try:
             mailbox.call(lambda: handler(request, response))
-        except SimulationError as error:
-            if "success" not in response.__slots__:
-                raise rospy.ServiceException(str(error)) from None
-            response.success = False
-            response.status_message = str(error)
-            rospy.logerr("%s", error)
         except (CallFails, Closed) as error:
             raise rospy.ServiceException(str(error)) from None
+        except Exception as error:  # whatever a request does, the caller gets one line
+            message = told(error)
+            if "success" not in response.__slots__:
+                raise rospy.ServiceException(message) from None
+            response.success = False
+            response.status_message = message
+            rospy.logerr("%s", message)
         return response
 
     rospy.Service(name, kind, answer)

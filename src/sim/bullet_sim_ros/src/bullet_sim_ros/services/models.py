@@ -10,11 +10,14 @@ from xml.etree.ElementTree import SubElement
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 
 from bullet_sim.description import ModelDescription, PluginDescription
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.errors import FormatError
+from bullet_sim.formats import Resources, load_light, load_model
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer
 from bullet_sim_ros.services.states import spawn_pose
 
+SPAWNED = "SpawnModel: Successfully spawned entity"
+UNKNOWN_PACKAGE = "urdf reference package name does not exist"
 URDF_ROOT = re.compile(r"<robot[\s>/]")
 
 
@@ -24,18 +27,28 @@ def offer_model_services(simulation, resources: Resources) -> None:
     def spawn(request, response):
         name = request.model_name
         pose = spawn_pose(simulation.world, request)
-        if name in simulation.world.models:
-            raise ServiceError("SpawnModel: Failure - entity already exists.")
+        light = load_light(request.model_xml, resources, name or None)
+        if light is not None:
+            simulation.world.add_light(light)
+            done(response, SPAWNED)
+            return
         description = load_model(request.model_xml, resources, name or None)
+        if description.name in simulation.world.models:
+            raise ServiceError("SpawnModel: Failure - entity already exists.")
         if request.robot_namespace:
             description = with_namespace(description, request.robot_namespace)
         simulation.spawn(description, pose, description.name)
-        done(response, "SpawnModel: Successfully spawned entity")
+        done(response, SPAWNED)
 
     def spawn_urdf(request, response):
         if not URDF_ROOT.search(request.model_xml):
             raise CallFails("SpawnModel: Failure - entity format is invalid.")
-        spawn(request, response)
+        try:
+            spawn(request, response)
+        except FormatError as error:
+            if UNKNOWN_PACKAGE in str(error):
+                raise CallFails(str(error)) from None
+            raise
 
     def delete(request, response):
         if request.model_name not in simulation.world.models:

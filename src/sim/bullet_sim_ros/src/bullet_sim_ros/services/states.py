@@ -61,8 +61,9 @@ def set_model_state(world: World, state: ModelState) -> None:
     """Move a model and set its velocity; both are in the axes of the reference entity."""
     if state.model_name not in world.models:
         raise ServiceError("SetModelState: model does not exist")
-    if not convert.is_finite(state.pose, state.twist):
-        raise ServiceError("SetModelState: pose and twist must be finite numbers")
+    if not convert.is_sane(state.pose, state.twist):
+        raise ServiceError(
+            f"SetModelState: pose and twist must be finite and not beyond {convert.LARGEST:g}")
     model = world.models[state.model_name]
     try:
         frame, _ = world.frame(state.reference_frame)
@@ -94,8 +95,9 @@ def _minus(a, b):
 
 def spawn_pose(world: World, request) -> Pose:
     """The wanted pose of a spawn request, in the world."""
-    if not convert.is_finite(request.initial_pose):
-        raise ServiceError("SpawnModel: initial_pose must be finite numbers")
+    if not convert.is_sane(request.initial_pose):
+        raise ServiceError(
+            f"SpawnModel: initial_pose must be finite and not beyond {convert.LARGEST:g}")
     try:
         frame, _ = world.frame(request.reference_frame)
     except UnknownName:

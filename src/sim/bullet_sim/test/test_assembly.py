@@ -1,0 +1,110 @@
+"""Joints that are no plain tree, or not supported: what the engine gets, and what is said."""
+
+import logging
+import math
+
+import pytest
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.formats import Resources, load_model
+from bullet_sim.physics.assembly import assemble
+from bullet_sim.world import World
+
+GRAVITY = 9.8
+ROD = """<inertial><mass>1</mass><inertia><ixx>0.08333333</ixx><iyy>0.08333333</iyy>
+    <izz>0.0001</izz></inertia></inertial>"""
+
+
+def read(body: str):
+    text = f'<sdf version="1.6"><model name="m">{body}</model></sdf>'
+    return load_model(text, Resources())
+
+
+def links(names: str) -> str:
+    return "".join(f'<link name="{name}">{ROD}</link>' for name in names)
+
+
+def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:
+    return (f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>'
+            f"{more}</joint>")
+
+
+@pytest.fixture
+def world():
+    made = World()
+    yield made
+    made.close()
+
+
+def carried(tree) -> dict[str, str | None]:
+    return {link.name: link.parent for link in tree.links}
+
+
+def test_a_joint_whose_child_is_the_world_is_turned_round(world):
+    """The pendulum's rod, held at its upper end by a joint that is written the other way."""
+    pivot = "<pose>0 0 2.5 0 0 0</pose><axis><xyz>0 1 0</xyz></axis>"  # in the child, the world
+    model = world.spawn(read(f'<link name="arm"><pose>0 0 2 0 0 0</pose>{ROD}</link>'
+                             + joint("hinge", "arm", "world", more=pivot)))
+    model.joint("hinge").reset(math.pi / 2)
+    # The world turned by a quarter about the arm's y: the arm by minus a quarter about the world's.
+    assert model.links["arm"].pose.position == pytest.approx((0.5, 0.0, 2.5), abs=1e-6)
+    for _ in range(10):
+        world.step()
+    # A rod of length L let go level turns with 3 g / (2 L).
+    assert model.joint("hinge").velocity == pytest.approx(-1.5 * GRAVITY * 0.01, rel=0.01)
+
+
+def test_a_fixed_joint_to_the_world_holds_either_way_round():
+    for ends in (("world", "a"), ("a", "world")):
+        (tree,) = assemble(read(links("a") + joint("j", *ends, kind="fixed")))
+        assert tree.fixed
+        assert [(link.name, link.parent, link.joint) for link in tree.links] == [("a", None, None)]
+
+
+def test_a_link_that_two_joints_carry_is_no_loop(caplog):
+    (tree,) = assemble(read(links("abc") + joint("j", "a", "b") + joint("k", "c", "b")))
+    assert carried(tree) == {"a": None, "b": "a", "c": "b"}
+    assert tree.links[2].joint.axis == (0, 0, -1)
+    assert not caplog.records
+
+
+def test_what_the_world_holds_is_the_base():
+    (tree,) = assemble(read(links("ab") + joint("j", "a", "b")
+                            + joint("k", "world", "b", kind="fixed")))
+    assert tree.fixed
+    assert carried(tree) == {"b": None, "a": "b"}
+
+
+def test_a_ring_of_joints_is_opened_with_one_warning(world, caplog):
+    ring = links("abc") + joint("j", "a", "b") + joint("k", "b", "c") + joint("l", "c", "a")
+    model = world.spawn(read(ring))
+    assert list(model.joints) == ["j", "l"]
+    assert [record.getMessage() for record in caplog.records] == [
+        "model m: joint k closes a loop; it has no effect"]
+
+
+@pytest.mark.parametrize("kind", ["ball", "universal", "screw", "gearbox", "revolute2"])
+def test_a_joint_of_another_type_is_held_and_said_so_once(world, caplog, kind):
+    description = read(links("ab") + joint("j", "a", "b", kind=kind))
+    model = world.spawn(description)
+    (record,) = caplog.records
+    assert record.levelno == logging.WARNING
+    assert record.getMessage().startswith(
+        f"model m: joint j is of type {kind}, which is not supported: it is held fixed")
+    assert [joint.name for joint in description.joints] == ["j"]
+    assert not model.joints
+    with pytest.raises(SimulationError, match=r"joint .*j"):
+        model.joint("j")
+
+
+def test_a_fixed_joint_is_none_that_can_move(world, caplog):
+    model = world.spawn(read(links("abc") + joint("j", "a", "b", kind="fixed")
+                             + joint("k", "b", "c")))
+    assert list(model.joints) == ["k"]
+    assert not caplog.records
+
+
+def test_velocity_decay_reaches_the_engines_links():
+    (tree,) = assemble(read(f"""<link name="a">{ROD}<velocity_decay><linear>0.5</linear>
+        <angular>0.25</angular></velocity_decay></link>"""))
+    assert (tree.links[0].linear_damping, tree.links[0].angular_damping) == (0.5, 0.25)

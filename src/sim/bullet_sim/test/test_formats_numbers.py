@@ -1,0 +1,109 @@
+"""Numbers at the edge of sense that still load, and texts that are no model at all.
+
+What is refused stands in formats_broken/.
+"""
+
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+
+from bullet_sim.errors import FormatError
+from bullet_sim.formats import Resources, load_light, load_model
+
+INERTIAL = """<inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
+
+
+def sdf_shape(shape: str) -> str:
+    return f"""<sdf version="1.6"><model name="m"><link name="l"><collision name="c"><geometry>
+        {shape}</geometry></collision><visual name="v"><geometry>{shape}</geometry></visual></link>
+        </model></sdf>"""
+
+
+def urdf_shape(shape: str) -> str:
+    return f"""<robot name="r"><link name="l">{INERTIAL}<collision><geometry>{shape}</geometry>
+        </collision><visual><geometry>{shape}</geometry></visual></link></robot>"""
+
+
+@pytest.mark.parametrize("text", [
+    sdf_shape("<box><size>1 0 1</size></box>"),
+    sdf_shape("<cylinder><radius>1</radius><length>0</length></cylinder>"),
+    sdf_shape("<sphere><radius>0.0</radius></sphere>"),
+    urdf_shape('<box size="1 1 0"/>'),
+    urdf_shape('<cylinder radius="0" length="1"/>'),
+    urdf_shape('<sphere radius="0"/>'),
+])
+def test_a_shape_without_volume_is_seen_but_collides_with_nothing(text, caplog):
+    link = load_model(text, Resources()).links[0]
+    assert link.collisions == ()
+    assert len(link.visuals) == 1
+    (record,) = caplog.records
+    assert "link 'l'" in record.getMessage()
+    assert "no volume to collide with, left out" in record.getMessage()
+
+
+def test_infinite_limits_are_none_in_sdf():
+    joint = load_model("""<sdf version="1.6"><model name="m"><link name="l"/>
+        <joint name="j" type="prismatic"><parent>world</parent><child>l</child><axis><limit>
+        <lower>-inf</lower><upper>inf</upper><effort>inf</effort><velocity>+inf</velocity></limit>
+        </axis></joint></model></sdf>""", Resources()).joints[0]
+    assert (joint.lower, joint.upper, joint.effort, joint.velocity) == (-1e16, 1e16, -1, -1)
+
+
+def test_infinite_limits_are_none_in_urdf():
+    joint = load_model(f"""<robot name="r"><link name="a">{INERTIAL}</link>
+        <link name="b">{INERTIAL}</link><joint name="j" type="prismatic"><parent link="a"/>
+        <child link="b"/><limit lower="-inf" upper="2" effort="inf" velocity="1"/></joint></robot>
+        """, Resources()).joints[0]
+    assert (joint.lower, joint.upper, joint.effort, joint.velocity) == (-1e16, 2, -1, 1)
+
+
+def test_products_of_inertia_and_mesh_scales_may_be_negative(tmp_path):
+    (tmp_path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    link = load_model(f"""<sdf version="1.6"><model name="m"><link name="l">
+        <inertial><inertia><ixy>-0.1</ixy></inertia></inertial>
+        <visual name="v"><geometry><mesh><uri>{tmp_path}/m.obj</uri><scale>1 -1 1</scale></mesh>
+        </geometry></visual></link></model></sdf>""", Resources()).links[0]
+    assert link.inertial.inertia[1] == -0.1
+    assert link.visuals[0].geometry.scale == (1, -1, 1)
+    assert all(math.isfinite(value) for value in link.inertial.inertia)
+
+
+@pytest.mark.parametrize("text", [
+    """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0"
+    iyy="1" iyz="0" izz="1"/></inertial><collision><geometry><sphere radius="1"/></geometry>
+    </collision></link><gazebo reference="a"><mu1>-1</mu1></gazebo></robot>""",
+    """<sdf version="1.6"><model name="m"><link name="l"><collision name="c"><geometry><sphere/>
+    </geometry><surface><friction><ode><mu>-1</mu></ode></friction></surface></collision></link>
+    </model></sdf>""",
+])
+def test_a_friction_below_zero_is_without_limit(text):
+    surface = load_model(text, Resources()).links[0].collisions[0].surface
+    assert surface.mu > 1000
+    assert surface.mu2 == 1.0
+
+
+@pytest.mark.parametrize("load", [load_model, load_light])
+@pytest.mark.parametrize("text, reason", [
+    ("hello", "the text is not well-formed XML: syntax error at line 1, column 1"),
+    ("", "the text is not well-formed XML: no element found at line 1, column 1"),
+    ("<robot name='r'>\n <link></robot>",
+     "the text is not well-formed XML: mismatched tag at line 2, column 10"),
+    ("\n<sdf version='1.6'>\n<model name=m/></sdf>",
+     "the text is not well-formed XML: not well-formed (invalid token) at line 3, column 13"),
+])
+def test_what_is_no_xml_gets_the_spawn_services_sentence(load, text, reason):
+    with pytest.raises(FormatError) as raised:
+        load(text, Resources())
+    assert str(raised.value) == (
+        "GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, or cannot be "
+        f"converted to Gazebo compatible format. ({reason})")
+
+
+def test_the_xacro_command_does_not_wait_for_the_model_readers():
+    code = "import sys, bullet_sim.formats.xacro_files; sys.exit('numpy' in sys.modules)"
+    env = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    assert subprocess.run([sys.executable, "-c", code], env=env, check=False).returncode == 0
