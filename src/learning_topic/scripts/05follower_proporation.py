@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Lesson 5: steer towards the line.  第五课：朝着线转向（比例控制）。"""
 
+import time
+
 import cv2
 import cv_bridge
 import numpy
@@ -62,18 +64,27 @@ class Follower:
             cv2.circle(image, centre, 20, (0, 0, 255), -1)
             command.linear.x = SPEED
             command.angular.z = steer(centre[0] - image.shape[1] / 2)
-        if not rospy.is_shutdown():
-            self.cmd_vel_pub.publish(command)
+        self.cmd_vel_pub.publish(command)
         cv2.imshow("showImage", image)
         cv2.waitKey(3)  # ms
+
+    def stop(self):
+        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
+        self.image_sub.unregister()  # or the next image would start the robot again
+        for _ in range(3):  # sending takes a moment, and an image may still be at work
+            self.cmd_vel_pub.publish(Twist())
+            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
 
 
 def main():
     rospy.init_node("follower", anonymous=True)
     follower = Follower()
-    # The last command stands until the next one, so stop before leaving.
-    # 机器人会一直执行最后一条命令，所以退出前要停车。
-    rospy.on_shutdown(lambda: follower.cmd_vel_pub.publish(Twist()))
+    rospy.on_shutdown(follower.stop)  # Ctrl-C
+    try:
+        rospy.wait_for_message("camera/rgb/image_raw", Image, timeout=5)
+    except rospy.ROSException:
+        rospy.logwarn("no images on camera/rgb/image_raw yet: course not started, or a burger?")
+        rospy.logwarn("还没有收到图像：赛道启动了吗？burger 没有相机")
     rospy.spin()
 
 

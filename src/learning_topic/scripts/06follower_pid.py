@@ -4,6 +4,7 @@
 import math
 import os
 import sys
+import time
 
 import cv2
 import cv_bridge
@@ -17,13 +18,9 @@ from sensor_msgs.msg import Image
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
 BAND_PX = 20  # rows that are looked at  每条横带的行数
-REACH = 0.15  # m; the trail counts this far around the base  只看底盘附近这么远的线
-BEHIND = 0.3  # m; the trail is forgotten this far behind the base  身后更远的就忘掉
 CONFIG = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../config/follower.yaml")
-KEYS = (
-    "cruise_speed max_turn search_turn image_timeout near_row far_row kp ki kd "
-    "camera_forward camera_left camera_height camera_hfov"
-).split()
+KEYS = "cruise_speed max_turn search_turn image_timeout near_row far_row kp ki kd".split()
+KEYS += "camera_forward camera_left camera_height camera_hfov".split()
 
 
 def load_config(path, given):
@@ -63,50 +60,27 @@ def to_ground(column, row, image_shape, config):
 def see_line(image, config):
     """Floor points (x, y) of the line in the near and the far row, marked in the image."""
     points = []
-    for fraction in (config["near_row"], config["far_row"]):
-        row = int(fraction * image.shape[0])
+    for key in ("near_row", "far_row"):
+        row = int(config[key] * image.shape[0])
         column = find_line(image, row)
         if column is not None:
             points.append(to_ground(column, row + BAND_PX / 2, image.shape, config))
             cv2.circle(image, (int(column), row), 20, (0, 0, 255), -1)  # a red dot  红点
-    return numpy.reshape(points, (-1, 2))
+    return points
 
 
-def moved(trail, forward, turn):
-    """The same floor points, seen after driving forward (m) and turning left (rad)."""
-    c, s = math.cos(turn), math.sin(turn)
-    trail = (trail - (forward, 0)) @ numpy.array([[c, -s], [s, c]])
-    return trail[trail[:, 0] > -BEHIND]
-
-
-def fit_line(trail):
-    """The line at the base: offset (m, left), slope and bend (1/m), from floor points."""
-    x, y = trail.T
-    weight = numpy.exp(-((x / REACH) ** 2) / 2) + 1e-3
-    powers = numpy.stack([numpy.ones_like(x), x, x * x / 2], axis=1) * weight[:, None]
-    # One more equation, bend = 0, with little weight: two points alone make a straight line.
-    # 再加一个权重很小的方程“曲率为零”：只有两个点时就当作直线。
-    powers = numpy.vstack([powers, (0, 0, 1e-3)])
-    return numpy.linalg.lstsq(powers, numpy.append(y * weight, 0), rcond=None)[0]
-
-
-def steer(line, integral, config):
-    """Turn rate in rad/s: PID on the offset, plus what the bend itself asks for."""
-    offset, slope, bend = line  # slope is how fast the offset grows: the D of PID
-    curvature = config["kp"] * offset + config["ki"] * integral + config["kd"] * slope + bend
-    turn, limit = config["cruise_speed"] * curvature, config["max_turn"]
-    return max(-limit, min(limit, turn))
+def bend_to(x, y):
+    """Curvature in 1/m, left positive, of the arc from the base to this floor point."""
+    return 2 * y / (x * x + y * y)
 
 
 class Follower:
     def __init__(self, config):
         self.config = config
         self.bridge = cv_bridge.CvBridge()
-        self.trail = numpy.empty((0, 2))  # floor points of the line, in base_footprint
-        self.integral = 0.0  # m²: offset summed over the way driven
-        self.speed = self.turn = 0.0  # the last command
         self.side = 1.0  # +1: the line was last seen on the left, -1: on the right
-        self.stamp = self.arrival = rospy.get_time()
+        self.stamp = self.arrival = rospy.get_time()  # of the last image  上一帧图像
+        self.stand()
         cv2.namedWindow("showImage", cv2.WINDOW_NORMAL)
         self.cmd_vel_pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.image_sub = rospy.Subscriber(
@@ -117,39 +91,53 @@ class Follower:
         image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
         self.arrival = rospy.get_time()
         self.follow(see_line(image, self.config), msg.header.stamp.to_sec())
-        self.drive()
+        self.cmd_vel_pub.publish(self.command)
         cv2.imshow("showImage", image)
         cv2.waitKey(3)  # ms
 
-    def follow(self, seen, stamp):
-        """Choose speed and turn from the points seen at this time."""
-        dt, self.stamp = stamp - self.stamp, stamp
-        if not 0 <= dt < self.config["image_timeout"]:  # after a gap or a reset nothing holds
-            dt, self.trail, self.integral = 0.0, numpy.empty((0, 2)), 0.0
-        self.trail = moved(self.trail, self.speed * dt, self.turn * dt)
-        if len(seen) == 0:
+    def follow(self, points, stamp):
+        """Choose speed and turn from the points of the line seen at this time."""
+        way, self.stamp = max(0, self.command.linear.x * (stamp - self.stamp)), stamp  # m
+        if not points:
             rospy.logwarn_throttle(2, "line lost, turning to where it was  线丢了，转身去找")
-            self.speed, self.turn = 0.0, self.side * self.config["search_turn"]
-            self.integral = 0.0
+            self.stand(turn=self.side * self.config["search_turn"])
             return
-        self.side = math.copysign(1.0, seen[0][1])
-        self.trail = numpy.vstack([self.trail, seen])
-        line = fit_line(self.trail)
-        self.integral += line[0] * self.speed * dt
-        self.speed, self.turn = self.config["cruise_speed"], steer(line, self.integral, self.config)
+        self.side = math.copysign(1.0, points[0][1])
+        near, far = bend_to(*points[0]), bend_to(*points[-1])
+        self.command.linear.x = self.config["cruise_speed"]
+        self.command.angular.z = self.pid(near, near - far, way)
 
-    def drive(self):
-        command = Twist()
-        command.linear.x, command.angular.z = self.speed, self.turn
-        if not rospy.is_shutdown():
-            self.cmd_vel_pub.publish(command)
+    def pid(self, near, error, way):
+        """Turn rate in rad/s: the bend to the near point, and PID on the error, both in 1/m.
+
+        On the line one arc leads through both points: the error is 0, in a bend too.
+        车在线上时，同一段圆弧通过远近两点，误差为零，弯道里也一样。
+        """
+        config, change = self.config, (error - self.error) / way if way else 0.0
+        self.error, self.total = error, self.total + error * way
+        pid = config["kp"] * error + config["ki"] * self.total + config["kd"] * change
+        limit = config["max_turn"]
+        return max(-limit, min(limit, config["cruise_speed"] * (near + pid)))
+
+    def stand(self, turn=0.0):
+        """Stand still, or turn on the spot, and forget the sum.  停车，积分清零。"""
+        self.command = Twist()
+        self.command.angular.z = turn
+        self.error = self.total = 0.0  # 1/m, and that summed over the way driven
 
     def check_images(self, _event):
         """Stand still when images stop coming.  图像中断时停车。"""
         if rospy.get_time() - self.arrival > self.config["image_timeout"]:
             rospy.logwarn_throttle(2, "no images, standing still  没有图像，停车")
-            self.speed = self.turn = 0.0
-            self.drive()
+            self.stand()
+            self.cmd_vel_pub.publish(self.command)
+
+    def stop(self):
+        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
+        self.image_sub.unregister()  # or the next image would start the robot again
+        for _ in range(3):  # sending takes a moment, and an image may still be at work
+            self.cmd_vel_pub.publish(Twist())
+            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
 
 
 def main():
@@ -160,7 +148,7 @@ def main():
     except (OSError, ValueError) as error:
         rospy.logfatal("%s", error)
         sys.exit(1)
-    rospy.on_shutdown(lambda: follower.cmd_vel_pub.publish(Twist()))
+    rospy.on_shutdown(follower.stop)
     rospy.Timer(rospy.Duration(0.1), follower.check_images, reset=True)
     rospy.spin()
 

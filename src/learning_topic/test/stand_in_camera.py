@@ -30,7 +30,7 @@ class StandInCamera:
         self.column, self.sends = column, True
         self.commands = []
         self.publisher = rospy.Publisher("camera/rgb/image_raw", Image, queue_size=1)
-        rospy.Subscriber("cmd_vel", Twist, self.commands.append, queue_size=10)
+        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.commands.append)
         threading.Thread(target=self._send, daemon=True).start()
 
     def next_command(self, wanted, what):

@@ -36,39 +36,44 @@ def test_a_drawn_straight_line_is_seen_where_it_is(lesson, config):
     for beside in (-0.1, 0.0, 0.08):
         seen = lesson(6).see_line(course.view((0.0, beside, 0.0)), config)
         assert len(seen) == 2 and seen[0][0] < seen[1][0]
-        assert seen[:, 1] == pytest.approx([-beside, -beside], abs=0.001)
+        assert [left for _ahead, left in seen] == pytest.approx([-beside, -beside], abs=0.001)
 
 
 def test_no_line_is_no_points(lesson, config):
-    assert lesson(6).see_line(np.zeros((1080, 1920, 3), np.uint8), config).shape == (0, 2)
-
-
-def test_points_move_against_the_robot(lesson):
-    points = np.array([[1.0, 0.0]])
-    assert lesson(6).moved(points, 0.25, 0.0) == pytest.approx(np.array([[0.75, 0.0]]))
-    assert lesson(6).moved(points, 0.0, math.pi / 2) == pytest.approx(np.array([[0.0, -1.0]]))
-    assert len(lesson(6).moved(points, 2.0, 0.0)) == 0
+    assert lesson(6).see_line(np.zeros((1080, 1920, 3), np.uint8), config) == []
 
 
 @pytest.mark.parametrize("radius", [-0.5, 0.7, 1.1])
-def test_fit_finds_offset_slope_and_bend(lesson, radius):
-    x = np.linspace(-0.2, 0.35, 60)
-    offset, slope, bend = lesson(6).fit_line(np.stack([x, 0.02 + 0.1 * x + x * x / 2 / radius], 1))
-    assert (offset, slope) == pytest.approx((0.02, 0.1), abs=0.002)
-    assert bend == pytest.approx(1 / radius, rel=0.02)
+def test_one_arc_leads_to_all_points_of_a_bend(lesson, radius):
+    for angle in (0.3, 0.5):
+        ahead, left = abs(radius) * math.sin(angle), radius * (1 - math.cos(angle))
+        assert lesson(6).bend_to(ahead, left) == pytest.approx(1 / radius)
 
 
-def test_two_points_make_a_straight_line(lesson):
-    offset, slope, _bend = lesson(6).fit_line(np.array([[0.35, 0.035], [0.40, 0.040]]))
-    assert (offset, slope) == pytest.approx((0.0, 0.1), abs=0.005)
+@pytest.fixture
+def pid(lesson, config):
+    """pid(near, error, way) of a lesson 6 without its node that just began."""
+    follower = object.__new__(lesson(6).Follower)
+    follower.config = {**config, "cruise_speed": 0.2, "kp": 4.0, "ki": 2.0, "kd": 0.1}
+    follower.stand()
+    return follower.pid
 
 
-def test_steers_towards_the_line_and_into_the_bend(lesson, config):
-    steer = lesson(6).steer
-    assert steer((0.0, 0.0, 0.0), 0.0, config) == 0
-    assert steer((0.01, 0.0, 0.0), 0.0, config) > 0 > steer((-0.01, 0.0, 0.0), 0.0, config)
-    assert steer((0.0, 0.0, 2.0), 0.0, config) == pytest.approx(0.4)  # 0.2 m/s, radius 0.5 m
-    assert steer((1.0, 1.0, 2.0), 0.0, config) == config["max_turn"]
+def test_drives_into_the_bend_where_nothing_is_wrong(pid):
+    assert pid(0.0, 0.0, 0.01) == 0
+    assert pid(2.0, 0.0, 0.01) == pytest.approx(0.4)  # 0.2 m/s, radius 0.5 m
+
+
+def test_p_i_and_d_each_add_their_part(pid):
+    assert pid(0.0, 0.1, 0.0) == pytest.approx(0.2 * 4 * 0.1)  # no way driven: P alone
+    with_sum = 4 * 0.1 + 2 * 0.1 * 0.05
+    assert pid(0.0, 0.1, 0.05) == pytest.approx(0.2 * with_sum)
+    with_change = 4 * -0.1 + 2 * (0.1 * 0.05 - 0.1 * 0.05) + 0.1 * -0.2 / 0.05
+    assert pid(0.0, -0.1, 0.05) == pytest.approx(0.2 * with_change)
+
+
+def test_never_steers_harder_than_max_turn(pid, config):
+    assert pid(50.0, 0.0, 0.01) == config["max_turn"] == -pid(-50.0, 0.0, 0.01)
 
 
 def test_parameters_win_over_the_file(lesson):

@@ -38,7 +38,7 @@ def test_no_two_scripts_or_launch_files_share_a_name():
 
 @pytest.mark.parametrize("path", sorted(SCRIPTS.glob("*.py")), ids=lambda path: path.name)
 def test_lessons_import_only_messages_and_what_every_robot_has(path):
-    allowed = {"rospy", "cv2", "cv_bridge", "numpy", "yaml", "math", "os", "sys"}
+    allowed = {"rospy", "cv2", "cv_bridge", "numpy", "yaml", "math", "os", "sys", "time"}
     allowed |= {"geometry_msgs", "sensor_msgs", "turtlesim", "learning_topic"}
     for node in ast.walk(ast.parse(path.read_text())):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

@@ -15,13 +15,12 @@ def lesson_6(module):
     """Lesson 6 without its node: see and follow as its callback does."""
     follower = object.__new__(module.Follower)
     follower.config = module.load_config(module.CONFIG, {})
-    follower.trail, follower.integral = np.empty((0, 2)), 0.0
-    follower.speed = follower.turn = follower.stamp = 0.0
-    follower.side = 1.0
+    follower.side, follower.stamp = 1.0, 0.0
+    follower.stand()
 
     def follow(image, time):
         follower.follow(module.see_line(image, follower.config), time)
-        return follower.speed, follower.turn
+        return follower.command.linear.x, follower.command.angular.z
 
     return follow
 

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Ctrl-C leaves the robot standing, every time; lesson 5 says so when no images come."""
+
+import contextlib
+import signal
+import subprocess
+import sys
+import unittest
+
+import rospy
+import rostest
+from rosgraph_msgs.msg import Log
+from stand_in_camera import WIDTH, StandInCamera, stands, wait_until
+
+TIMES = 5
+
+
+@contextlib.contextmanager
+def running(script):
+    """`rosrun learning_topic SCRIPT`; killed if it still runs afterwards."""
+    process = subprocess.Popen(["rosrun", "learning_topic", script])
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+class LessonsEnd(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.camera = StandInCamera(WIDTH // 2 + 100)
+
+    def ends_standing(self, script):
+        """Drives, is ended by Ctrl-C, and has sent a stop as its last command."""
+        connections = self.camera.subscriber.get_num_connections
+        for attempt in range(TIMES):
+            with running(script) as process:
+                self.camera.next_command(lambda c: c.linear.x > 0, f"{script} driving")
+                process.send_signal(signal.SIGINT)
+                process.wait(timeout=10)
+            wait_until(lambda: connections() == 0, "the last command's arrival")
+            self.assertTrue(stands(self.camera.commands[-1]), f"{script}, attempt {attempt + 1}")
+
+    def test_lesson_5_ends_standing(self):
+        self.ends_standing("05follower_proporation.py")
+
+    def test_lesson_6_ends_standing(self):
+        self.ends_standing("06follower_pid.py")
+
+    def test_lesson_5_says_that_no_images_come(self):
+        said = []
+        rospy.Subscriber("/rosout", Log, lambda log: said.append(log.msg))
+        self.camera.sends = False
+        try:
+            with running("05follower_proporation.py"):
+                for words in ("no images on camera/rgb/image_raw", "还没有收到图像"):
+                    wait_until(lambda w=words: any(w in line for line in said), words)
+        finally:
+            self.camera.sends = True
+
+
+if __name__ == "__main__":
+    rospy.init_node("lessons_end_standing")
+    rostest.rosrun("learning_topic", "lessons_end", LessonsEnd, sys.argv)
