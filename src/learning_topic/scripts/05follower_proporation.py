@@ -83,8 +83,9 @@ def main():
     try:
         rospy.wait_for_message("camera/rgb/image_raw", Image, timeout=5)
     except rospy.ROSException:
-        rospy.logwarn("no images on camera/rgb/image_raw yet: course not started, or a burger?")
-        rospy.logwarn("还没有收到图像：赛道启动了吗？burger 没有相机")
+        if not rospy.is_shutdown():
+            rospy.logwarn("no images on camera/rgb/image_raw yet: no course, or a burger?")
+            rospy.logwarn("还没有收到图像：赛道启动了吗？burger 没有相机")
     rospy.spin()
 
 

@@ -5,6 +5,7 @@ import contextlib
 import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import rospy
@@ -13,12 +14,15 @@ from rosgraph_msgs.msg import Log
 from stand_in_camera import WIDTH, StandInCamera, stands, wait_until
 
 TIMES = 5
+PERIOD = 1 / 30  # s from image to image
 
 
 @contextlib.contextmanager
 def running(script):
     """`rosrun learning_topic SCRIPT`; killed if it still runs afterwards."""
-    process = subprocess.Popen(["rosrun", "learning_topic", script])
+    process = subprocess.Popen(
+        ["rosrun", "learning_topic", script], stderr=subprocess.PIPE, text=True
+    )
     try:
         yield process
     finally:
@@ -29,7 +33,7 @@ def running(script):
 class LessonsEnd(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.camera = StandInCamera(WIDTH // 2 + 100)
+        cls.camera = StandInCamera(WIDTH // 2 + 100, scale=3)  # large: callbacks take their time
 
     def ends_standing(self, script):
         """Drives, is ended by Ctrl-C, and has sent a stop as its last command."""
@@ -37,10 +41,12 @@ class LessonsEnd(unittest.TestCase):
         for attempt in range(TIMES):
             with running(script) as process:
                 self.camera.next_command(lambda c: c.linear.x > 0, f"{script} driving")
+                time.sleep(attempt / TIMES * PERIOD)  # at another moment between two images
                 process.send_signal(signal.SIGINT)
-                process.wait(timeout=10)
+                warnings = process.communicate(timeout=10)[1]
             wait_until(lambda: connections() == 0, "the last command's arrival")
             self.assertTrue(stands(self.camera.commands[-1]), f"{script}, attempt {attempt + 1}")
+            self.assertNotIn("no images on camera", warnings)
 
     def test_lesson_5_ends_standing(self):
         self.ends_standing("05follower_proporation.py")

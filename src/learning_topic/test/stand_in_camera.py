@@ -24,10 +24,13 @@ def wait_until(condition, what, limit=LIMIT):
 
 
 class StandInCamera:
-    """Shows a yellow line 11 px wide at `column`; None is a black image, `sends` False is none."""
+    """Shows a yellow line 11 px wide at `column`; None is a black image, `sends` False is none.
 
-    def __init__(self, column):
-        self.column, self.sends = column, True
+    scale=3 makes the images as large as the waffle's, 1920 x 1080.
+    """
+
+    def __init__(self, column, scale=1):
+        self.column, self.scale, self.sends = column, scale, True
         self.commands = []
         self.publisher = rospy.Publisher("camera/rgb/image_raw", Image, queue_size=1)
         self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.commands.append)
@@ -48,7 +51,9 @@ class StandInCamera:
         pixels = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
         if self.column is not None:
             pixels[:, self.column - 5 : self.column + 6] = (255, 255, 0)
-        msg = Image(height=HEIGHT, width=WIDTH, encoding="rgb8", step=WIDTH * 3)
+        pixels = pixels.repeat(self.scale, axis=0).repeat(self.scale, axis=1)
+        height, width = pixels.shape[:2]
+        msg = Image(height=height, width=width, encoding="rgb8", step=width * 3)
         msg.header.stamp = rospy.Time.now()
         msg.data = pixels.tobytes()
         return msg
