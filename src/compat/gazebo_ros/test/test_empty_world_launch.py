@@ -1,4 +1,4 @@
-"""empty_world.launch as roslaunch's own loader reads it: its 17 arguments and what they do."""
+"""empty_world.launch as roslaunch's own loader reads it: upstream's 17 arguments and ours."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -16,6 +16,8 @@ DEFAULTS = {
     "respawn_gazebo": "false", "use_clock_frequency": "false", "pub_clock_frequency": "100",
     "enable_ros_network": "true", "server_required": "false", "gui_required": "false",
 }
+OUR_OWN = {"real_time_factor": "", "lockstep": "", "lockstep_timeout": "1.0", "seed": "",
+           "profile": "false"}
 
 
 def load(*arguments, file=LAUNCH):
@@ -30,12 +32,13 @@ def command(*arguments):
     return load(*arguments)[0]["gazebo"].args.split()
 
 
-def test_the_17_arguments_and_their_defaults():
+def test_the_arguments_and_their_defaults():
     root = ElementTree.parse(LAUNCH).getroot()
     args = root.findall("arg")
-    assert {a.get("name"): a.get("default") for a in args if "default" in a.attrib} == DEFAULTS
+    defaults = {a.get("name"): a.get("default") for a in args if "default" in a.attrib}
+    assert defaults == DEFAULTS | OUR_OWN
     internal = {a.get("name") for a in args if "value" in a.attrib}
-    assert internal == {"command_arg1", "command_arg2", "command_arg3", "script_type"}
+    assert internal == {*(f"command_arg{number}" for number in range(1, 6)), "script_type"}
 
 
 def test_plain_start():
@@ -54,6 +57,8 @@ def test_plain_start():
     (["recording:=true"], ["-r", "-e", "ode", "worlds/empty.world"]),
     (["verbose:=true"], ["--verbose", "-e", "ode", "worlds/empty.world"]),
     (["physics:=bullet", "world_name:=/a.world"], ["-e", "bullet", "/a.world"]),
+    (["real_time_factor:=0"], ["--real_time_factor=0", "-e", "ode", "worlds/empty.world"]),
+    (["seed:=7"], ["--seed=7", "-e", "ode", "worlds/empty.world"]),
     (["extra_gazebo_args:=--seed 3"], ["-e", "ode", "--seed", "3", "worlds/empty.world"]),
     (["paused:=true", "recording:=true", "verbose:=true", "headless:=true"],
      ["-u", "-r", "--verbose", "-e", "ode", "worlds/empty.world"]),
@@ -82,6 +87,14 @@ def test_parameters():
                      "use_clock_frequency:=true", "pub_clock_frequency:=50")
     assert params == {"/use_sim_time": False, "/gazebo/enable_ros_network": False,
                       "/gazebo/pub_clock_frequency": 50}
+
+
+def test_parameters_of_our_own():
+    _, params = load("lockstep:=/cmd_vel", "profile:=true")
+    ours = {name: value for name, value in params.items()
+            if name not in ("/use_sim_time", "/gazebo/enable_ros_network")}
+    assert ours == {"/gazebo/lockstep": "/cmd_vel", "/gazebo/lockstep_timeout": 1.0,
+                    "/gazebo/profile": True}
 
 
 def test_in_a_group_node_and_parameters_share_the_namespace(tmp_path):

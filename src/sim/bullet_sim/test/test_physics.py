@@ -332,6 +332,9 @@ def test_schedule_keeps_its_long_run_rate():
     assert due[:3] == [34, 67, 100]
     assert len(due) == 90
     every = Schedule(0.0, 0.001)
-    assert schedule.due(1)  # the clock was set back: a new count
+    schedule.restart(1)
     assert [tick for tick in range(2, 101) if schedule.due(tick)] == [35, 68]
+    assert (schedule.next_tick(2), schedule.next_tick(35), schedule.next_tick(36)) == (35, 68, 68)
+    schedule.restart(100, 0.01)  # steps ten times as long
+    assert [tick for tick in range(101, 111) if schedule.due(tick)] == [104, 107, 110]
     assert all(every.due(tick) for tick in range(1, 10))

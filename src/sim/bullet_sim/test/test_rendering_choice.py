@@ -32,7 +32,7 @@ def tiny():
     opened.close()
 
 
-def broken():
+def broken(_stages):
     raise OSError("libEGL.so.1 is missing")
 
 

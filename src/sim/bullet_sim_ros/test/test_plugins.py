@@ -12,9 +12,11 @@ from bullet_sim.description import (
     SensorDescription,
 )
 from bullet_sim.world import World
+from bullet_sim_ros.agenda import Agenda
+from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins import load_plugins, plugin, registry
 from bullet_sim_ros.plugins.host import Shared
-from bullet_sim_ros.plugins.parameters import PluginError, PluginParameters
+from bullet_sim_ros.plugins.parameters import PluginParameters
 from bullet_sim_ros.services.models import with_namespace
 
 
@@ -62,13 +64,14 @@ def world():
 def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
-    return load_plugins(Shared(world, None, None), model)
+    agenda = Agenda(world)
+    return load_plugins(Shared(world, None, agenda, None, None), model), agenda
 
 
 def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):
     sensor = SensorDescription("eye", "camera", plugins=(described("libnothing_at_all.so"),))
     with caplog.at_level(logging.WARNING):
-        assert load(world, described("libgazebo_ros_diff_driv.so"), sensor=sensor) == []
+        assert load(world, described("libgazebo_ros_diff_driv.so"), sensor=sensor)[0] == []
     first, second = [record.getMessage() for record in caplog.records]
     assert "model robot: plugin p (libgazebo_ros_diff_driv.so) is not known" in first
     assert "did you mean libgazebo_ros_diff_drive.so?" in first
@@ -83,11 +86,15 @@ def good(monkeypatch):
     @plugin("libgood.so")
     class Good:
         def __init__(self, host):
-            self.updates = 0
             self.broken = host.parameters.has("broken")
+            (host.each_step if host.parameters.has("stepwise") else self.fast(host))(self.update)
+            host.on_reset(self.update)
+
+        @staticmethod
+        def fast(host):
+            return lambda action: host.every(1000.0, action)
 
         def update(self):
-            self.updates += 1
             if self.broken:
                 raise ZeroDivisionError("division by zero")
     return Good
@@ -105,17 +112,25 @@ def good(monkeypatch):
 def test_a_plugin_that_cannot_load_is_one_error_and_the_others_load(
         world, caplog, good, filename, body, said):
     with caplog.at_level(logging.WARNING):
-        loaded = load(world, described(filename, body), described("libgood.so"))
+        loaded, _ = load(world, described(filename, body), described("libgood.so"))
     assert len(loaded) == 1
     assert [record.levelname for record in caplog.records] == ["ERROR"]
     assert f"({filename}) is not loaded: {said}" in caplog.text
 
 
-def test_a_plugin_that_fails_at_work_is_switched_off_with_one_error(world, caplog, good):
-    loaded = load(world, described("libgood.so", "<broken/>"), described("libgood.so"))
+@pytest.mark.parametrize("body", ["<broken/>", "<broken/><stepwise/>"])
+def test_a_plugin_that_fails_at_work_is_switched_off_with_one_error(world, caplog, good, body):
+    (broken, sound), agenda = load(world, described("libgood.so", body), described("libgood.so"))
     with caplog.at_level(logging.ERROR):
-        assert [made.update() for made in loaded] == [False, True]
-    assert "failed and is switched off: ZeroDivisionError: division by zero" in caplog.text
+        for _ in range(5):
+            world.step()
+            agenda.run()
+        for host in (broken, sound):
+            host.reset()
+    assert [record.getMessage() for record in caplog.records] == [
+        "model robot: plugin p (libgood.so) failed and is switched off: "
+        "ZeroDivisionError: division by zero"]
+    assert sound.updates == 5
 
 
 def test_the_namespace_is_injected_where_there_is_none():

@@ -22,6 +22,8 @@ def parser(program: str) -> argparse.ArgumentParser:
     result.add_argument("-u", "--pause", action="store_true", help="start paused")
     result.add_argument("-e", "--physics", default="ode", help="physics engine")
     result.add_argument("--seed", metavar="N", help="of everything random")
+    result.add_argument("--real_time_factor", metavar="F",
+                        help="1: real time, 0: as fast as it goes (of our own)")
     result.add_argument("--initial_sim_time", metavar="S", help="time to start at, s")
     result.add_argument("--iters", metavar="N", help="stop after N steps")
     unused = result.add_argument_group("accepted, no effect")
@@ -39,7 +41,7 @@ def node_arguments(program: str, words: list[str]) -> list[str]:
     result = ["--world", options.world, "--physics", options.physics]
     result += ["--paused"] if options.pause else []
     result += ["--verbose"] if options.verbose else []
-    for name in ("seed", "iters", "initial_sim_time"):
+    for name in ("seed", "iters", "initial_sim_time", "real_time_factor"):
         value = getattr(options, name)
         if value is not None:
             result.append(f"--{name.replace('_', '-')}={value}")

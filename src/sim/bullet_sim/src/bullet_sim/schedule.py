@@ -15,32 +15,29 @@ class Schedule:
     accumulate.
     """
 
-    def __init__(self, rate_hz: float, timestep: float):
+    def __init__(self, rate_hz: float, timestep: float, origin: int = 0):
         if rate_hz < 0 or not math.isfinite(rate_hz):
             raise SimulationError(f"a rate of {rate_hz} Hz is not possible; 0 means every step")
         self.rate_hz = rate_hz
-        self._period = 1.0 if rate_hz == 0 else max(1.0, 1.0 / (rate_hz * timestep))  # steps
-        self.restart(0)
+        self.restart(origin, timestep)
 
-    def restart(self, tick: int) -> None:
-        """Count from here."""
-        self._origin = self._asked = tick
-        self._count = 1
-        self._next = tick + self._steps(1)
+    def restart(self, tick: int, timestep: float | None = None) -> None:
+        """Count from here, if wanted in steps of another length (s)."""
+        self._origin = tick
+        if timestep is not None:
+            every = self.rate_hz == 0
+            self._period = 1.0 if every else max(1.0, 1.0 / (self.rate_hz * timestep))  # steps
+
+    def next_tick(self, tick: int) -> int:
+        """The first due tick after this one."""
+        count = max(1, int((tick - self._origin) / self._period))
+        while self._moment(count) <= tick:
+            count += 1
+        return self._moment(count)
 
     def due(self, tick: int) -> bool:
-        """Whether the moment has come; true once per period. A clock set back counts anew."""
-        set_back = tick < self._asked
-        self._asked = tick
-        if set_back:
-            self.restart(tick)
-            return True
-        if tick < self._next:
-            return False
-        # After a pause in asking, go on with the next moment in the future: no bursts.
-        self._count = max(self._count, int((tick - self._origin) / self._period)) + 1
-        self._next = self._origin + self._steps(self._count)
-        return True
+        """Whether this very tick is due."""
+        return self.next_tick(tick - 1) == tick
 
-    def _steps(self, count: int) -> int:
-        return math.ceil(count * self._period - 1e-9)
+    def _moment(self, count: int) -> int:
+        return self._origin + math.ceil(count * self._period - 1e-9)

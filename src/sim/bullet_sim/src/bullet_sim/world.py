@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +16,7 @@ from bullet_sim.physics.body import Twist
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene import Scene
+from bullet_sim.stages import Stages
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,9 @@ class World:
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightDescription] = {}
         self.scene = Scene(self.description.scene)
+        self.stages = Stages()
+        self.each_step: list[Callable[[], None]] = []  # called after every single step
+        self._moving: list[Model] = []
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         self._retro: dict[tuple[int, int], float] = {}
         for light in self.description.lights:
@@ -74,21 +80,30 @@ class World:
         """Simulated time, s: a whole number of steps."""
         return self.tick * self.timestep
 
-    def step(self) -> None:
-        """One step forward; while paused, time stands still."""
+    def step(self, count: int = 1) -> None:
+        """So many steps forward; while paused, time stands still."""
         if self.paused:
             return
-        for model in self.models.values():
-            model.before_step()
-        self._client.step()
-        self.tick += 1
-        for model in self.models.values():
-            if not model.static:
+        start = time.perf_counter()
+        step, moving, each_step = self._client.step, self._moving, self.each_step
+        for _ in range(count):
+            for model in moving:
+                model.before_step()
+            step()
+            self.tick += 1
+            for model in moving:
                 model.forget()
+            for function in each_step:
+                function()
+        self.stages.add("physics", time.perf_counter() - start, count)
 
-    def random(self, name: str) -> np.random.Generator:
-        """A generator of its own for each named thing, the same in every run with the same seed."""
-        return np.random.default_rng([self.seed, zlib.crc32(name.encode())])
+    def random(self, name: str, tick: int | None = None) -> np.random.Generator:
+        """A generator for a named thing at one tick (now): the same in every run with one seed.
+
+        What was drawn before does not count, so that noise does not depend on who looked when.
+        """
+        tick = self.tick if tick is None else tick
+        return np.random.default_rng([self.seed, zlib.crc32(name.encode()), tick])
 
     # --- contents
 
@@ -101,12 +116,16 @@ class World:
         model = Model(name, description, pose * description.pose, self._client,
                       self.description.gravity)
         self.models[name] = model
+        self._note_moving()
         try:
             self._show(model)
         except Exception:
             self.delete(name)
             raise
         return model
+
+    def _note_moving(self) -> None:
+        self._moving = [model for model in self.models.values() if not model.static]
 
     def _show(self, model: Model) -> None:
         """Put a model's visuals and lights into the scene, and note what lasers see of it."""
@@ -124,6 +143,7 @@ class World:
         """Take a model out."""
         model = self.model(name)
         del self.models[name]
+        self._note_moving()
         self.scene.remove_model(name)
         for light in [light for light in self.lights if light.startswith(f"{name}::")]:
             self.remove_light(light)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 import rospy
 from geometry_msgs.msg import Point, TransformStamped, Vector3
@@ -11,7 +12,7 @@ from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Quaternion as QuaternionMsg
 from geometry_msgs.msg import Twist as TwistMsg
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan, PointCloud2, PointField
+from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2, PointField
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.physics.body import Twist
@@ -20,6 +21,8 @@ from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
+from bullet_sim.stages import Stages
+from bullet_sim_ros.array_image import ArrayImage
 
 UNKNOWN_VARIANCE = 1e12
 # m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
@@ -53,8 +56,8 @@ def twist_from_msg(msg: TwistMsg) -> Twist:
                  (msg.angular.x, msg.angular.y, msg.angular.z))
 
 
-def is_sane(*messages: PoseMsg | TwistMsg) -> bool:
-    """Whether every number of some Pose and Twist messages is finite and not beyond LARGEST."""
+def is_sane(*messages: PoseMsg | TwistMsg | Vector3) -> bool:
+    """Whether every number of some Pose, Twist or Vector3 messages is finite, up to LARGEST."""
     return all(abs(value) <= LARGEST for message in messages for value in _numbers(message))
 
 
@@ -127,16 +130,17 @@ ENCODINGS = {  # SDF <format>, and what image consumers call it
 }
 
 
-def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8") -> Image:
+def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8",
+                 stages: Stages | None = None) -> ArrayImage:
     """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture as rgb8, bgr8 or mono8."""
     if encoding == "bgr8":
-        rgb = rgb[:, :, ::-1]
+        rgb = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR)
     elif encoding == "mono8":  # ITU-R BT.601 luma
-        rgb = np.rint(rgb @ np.array([0.299, 0.587, 0.114])).astype(np.uint8)
-    return _image(rgb, time, frame, encoding)
+        rgb = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+    return _image(rgb, time, frame, encoding, stages)
 
 
-def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> Image:
+def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:
     """32FC1 in m with NaN for no value, or 16UC1 in mm with 0."""
     if not millimetres:
         return _image(depth.astype(np.float32, copy=False), time, frame, "32FC1")
@@ -144,11 +148,10 @@ def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) 
     return _image(np.clip(np.rint(scaled), 0, 65535).astype(np.uint16), time, frame, "16UC1")
 
 
-def _image(array: np.ndarray, time: float, frame: str, encoding: str) -> Image:
-    msg = Image(height=array.shape[0], width=array.shape[1], encoding=encoding, is_bigendian=0)
+def _image(array: np.ndarray, time: float, frame: str, encoding: str,
+           stages: Stages | None = None) -> ArrayImage:
+    msg = ArrayImage(np.ascontiguousarray(array), stages, encoding=encoding)
     msg.header.stamp, msg.header.frame_id = stamp(time), frame
-    msg.step = array.shape[1] * array.dtype.itemsize * (array.shape[2] if array.ndim == 3 else 1)
-    msg.data = array.tobytes()
     return msg
 
 

@@ -6,20 +6,27 @@ import argparse
 import signal
 import sys
 import time
+from dataclasses import replace
 
 import rosgraph
 import rospy
+from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_world
 from bullet_sim.world import World
+from bullet_sim_ros import names
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
 from bullet_sim_ros.services.models import offer_model_services
+from bullet_sim_ros.services.physics import offer_physics_services
 from bullet_sim_ros.services.states import offer_state_services
 from bullet_sim_ros.services.worlds import offer_world_services
 from bullet_sim_ros.simulation import Simulation
+
+# s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
+SWITCH_INTERVAL = 0.0005
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -28,7 +35,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--world", default="worlds/empty.world", help="world file")
     parser.add_argument("--paused", action="store_true", help="start with time standing still")
     parser.add_argument("--physics", default="ode", help="accepted, no effect: Bullet computes")
-    parser.add_argument("--seed", type=int, default=0, help="of everything random")
+    parser.add_argument("--seed", type=_seed, default=0, help="of everything random")
+    parser.add_argument("--real-time-factor", type=_not_negative, default=None,
+                        help="1: real time, 0: as fast as it goes; without it as the world says")
     parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
     parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
     parser.add_argument("--initial-sim-time", type=_not_negative, default=0.0, help="s")
@@ -36,16 +45,30 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 
 def _not_negative(text: str) -> float:
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
     if not 0 <= value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is no time: 0 or more seconds")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number, 0 or more")
     return value
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, 0 or more")
+    return int(text)
 
 
 def open_world(options: argparse.Namespace, resources) -> World:
     """The world of the command line."""
     path = resources.find_world(options.world)
-    world = World(load_world(path, resources), options.seed, options.initial_sim_time)
+    description = load_world(path, resources)
+    if options.real_time_factor is not None:
+        rate_hz = options.real_time_factor / description.physics.max_step_size
+        physics = replace(description.physics, real_time_update_rate=rate_hz)
+        description = replace(description, physics=physics)
+    world = World(description, options.seed, options.initial_sim_time)
     world.paused = options.paused
     return world
 
@@ -63,6 +86,7 @@ def wait_for_master() -> None:
 def main() -> int:
     """Run until shutdown; 1 if the world cannot be opened."""
     options = parse(rospy.myargv(sys.argv)[1:])
+    sys.setswitchinterval(SWITCH_INTERVAL)
     wait_for_master()
     # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
     # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
@@ -76,11 +100,16 @@ def main() -> int:
         rospy.logfatal("Could not open world %s: %s", options.world, error)
         return 1
     parameters = read_node_parameters()
+    if not is_legal_name(parameters.lockstep):
+        rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
+                       rospy.resolve_name(names.LOCKSTEP), parameters.lockstep)
+        return 1
     simulation = Simulation(world, parameters)
     if parameters.enable_ros_network:
         offer_model_services(simulation, resources)
         offer_state_services(simulation)
         offer_world_services(simulation)
+        offer_physics_services(simulation)
     else:
         rospy.loginfo("ROS gazebo topics/services are disabled")
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)

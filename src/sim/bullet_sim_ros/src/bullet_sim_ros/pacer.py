@@ -1,34 +1,37 @@
-"""Holds simulated time to real time. The wall clock is read here only."""
+"""Holds simulated time to real time. The wall clock decides here and nowhere else."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
-SLACK = 0.1  # s; further behind than this, lost time is given up, not caught up in a burst
-GRAIN = 0.002  # s; sleeping for less than this costs more than it gives
+SLACK = 0.1  # s, wall: how much lost time is made good; what is beyond is given up
+CATCH_UP = 1.25  # lost time is made good at this many times the wanted speed, not in a burst
 
 
 class Pacer:
-    """Waits until the wall clock has caught up with `factor` times real time; 0 never waits."""
+    """Simulated time runs at `factor` times real time or slower, and evenly; 0 never waits."""
 
-    def __init__(self, factor: float = 1.0):
+    def __init__(self, factor: float = 1.0, clock: Callable[[], float] = time.monotonic):
         self.factor = factor
-        self._start: tuple[float, float] | None = None
+        self._clock = clock
+        self.restart()
 
     def restart(self) -> None:
         """Forget the past: after a pause, a reset or a change of factor."""
-        self._start = None
+        self._simulated: float | None = None  # s, the moment last asked about
+        self._until = self._fair = 0.0  # s, wall: when it may come, and would have without delays
 
-    def wait(self, simulated: float) -> None:
-        """Sleep if simulated time (s) is ahead of the wall."""
+    def ahead(self, simulated: float) -> float:
+        """Seconds of wall time to wait before going on from this simulated time; 0: go on."""
         if self.factor <= 0:
-            return
-        now = time.monotonic()
-        if self._start is None:
-            self._start = (now, simulated)
-            return
-        ahead = self._start[0] + (simulated - self._start[1]) / self.factor - now
-        if ahead > GRAIN:
-            time.sleep(ahead)
-        elif ahead < -SLACK:
-            self._start = (now, simulated)
+            return 0.0
+        now = self._clock()
+        if self._simulated is None:
+            self._simulated, self._until, self._fair = simulated, now, now
+        elif simulated != self._simulated:
+            step = (simulated - self._simulated) / self.factor
+            self._simulated = simulated
+            self._fair = max(self._fair + step, now - SLACK)
+            self._until = max(self._fair, self._until + step / CATCH_UP, now)
+        return max(0.0, self._until - now)

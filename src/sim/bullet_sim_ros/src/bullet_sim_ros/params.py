@@ -18,6 +18,9 @@ class NodeParameters:
     # each rospy node with sim time a good part of a core.
     pub_state_frequency: float = 100.0  # Hz for model_states and link_states; 0 or less: every step
     enable_ros_network: bool = True
+    lockstep: str = ""  # topic to wait for after each camera frame; empty: do not wait
+    lockstep_timeout: float = 1.0  # s, wall
+    profile: bool = False  # print what each stage of the work costs
 
 
 def read_node_parameters() -> NodeParameters:
@@ -29,6 +32,9 @@ def read_node_parameters() -> NodeParameters:
         max(0.0, _number(names.PUB_CLOCK_FREQUENCY, defaults.pub_clock_frequency)),
         max(0.0, _number(names.PUB_STATE_FREQUENCY, defaults.pub_state_frequency)),
         bool(rospy.get_param(names.ENABLE_ROS_NETWORK, defaults.enable_ros_network)),
+        str(rospy.get_param(names.LOCKSTEP, defaults.lockstep)).strip(),
+        max(0.0, _number(names.LOCKSTEP_TIMEOUT, defaults.lockstep_timeout)),
+        bool(rospy.get_param(names.PROFILE, defaults.profile)),
     )
 
 

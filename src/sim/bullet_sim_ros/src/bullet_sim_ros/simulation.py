@@ -8,19 +8,21 @@ from rosgraph_msgs.msg import Clock
 from bullet_sim.description import ModelDescription
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.renderer import Renderer, open_renderer
-from bullet_sim.schedule import Schedule
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
+from bullet_sim_ros.agenda import Agenda
+from bullet_sim_ros.drawing import DrawingThread
+from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
+from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import load_plugins
-from bullet_sim_ros.plugins.host import Shared
-from bullet_sim_ros.plugins.registry import Loaded
+from bullet_sim_ros.plugins.host import Host, Shared
+from bullet_sim_ros.speed import Speed
 from bullet_sim_ros.state_topics import StateTopics
 
-IDLE = 0.02  # s, wall: how long to wait for a call while paused
+IDLE = 0.05  # s, wall: how long to wait for a call while paused
 
 
 class Simulation:
@@ -29,15 +31,20 @@ class Simulation:
     def __init__(self, world: World, parameters: NodeParameters):
         self.world = world
         self.mailbox = Mailbox()
+        self.agenda = Agenda(world)
         self.pacer = Pacer()
-        self.set_pace()
+        self.speed = Speed(world.stages, parameters.profile)
         self._told_to_stop = False
-        self._renderer: Renderer | None = None
-        self._shared = Shared(world, self.mailbox, self._open_renderer)
-        self._plugins: dict[str, list[Loaded]] = {}
-        self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
-        self._clock_schedule = Schedule(parameters.pub_clock_frequency, world.timestep)
-        self._states = StateTopics(self, parameters) if parameters.enable_ros_network else None
+        self._drawing = DrawingThread(world.stages)
+        self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
+        self._shared = Shared(world, self.mailbox, self.agenda, self._drawing, self._lockstep)
+        self._plugins: dict[str, list[Host]] = {}
+        self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10, tcp_nodelay=True)
+        self.agenda.add(parameters.pub_clock_frequency, self._publish_clock)
+        self.set_pace()
+        if parameters.enable_ros_network:
+            StateTopics(self, parameters)
+            self._metrics = MetricsTopic(self)
         for model in world.models.values():
             self._load_plugins(model)
 
@@ -46,32 +53,42 @@ class Simulation:
     def run(self, iterations: int = 0) -> None:
         """Step until told to stop or ROS shuts down, or for so many steps."""
         self._publish_clock()
-        steps = 0
-        while not self._told_to_stop and not rospy.is_shutdown():
-            self.mailbox.run_pending(IDLE if self.world.paused else 0.0)
-            if self.world.paused:
-                self.pacer.restart()
-                continue
-            self._step()
-            self.pacer.wait(self.world.time)
-            steps += 1
-            if steps == iterations:
-                break
+        left = iterations or float("inf")
+        while left and not self._stopped():
+            self._wait()
+            if not self.world.paused and not self._stopped():
+                left -= self._advance(left)
 
     def stop(self) -> None:
-        """From a signal handler: end the loop after this step."""
+        """From a signal handler: end the loop soon."""
         self._told_to_stop = True
 
-    def _step(self) -> None:
-        self.world.step()
-        if self._clock_schedule.due(self.world.tick):
-            self._publish_clock()
-        if self._states:
-            self._states.update()
-        for name, plugins in self._plugins.items():
-            for plugin in plugins:
-                if not plugin.update():
-                    self._plugins[name] = [other for other in plugins if other is not plugin]
+    def _stopped(self) -> bool:
+        return self._told_to_stop or rospy.is_shutdown()
+
+    def _wait(self) -> None:
+        """Answer calls until the wall clock says go on; at least those that have come already."""
+        if self.world.paused:
+            self.mailbox.run_pending(IDLE)
+            self._restart_pace()
+            return
+        while (ahead := self.pacer.ahead(self.world.time)) > 0 and not self._stopped():
+            self.mailbox.run_pending(ahead)
+            if self.world.paused:
+                return
+        self.mailbox.run_pending()
+
+    def _advance(self, most: float) -> int:
+        """Step up to what is due next, and do it; returns how many steps that took."""
+        world = self.world
+        steps = int(min(self.agenda.next_tick() - world.tick, most))
+        world.step(steps)
+        with world.stages.measure("plugins"):
+            self.agenda.run()
+        with world.stages.measure("lockstep"):
+            self._lockstep.wait(self._stopped)
+        self.speed.update(world.time, self.pacer.factor)
+        return steps
 
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
@@ -79,11 +96,23 @@ class Simulation:
         rospy.rostime._set_rostime(now)
         self._clock.publish(Clock(now))
 
+    # --- pace
+
     def set_pace(self) -> None:
         """Real-time factor as the world's physics says: step times real_time_update_rate."""
         physics = self.world.description.physics
         self.pacer.factor = physics.max_step_size * physics.real_time_update_rate
+        self._restart_pace()
+
+    def configure_physics(self, **changes) -> None:
+        """Change the world's physics; rates and pace follow the new step."""
+        self.world.configure_physics(**changes)
+        self.agenda.restart()
+        self.set_pace()
+
+    def _restart_pace(self) -> None:
         self.pacer.restart()
+        self.speed.restart(self.world.time)
 
     # --- contents
 
@@ -96,29 +125,31 @@ class Simulation:
     def delete(self, name: str) -> None:
         """Take a model out; its topics disappear."""
         self.world.delete(name)
-        for plugin in self._plugins.pop(name, ()):
-            plugin.close()
+        for host in self._plugins.pop(name, ()):
+            host.close()
 
     def reset(self) -> None:
         """Time and models back to the start; plugins are told."""
+        self._drawing.settle()  # no picture of the time before comes after it
+        self._lockstep.cancel()
         self.world.reset_simulation()
-        for name, plugins in self._plugins.items():
-            self._plugins[name] = [plugin for plugin in plugins if plugin.reset()]
+        self.agenda.restart()
+        for hosts in self._plugins.values():
+            for host in hosts:
+                host.reset()
         self._publish_clock()
-        self.pacer.restart()
+        self._restart_pace()
+
+    def sensors(self) -> list[Host]:
+        """The plugins that work for a sensor."""
+        return [host for hosts in self._plugins.values() for host in hosts if host.has_sensor]
 
     def close(self) -> None:
         """Answer whoever still waits; let go of renderer and engine."""
         self.mailbox.close()
-        if self._renderer:
-            self._renderer.close()
+        self._drawing.close()
+        self.speed.close()
         self.world.close()
 
     def _load_plugins(self, model: Model) -> None:
         self._plugins[model.name] = load_plugins(self._shared, model)
-
-    def _open_renderer(self) -> Renderer:
-        if self._renderer is None:
-            self._renderer = open_renderer()
-            rospy.loginfo("Cameras are drawn by %s", self._renderer.name)
-        return self._renderer

@@ -12,7 +12,6 @@ import ctypes
 import ctypes.util
 from collections.abc import Callable
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import cv2
 import moderngl
@@ -26,7 +25,7 @@ from bullet_sim.rendering.projection import (
     projection_matrix,
     view_matrix,
 )
-from bullet_sim.rendering.scene import Node, Scene
+from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.surfaces import (
     LIGHTS_BINDING,
     SURFACE_BINDING,
@@ -34,12 +33,14 @@ from bullet_sim.rendering.surfaces import (
     Surface,
     SurfaceStore,
 )
+from bullet_sim.stages import Stages
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
 # A highlight of less than half a grey level is not worth working out for each pixel.
 _VISIBLE = 0.5 / 255
 _MOST_DEVICES = 8
+_VERSIONS_KEPT = 2  # of scenes: the one being drawn, and the one before
 # In `polygon_offset`'s units. llvmpipe's depth of one plane is off by up to 6/2**24 (measured), and
 # a unit is 2/2**24 there: enough to decide between two planes, and 0.6 mm at 3 m for `near` 0.02.
 _RECESS = 10.0
@@ -47,7 +48,6 @@ _RECESS = 10.0
 
 @dataclass(eq=False)
 class _Item:
-    node: Node
     surface: Surface
     program: Program
     array: moderngl.VertexArray
@@ -55,35 +55,43 @@ class _Item:
 
 @dataclass(eq=False)
 class _Prepared:
-    """A scene's lights and draw list, as of one version."""
+    """The lights and draw list of one version of a scene."""
 
-    version: int
     lights: moderngl.Buffer
-    nodes: list[tuple[Node, list[_Item], list[_Item]]]  # with opaque and see-through items
+    items: list[tuple[list[_Item], list[_Item]]]  # opaque and see-through, in the nodes' order
     recess: dict[float, float]  # by size of plane, how far back in the depth buffer it is drawn
 
 
 class EglRenderer:
     """See `renderer.Renderer`."""
 
-    def __init__(self) -> None:
+    def __init__(self, stages: Stages | None = None) -> None:
+        self._stages = stages or Stages()
         self._context = _open_context()
         with self._context:  # leaving it lets go of the context, so that any thread may draw
             self._context.gc_mode = "context_gc"
             self.name = f"EGL, {self._context.info['GL_RENDERER']}"
             self._store = SurfaceStore(self._context)
-        self._prepared: WeakKeyDictionary[Scene, _Prepared] = WeakKeyDictionary()
+        self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int], _Target] = {}
         self._finish = _finish_without_gil() or self._context.finish
 
-    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+    def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if asked for, of one pass."""
+        measure = self._stages.measure
         with self._context:
             target = self._target(view.width, view.height)
-            prepared = self._prepare(scene)
-            self._submit(scene, prepared, view, target)
-            self._finish()
-            return target.read(view, depth)
+            with measure("draw"):
+                prepared = self._prepare(scene)
+                self._submit(scene, prepared, view, target)
+                self._finish()
+            with measure("read back"):
+                rgba, raw = target.read(depth)
+        with measure("convert"):
+            # RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would.
+            rgb = cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB)
+            metres = None if raw is None else metres_from_depth(raw, view.near, view.far)
+        return Frame(rgb, metres)
 
     def close(self) -> None:
         self._prepared.clear()
@@ -98,43 +106,45 @@ class EglRenderer:
             self._targets[size] = _Target(self._context, size)
         return self._targets[size]
 
-    def _prepare(self, scene: Scene) -> _Prepared:
-        prepared = self._prepared.get(scene)
-        if prepared is None or prepared.version != scene.version:
-            prepared = self._prepared[scene] = self._build(scene)
+    def _prepare(self, scene: SceneState) -> _Prepared:
+        prepared = self._prepared.pop(scene.version, None) or self._build(scene)
+        self._prepared[scene.version] = prepared
+        if len(self._prepared) > _VERSIONS_KEPT:
+            del self._prepared[next(iter(self._prepared))]
             self._context.gc()  # what removed models held
         return prepared
 
-    def _build(self, scene: Scene) -> _Prepared:
+    def _build(self, scene: SceneState) -> _Prepared:
         near_lights = lights.needs_pixels(scene)
         shine = lights.strongest_highlight(scene)
-        nodes = []
+        by_node = []
         for node in scene.nodes.values():
             items = []
             for surface in self._store.of(node.shape):
                 per_pixel = near_lights or surface.highlight * shine > _VISIBLE
-                items.append(_Item(node, surface, *self._store.array(surface, per_pixel)))
+                items.append(_Item(surface, *self._store.array(surface, per_pixel)))
             opaque = [item for item in items if item.surface.opaque]
-            nodes.append((node, opaque, [item for item in items if not item.surface.opaque]))
+            by_node.append((opaque, [item for item in items if not item.surface.opaque]))
         block = self._context.buffer(lights.lights_block(scene), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
-        return _Prepared(scene.version, block, nodes, recess)
+        return _Prepared(block, by_node, recess)
 
-    def _submit(self, scene: Scene, prepared: _Prepared, view: CameraView, target: _Target) -> None:
+    def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
+                target: _Target) -> None:
         clip_world = _UPSIDE_DOWN @ projection_matrix(view) @ view_matrix(view.pose)
         eye = np.array([*view.pose.position, 1.0], np.float32)
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
         prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
         target.start(self._context, scene.description.background)
-        seen = _near_first(prepared, clip_world, view)
+        seen = _near_first(scene, prepared, clip_world, view)
         for node, opaque, _ in seen:
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
-            _render(opaque, clip_world)
+            _render(node, opaque, clip_world)
         if any(see_through for _, _, see_through in seen):
             target.blend(self._context)
             self._context.polygon_offset = (0.0, 0.0)
-            for _, _, see_through in reversed(seen):
-                _render(see_through, clip_world)
+            for node, _, see_through in reversed(seen):
+                _render(node, see_through, clip_world)
 
 
 class _Target:
@@ -159,15 +169,14 @@ class _Target:
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         self._framebuffer.depth_mask = False
 
-    def read(self, view: CameraView, depth: bool) -> Frame:
-        """RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would."""
+    def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
+        """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if asked for."""
         self._framebuffer.read_into(self._rgba, components=4, alignment=1)
-        rgb = cv2.cvtColor(self._rgba, cv2.COLOR_RGBA2RGB)
         if not depth:
-            return Frame(rgb, None)
-        raw = np.empty((view.height, view.width), np.float32)
+            return self._rgba, None
+        raw = np.empty(self._rgba.shape[:2], np.float32)
         self._framebuffer.read_into(raw, components=1, attachment=-1, alignment=1, dtype="f4")
-        return Frame(rgb, metres_from_depth(raw, view.near, view.far))
+        return self._rgba, raw
 
 
 def _open_context() -> moderngl.Context:
@@ -183,29 +192,28 @@ def _open_context() -> moderngl.Context:
     raise refusals[0]
 
 
-def _near_first(prepared: _Prepared, clip_world: np.ndarray, view: CameraView) -> list[tuple]:
+def _near_first(scene: SceneState, prepared: _Prepared, clip_world: np.ndarray,
+                view: CameraView) -> list[tuple[Node, list[_Item], list[_Item]]]:
     """Nodes that can be in the picture, nearest first; of those around the camera, small first."""
     planes = frustum_planes(clip_world)
     eye = np.array(view.pose.position)
     seen = []
-    for index, entry in enumerate(prepared.nodes):
-        shape = entry[0].shape
-        matrix = entry[0].matrix
+    for index, (node, items) in enumerate(zip(scene.nodes.values(), prepared.items, strict=True)):
+        shape, matrix = node.shape, node.matrix
         centre = matrix[:3, :3] @ shape.centre + matrix[:3, 3]
         if not shape.parts or (planes[:, :3] @ centre + planes[:, 3]).min() < -shape.radius:
             continue
         gap = max(0.0, float(np.linalg.norm(centre - eye)) - shape.radius)
-        seen.append(((gap, shape.radius, index), entry))
+        seen.append(((gap, shape.radius, index), (node, *items)))
     seen.sort(key=lambda pair: pair[0])
     return [entry for _, entry in seen]
 
 
-def _render(items: list[_Item], clip_world: np.ndarray) -> None:
+def _render(node: Node, items: list[_Item], clip_world: np.ndarray) -> None:
     if not items:
         return
-    matrix = items[0].node.matrix  # all items of a node share it
-    model = matrix.T.astype(np.float32).tobytes()
-    projection_model = (clip_world @ matrix).T.astype(np.float32).tobytes()
+    model = node.matrix.T.astype(np.float32).tobytes()
+    projection_model = (clip_world @ node.matrix).T.astype(np.float32).tobytes()
     for item in items:
         item.program.model.write(model)
         item.program.projection_model.write(projection_model)

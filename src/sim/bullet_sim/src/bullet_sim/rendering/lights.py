@@ -9,7 +9,7 @@ import numpy as np
 
 from bullet_sim.description import LightDescription
 from bullet_sim.pose import rotate
-from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.scene import SceneState
 from bullet_sim.rendering.shaders import DIRECTIONAL, MAX_LIGHTS, POINT, SPOT
 
 log = logging.getLogger(__name__)
@@ -19,7 +19,7 @@ BLOCK_SIZE = 16 * (3 + 6 * MAX_LIGHTS)  # bytes
 EYE_OFFSET = 16  # bytes, of the camera's position in the block
 
 
-def lights_block(scene: Scene) -> bytes:
+def lights_block(scene: SceneState) -> bytes:
     """All but the eye, which changes with the camera; lights beyond the eighth are left out."""
     lights = list(scene.lights.values())
     if len(lights) > MAX_LIGHTS:
@@ -33,12 +33,12 @@ def lights_block(scene: Scene) -> bytes:
     return block.tobytes()
 
 
-def needs_pixels(scene: Scene) -> bool:
+def needs_pixels(scene: SceneState) -> bool:
     """Whether some light is near enough that its strength changes across a face."""
     return any(light.type != "directional" for light in scene.lights.values())
 
 
-def strongest_highlight(scene: Scene) -> float:
+def strongest_highlight(scene: SceneState) -> float:
     """The brightest specular channel of all lights, 0..1."""
     return max((max(light.specular[:3]) for light in scene.lights.values()), default=0.0)
 

@@ -13,7 +13,8 @@ from bullet_sim.description import Box, LightDescription, Plane, Visual
 from bullet_sim.errors import SimulationError
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView, Frame
-from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.scene import Scene, SceneState
+from bullet_sim.stages import Stages
 
 log = logging.getLogger(__name__)
 
@@ -25,7 +26,7 @@ class Renderer(Protocol):
 
     name: str  # backend and what it runs on, for people
 
-    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+    def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """One picture, and its depth if asked for; the arrays are the caller's own."""
         ...
 
@@ -34,21 +35,22 @@ class Renderer(Protocol):
         ...
 
 
-def open_renderer(preference: str | None = None) -> Renderer:
+def open_renderer(preference: str | None = None, stages: Stages | None = None) -> Renderer:
     """EGL where it works, else TinyRenderer with a warning.
 
     `preference`, "egl" or "tiny", or without it BULLET_SIM_RENDERER insists on one; if that one
-    does not work, it is a SimulationError.
+    does not work, it is a SimulationError. What drawing costs is added to `stages`.
     """
+    stages = stages or Stages()
     chosen = preference or os.environ.get(VARIABLE) or None
     if chosen is not None:
-        return _open_chosen(chosen)
+        return _open_chosen(chosen, stages)
     try:
-        return _open_egl()
+        return _open_egl(stages)
     except Exception as error:  # no library, no driver, no device: each says it in its own way
         reason = " ".join(str(error).split()) or type(error).__name__
-    renderer = _open_tiny()
-    rate_hz = 1 / _seconds_per_frame(renderer)
+    renderer = _open_tiny(stages)
+    rate_hz = 1 / _seconds_per_frame()
     log.warning(
         "no EGL renderer (%s); drawing with %s instead: about %.3g frames/s at 320x240, "
         "a quarter of that at twice the width",
@@ -57,34 +59,34 @@ def open_renderer(preference: str | None = None) -> Renderer:
     return renderer
 
 
-def _open_chosen(chosen: str) -> Renderer:
+def _open_chosen(chosen: str, stages: Stages) -> Renderer:
     opener = _OPENERS.get(chosen)
     if opener is None:
         known = ", ".join(_OPENERS)
         raise SimulationError(f"{VARIABLE}={chosen}: no such renderer; there are: {known}")
     try:
-        return opener()
+        return opener(stages)
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise SimulationError(f"renderer {chosen} does not start: {reason}") from error
 
 
-def _open_egl() -> Renderer:
+def _open_egl(stages: Stages) -> Renderer:
     from bullet_sim.rendering.egl import EglRenderer
 
-    return EglRenderer()
+    return EglRenderer(stages)
 
 
-def _open_tiny() -> Renderer:
+def _open_tiny(stages: Stages) -> Renderer:
     from bullet_sim.rendering.tiny import TinyRenderer
 
-    return TinyRenderer()
+    return TinyRenderer(stages)
 
 
-_OPENERS: dict[str, Callable[[], Renderer]] = {"egl": _open_egl, "tiny": _open_tiny}
+_OPENERS: dict[str, Callable[[Stages], Renderer]] = {"egl": _open_egl, "tiny": _open_tiny}
 
 
-def _seconds_per_frame(renderer: Renderer) -> float:
+def _seconds_per_frame() -> float:
     """The quickest of three small pictures of a floor and a box."""
     scene = Scene()
     scene.add_light(LightDescription("sun", type="directional"))
@@ -94,9 +96,10 @@ def _seconds_per_frame(renderer: Renderer) -> float:
     )
     scene.add_link(("trial", "link"), visuals, Pose())
     view = CameraView(320, 240, math.pi / 3, 0.05, 50.0, Pose((-1.0, 0.0, 0.3)))
-    took = []
+    renderer, took = _open_tiny(Stages()), []
     for _ in range(3):
         start = time.perf_counter()
         renderer.draw(scene, view)
         took.append(time.perf_counter() - start)
+    renderer.close()
     return min(took)

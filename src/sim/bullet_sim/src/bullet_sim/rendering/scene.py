@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -42,54 +43,67 @@ class LinkShape:
 
 
 class Node:
-    """One link in the scene."""
+    """One link in the scene, where it is at one moment."""
 
-    __slots__ = ("shape", "_pose", "_matrix")
+    __slots__ = ("shape", "pose", "_matrix")
 
     def __init__(self, shape: LinkShape, pose: Pose):
         self.shape = shape
-        self.pose = pose
-
-    @property
-    def pose(self) -> Pose:
-        """Link frame in the world."""
-        return self._pose
-
-    @pose.setter
-    def pose(self, pose: Pose) -> None:
-        self._pose = pose
+        self.pose = pose  # link frame in the world
         self._matrix: np.ndarray | None = None
 
     @property
     def matrix(self) -> np.ndarray:
         """(4, 4) float64 of the pose; made when first asked for."""
         if self._matrix is None:
-            self._matrix = self._pose.matrix()
+            self._matrix = self.pose.matrix()
         return self._matrix
 
 
-class Scene:
-    """Lights and links by name. `version` grows when more than poses changes."""
+@dataclass(eq=False)
+class SceneState:
+    """Lights and links at one moment: what renderers draw. Equal versions differ only in poses."""
+
+    description: SceneDescription
+    lights: dict[str, LightDescription]
+    nodes: dict[LinkKey, Node]
+    version: int
+
+    def plane_ranks(self) -> dict[float, int]:
+        """Rank by size of the planes that links are made of, the smallest 0.
+
+        Courses lie on the ground plane at the same height: where planes meet, the larger gives way.
+        """
+        sizes = sorted({node.shape.plane_size for node in self.nodes.values()} - {0.0})
+        return {size: rank for rank, size in enumerate(sizes)}
+
+
+_versions = itertools.count()  # over all scenes, so that a version stands for one content
+
+
+class Scene(SceneState):
+    """Lights and links by name, as they come, move and go."""
 
     def __init__(self, description: SceneDescription = SceneDescription()):
-        self.description = description
-        self.lights: dict[str, LightDescription] = {}
-        self.nodes: dict[LinkKey, Node] = {}
-        self.version = 0
+        super().__init__(description, {}, {}, next(_versions))
         self._shapes: WeakValueDictionary[tuple[Visual, ...], LinkShape] = WeakValueDictionary()
+
+    def frozen(self) -> SceneState:
+        """As it is now; another thread may draw it while the scene goes on."""
+        return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version)
 
     def add_light(self, light: LightDescription) -> None:
         """Poses and directions of lights are in the world."""
         if light.name in self.lights:
             raise NameTaken(f"the scene already has a light named {light.name!r}")
         self.lights[light.name] = light
-        self.version += 1
+        self.version = next(_versions)
 
     def remove_light(self, name: str) -> None:
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
-        self.version += 1
+        self.version = next(_versions)
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
         """Visuals whose mesh cannot be read are left out, with one warning each."""
@@ -100,27 +114,20 @@ class Scene:
         if shape is None:
             shape = self._shapes[wanted] = link_shape(wanted)
         self.nodes[key] = Node(shape, pose)
-        self.version += 1
+        self.version = next(_versions)
 
     def remove_model(self, model: str) -> None:
         """All links of a model; a model without links in the scene is no error."""
         for key in [key for key in self.nodes if key[0] == model]:
             del self.nodes[key]
-            self.version += 1
+            self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
         node = self.nodes.get(key)
         if node is None:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
-        node.pose = pose
-
-    def plane_ranks(self) -> dict[float, int]:
-        """Rank by size of the planes that links are made of, the smallest 0.
-
-        Courses lie on the ground plane at the same height: where planes meet, the larger gives way.
-        """
-        sizes = sorted({node.shape.plane_size for node in self.nodes.values()} - {0.0})
-        return {size: rank for rank, size in enumerate(sizes)}
+        if node.pose is not pose:  # what stands still keeps its node, and the matrix in it
+            self.nodes[key] = Node(node.shape, pose)
 
     def set_poses(self, poses: Mapping[LinkKey, Pose]) -> None:
         for key, pose in poses.items():

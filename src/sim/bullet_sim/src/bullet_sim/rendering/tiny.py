@@ -17,7 +17,8 @@ from bullet_sim.mesh_part import MeshPart
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import CameraView, Frame
 from bullet_sim.rendering.projection import metres_from_depth, projection_matrix, view_matrix
-from bullet_sim.rendering.scene import Node, Scene
+from bullet_sim.rendering.scene import LinkKey, LinkShape, SceneState
+from bullet_sim.stages import Stages
 
 log = logging.getLogger(__name__)
 
@@ -25,79 +26,80 @@ log = logging.getLogger(__name__)
 _TRIANGLES_PER_BODY = 20_000
 _RECESS = 0.002  # m, of a plane behind the next smaller one; depth is no finer near the horizon
 
+_Placed = tuple[LinkKey, LinkShape]  # a link as it looks; the same link may come again otherwise
+
 
 class TinyRenderer:
     """See `renderer.Renderer`."""
 
     name = "PyBullet's TinyRenderer"
 
-    def __init__(self) -> None:
+    def __init__(self, stages: Stages | None = None) -> None:
+        self._stages = stages or Stages()
         self._client = pybullet.connect(pybullet.DIRECT)
-        self._scene: Scene | None = None
         self._version = -1
-        self._bodies: dict[Node, list[int]] = {}
-        self._poses: dict[Node, Pose] = {}
+        self._bodies: dict[_Placed, list[int]] = {}
+        self._poses: dict[_Placed, Pose] = {}
         self._ranks: dict[float, int] = {}  # of planes, by size
         self._textures: dict[str, int] = {}
 
-    def draw(self, scene: Scene, view: CameraView, depth: bool = False) -> Frame:
+    def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if asked for."""
-        self._mirror(scene)
-        width, height, pixels, raw, _ = pybullet.getCameraImage(
-            view.width,
-            view.height,
-            _columns(view_matrix(view.pose)),
-            _columns(_half_pixel(view) @ projection_matrix(view)),
-            shadow=0,
-            flags=pybullet.ER_NO_SEGMENTATION_MASK,
-            renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client,
-            **_light(scene),
-        )
-        rgb = np.ascontiguousarray(np.reshape(pixels, (height, width, 4))[..., :3], np.uint8)
-        metres = metres_from_depth(
-            np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far
-        )
-        background = metres > view.far * 0.99  # TinyRenderer says nearly `far` for nothing
-        rgb[background] = np.clip(np.array(scene.description.background[:3]) * 255 + 0.5, 0, 255)
-        metres[background] = np.inf
+        with self._stages.measure("draw"):
+            self._mirror(scene)
+            width, height, pixels, raw, _ = pybullet.getCameraImage(
+                view.width,
+                view.height,
+                _columns(view_matrix(view.pose)),
+                _columns(_half_pixel(view) @ projection_matrix(view)),
+                shadow=0,
+                flags=pybullet.ER_NO_SEGMENTATION_MASK,
+                renderer=pybullet.ER_TINY_RENDERER,
+                physicsClientId=self._client,
+                **_light(scene),
+            )
+        with self._stages.measure("convert"):
+            rgb = np.ascontiguousarray(np.reshape(pixels, (height, width, 4))[..., :3], np.uint8)
+            metres = metres_from_depth(
+                np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far
+            )
+            background = metres > view.far * 0.99  # TinyRenderer says nearly `far` for nothing
+            colour = np.array(scene.description.background[:3]) * 255 + 0.5
+            rgb[background] = np.clip(colour, 0, 255)
+            metres[background] = np.inf
         return Frame(rgb, metres if depth else None)
 
     def close(self) -> None:
         pybullet.disconnect(self._client)
 
-    def _mirror(self, scene: Scene) -> None:
+    def _mirror(self, scene: SceneState) -> None:
         """Bring the client's bodies in line with the scene."""
-        if scene is not self._scene:
-            pybullet.resetSimulation(physicsClientId=self._client)
-            self._bodies, self._poses, self._textures = {}, {}, {}
-            self._scene, self._version = scene, -1
+        current = {(key, node.shape): node.pose for key, node in scene.nodes.items()}
         if scene.version != self._version:
-            current = set(scene.nodes.values())
-            for node in [node for node in self._bodies if node not in current]:
-                self._remove(node)
-            for node in current.difference(self._bodies):
-                pieces = [piece for part in node.shape.parts for piece in _pieces(part)]
-                self._bodies[node] = [self._body(piece) for piece in pieces]
+            for placed in [placed for placed in self._bodies if placed not in current]:
+                self._remove(placed)
+            for placed in [placed for placed in current if placed not in self._bodies]:
+                pieces = [piece for part in placed[1].parts for piece in _pieces(part)]
+                self._bodies[placed] = [self._body(piece) for piece in pieces]
             self._version = scene.version
             self._ranks = scene.plane_ranks()
             self._poses.clear()  # ranks move planes
-        for node, bodies in self._bodies.items():
-            if self._poses.get(node) is not node.pose:
-                self._place(node, bodies)
+        for placed, pose in current.items():
+            if self._poses.get(placed) is not pose:
+                self._poses[placed] = pose
+                self._place(placed, pose)
 
-    def _remove(self, node: Node) -> None:
-        for body in self._bodies.pop(node):
+    def _remove(self, placed: _Placed) -> None:
+        for body in self._bodies.pop(placed):
             pybullet.removeBody(body, physicsClientId=self._client)
-        self._poses.pop(node, None)
 
-    def _place(self, node: Node, bodies: list[int]) -> None:
-        self._poses[node] = pose = node.pose
-        rank = self._ranks.get(node.shape.plane_size, 0)
+    def _place(self, placed: _Placed, pose: Pose) -> None:
+        shape = placed[1]
+        rank = self._ranks.get(shape.plane_size, 0)
         if rank:
-            normal = node.shape.parts[0].normals[0].astype(float)
+            normal = shape.parts[0].normals[0].astype(float)
             pose = pose * Pose(tuple(-rank * _RECESS * normal))
-        for body in bodies:
+        for body in self._bodies[placed]:
             pybullet.resetBasePositionAndOrientation(
                 body, pose.position, pose.orientation, physicsClientId=self._client
             )
@@ -165,7 +167,7 @@ def _colour(material: Material) -> tuple[float, ...]:
     return (*(max(pair) for pair in pairs), material.diffuse[3])
 
 
-def _light(scene: Scene) -> dict:
+def _light(scene: SceneState) -> dict:
     """TinyRenderer's one light: the first directional one, else the first, else ambient alone."""
     lights = sorted(scene.lights.values(), key=lambda light: light.type != "directional")
     ambient = float(np.mean(scene.description.ambient[:3]))

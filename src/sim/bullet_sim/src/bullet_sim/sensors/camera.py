@@ -12,7 +12,19 @@ from bullet_sim.errors import FormatError
 from bullet_sim.model import Link
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import Renderer
+from bullet_sim.rendering.scene import SceneState
+from bullet_sim.sensors.image_noise import ImageNoise
 from bullet_sim.world import World
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """All that a picture is made from, as it was at one moment. Nothing in it changes."""
+
+    time: float  # s, simulated
+    tick: int
+    scene: SceneState
+    view: CameraView
 
 
 @dataclass(frozen=True)
@@ -36,18 +48,14 @@ class Camera:
         self._link = link
         self._sensor = sensor
         self._renderer = renderer
-        self._random_name = f"{link.scoped_name}::{sensor.name}::{number}"
+        self._name = f"{link.scoped_name}::{sensor.name}::{number}"
         if min(self.description.width, self.description.height) < 1:
             raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: an image of "
                               f"{self.description.width}x{self.description.height} px")
         if not 0 < self.description.horizontal_fov < math.pi:
             raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: <horizontal_fov> is "
                               f"{self.description.horizontal_fov}, which is not between 0 and pi")
-        self.restart()
-
-    def restart(self) -> None:
-        """Draw the noise from the start."""
-        self._random = self._world.random(self._random_name)
+        self._noise: ImageNoise | None = None
 
     def view(self) -> CameraView:
         """The pinhole as it stands now."""
@@ -57,12 +65,24 @@ class Camera:
 
     def sample(self, depth: bool = False) -> CameraReading:
         """Draw what the camera sees."""
-        frame = self._renderer.draw(self._world.update_scene(), self.view(), depth)
-        return CameraReading(self._world.time, self._with_noise(frame.rgb), frame.depth)
+        return self.develop(self.expose(), depth)
 
-    def _with_noise(self, rgb: np.ndarray) -> np.ndarray:
+    def expose(self) -> Exposure:
+        """What the camera sees, not yet drawn. For the thread that owns the world."""
+        world = self._world
+        with world.stages.measure("scene"):
+            return Exposure(world.time, world.tick, world.update_scene().frozen(), self.view())
+
+    def develop(self, exposure: Exposure, depth: bool = False) -> CameraReading:
+        """Draw an exposure. Any thread may do it, one at a time, while the world goes on."""
+        frame = self._renderer.draw(exposure.scene, exposure.view, depth)
+        return CameraReading(exposure.time, self._with_noise(frame.rgb, exposure), frame.depth)
+
+    def _with_noise(self, rgb: np.ndarray, exposure: Exposure) -> np.ndarray:
         noise = self.description.noise
         if noise.type != "gaussian" or (noise.stddev == 0 and noise.mean == 0):
             return rgb
-        drawn = self._random.normal(noise.mean * 255, noise.stddev * 255, rgb.shape)
-        return np.clip(rgb + drawn, 0, 255).astype(np.uint8)
+        with self._world.stages.measure("noise"):
+            if self._noise is None:
+                self._noise = ImageNoise(noise, rgb.shape, self._world.random(self._name, 0))
+            return self._noise.add(rgb, self._world.random(self._name, exposure.tick))

@@ -38,11 +38,7 @@ class Laser:
         count = max(1, round(self.ray.samples * self.ray.resolution))
         angles = np.linspace(self.ray.min_angle, self.ray.max_angle, count)
         self._beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(count)], axis=1)
-        self.restart()
-
-    def restart(self) -> None:
-        """Draw the noise from the start."""
-        self._random = self._world.random(f"{self._link.scoped_name}::{self._description.name}")
+        self._name = f"{link.scoped_name}::{description.name}"
 
     def sample(self) -> LaserReading:
         """Cast all beams from where the sensor is now."""
@@ -65,6 +61,7 @@ class Laser:
         if noise.type != "gaussian":
             return ranges
         # Gazebo draws for every ray, hit or not; a miss stays a miss.
-        noisy = ranges + self._random.normal(noise.mean, noise.stddev, ranges.shape)
+        random = self._world.random(self._name)
+        noisy = ranges + random.normal(noise.mean, noise.stddev, ranges.shape)
         noisy = np.clip(noisy, self.ray.range_min, self.ray.range_max)
         return np.where(ranges >= self.ray.range_max, ranges, noisy)

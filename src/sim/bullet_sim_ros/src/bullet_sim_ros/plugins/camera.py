@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import logging
+import time
 
+import rospy
 from sensor_msgs.msg import CameraInfo, Image
 
 from bullet_sim.description import CameraDescription
-from bullet_sim.schedule import Schedule
-from bullet_sim.sensors.camera import Camera, CameraReading
+from bullet_sim.sensors.camera import Camera, CameraReading, Exposure
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.parameters import PluginParameters
@@ -17,6 +18,7 @@ from bullet_sim_ros.plugins.registry import plugin
 log = logging.getLogger("bullet_sim.plugins")
 
 DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
+LONGEST_TRIAL = 0.2  # s, wall: a slow renderer is tried once
 
 
 class CameraSettings:
@@ -25,6 +27,7 @@ class CameraSettings:
     def __init__(self, host: Host, description: CameraDescription):
         p: PluginParameters = host.parameters
         self._description = description
+        self._stages = host.world.stages
         self.namespace = names.join(p.namespace(missing="/", empty=host.model.name),
                                     p.text("cameraName"))
         self.frame = names.frame(params.tf_prefix(self.namespace), p.text("frameName"))
@@ -47,13 +50,31 @@ class CameraSettings:
                 p.number(f"distortion{tag}", 0.0) for tag in ("K1", "K2", "T1", "T2", "K3")),
         }
 
-    def image(self, reading: CameraReading) -> Image:
-        """The picture as a message."""
-        return convert.image_to_msg(reading.rgb, reading.time, self.frame, self.encoding)
+    def publish(self, publisher: rospy.Publisher, reading: CameraReading) -> None:
+        """Send the picture."""
+        with self._stages.measure("send"):
+            publisher.publish(convert.image_to_msg(
+                reading.rgb, reading.time, self.frame, self.encoding, self._stages))
 
     def info(self, time: float) -> CameraInfo:
         """What belongs to a picture taken at `time`."""
         return convert.camera_info_to_msg(self._description, time, self.frame, **self._intrinsics)
+
+
+def tell_frame_time(host: Host, camera: Camera, topic: str) -> None:
+    """Log what a picture of this camera costs to draw; by the drawing thread, before the first."""
+    exposure = camera.expose()
+
+    def measure() -> None:
+        took = []
+        while len(took) < 3 and sum(took) < LONGEST_TRIAL:
+            start = time.perf_counter()
+            camera.develop(exposure)
+            took.append(time.perf_counter() - start)
+        size = f"{exposure.view.width}x{exposure.view.height}"
+        log.info("camera %s (%s): %.1f ms a frame", topic, size, min(took) * 1e3)
+
+    host.draw(measure)
 
 
 @plugin("libgazebo_ros_camera.so")
@@ -61,28 +82,27 @@ class CameraPlugin:
     """Draws only while image or camera_info has a subscriber."""
 
     def __init__(self, host: Host):
-        self._world = host.world
-        self._camera = Camera(host.world, host.link, host.sensor, host.shared.renderer())
-        self._settings = CameraSettings(host, self._camera.description)
-        settings = self._settings
+        self._host = host
+        self._camera = Camera(host.world, host.link, host.sensor, host.shared.drawing.renderer())
+        self._settings = settings = CameraSettings(host, self._camera.description)
         rates = [rate for rate in (settings.sensor_rate_hz, settings.plugin_rate_hz) if rate > 0]
-        self._schedule = Schedule(min(rates, default=DEFAULT_RATE), host.world.timestep)
-        self._schedule.restart(host.world.tick)
         self._images = host.advertise(settings.image_topic, Image, queue_size=2, latch=True)
         self._infos = host.advertise(settings.info_topic, CameraInfo, queue_size=2)
+        host.every(min(rates, default=DEFAULT_RATE), self._take, self._wanted)
+        tell_frame_time(host, self._camera, settings.image_topic)
 
-    def update(self) -> None:
-        """Take a picture when due and asked for."""
-        if not self._schedule.due(self._world.tick):
-            return
-        images, infos = self._images.get_num_connections(), self._infos.get_num_connections()
-        if not images and not infos:
-            return
-        self._images.publish(self._settings.image(self._camera.sample()))
-        if infos:
-            self._infos.publish(self._settings.info(self._world.time))
+    def _wanted(self) -> bool:
+        return bool(self._images.get_num_connections() or self._infos.get_num_connections())
 
-    def reset(self) -> None:
-        """Count the rate and draw the noise from the start."""
-        self._camera.restart()
-        self._schedule.restart(self._world.tick)
+    def _take(self) -> None:
+        exposure = self._camera.expose()
+        self._host.draw(lambda: self._send(exposure))
+        if self._images.get_num_connections():
+            self._host.shared.lockstep.expect()
+
+    def _send(self, exposure: Exposure) -> None:
+        """In the drawing thread."""
+        if self._images.get_num_connections():
+            self._settings.publish(self._images, self._camera.develop(exposure))
+        if self._infos.get_num_connections():
+            self._infos.publish(self._settings.info(exposure.time))

@@ -11,7 +11,6 @@ from sensor_msgs.msg import JointState
 
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.model import Joint
-from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
 from bullet_sim_ros import convert, names, params
@@ -38,8 +37,6 @@ class DiffDrivePlugin:
         self._drive = DiffDrive(*self._joints, geometry)
         self._wheel_odometry = WheelOdometry(geometry.wheel_separation, geometry.wheel_diameter)
         self._true = self._source(p.text("odometrySource", "world")) == "world"
-        self._schedule = Schedule(p.number("updateRate", 100.0), host.world.timestep)
-        self._schedule.restart(host.world.tick)
         self._updated = host.world.time
         self._publish_tf = p.flag("publishTf", True)
         self._publish_odom_tf = p.flag("publishOdomTF", True)
@@ -50,6 +47,10 @@ class DiffDrivePlugin:
         self._prefix = prefix
         self._open_topics(namespace, p.text("commandTopic", "cmd_vel"),
                           p.text("odometryTopic", "odom"), p.flag("publishWheelJointState", False))
+        if not self._true:
+            host.each_step(self._count_wheels)
+        host.every(p.number("updateRate", 100.0), self._update)
+        host.on_reset(self._restart)
 
     def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
         return self._host.model.joint(left), self._host.model.joint(right)
@@ -77,14 +78,12 @@ class DiffDrivePlugin:
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 
-    def update(self) -> None:
-        """Publish and drive when due; wheels are counted every step."""
+    def _count_wheels(self) -> None:
+        left, right = self._joints
+        self._wheel_odometry.update(self._host.world.time, left.velocity, right.velocity)
+
+    def _update(self) -> None:
         world = self._host.world
-        if not self._true:
-            left, right = self._joints
-            self._wheel_odometry.update(world.time, left.velocity, right.velocity)
-        if not self._schedule.due(world.tick):
-            return
         if self._states:
             reading = sample_joints(world, self._joints)
             self._states.publish(convert.joints_to_msg(reading, velocities=False))
@@ -118,9 +117,7 @@ class DiffDrivePlugin:
         return convert.transform_to_msg(pose, time, names.frame(self._prefix, parent),
                                         names.frame(self._prefix, child))
 
-    def reset(self) -> None:
-        """Back to standing still at the start."""
+    def _restart(self) -> None:
         self._drive.stop()
         self._wheel_odometry.restart(self._host.world.time)
-        self._schedule.restart(self._host.world.tick)
         self._updated = self._host.world.time

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from concurrent.futures import Future
 
 import rospy
 import tf2_ros
@@ -12,10 +13,13 @@ from rosgraph.names import is_legal_name
 
 from bullet_sim.description import PluginDescription, SensorDescription
 from bullet_sim.model import Link, Model
-from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.world import World
+from bullet_sim_ros.agenda import Agenda, Duty, always
+from bullet_sim_ros.drawing import DrawingThread
+from bullet_sim_ros.errors import PluginError, told
+from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
-from bullet_sim_ros.plugins.parameters import PluginError, PluginParameters
+from bullet_sim_ros.plugins.parameters import PluginParameters
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -23,10 +27,13 @@ log = logging.getLogger("bullet_sim.plugins")
 class Shared:
     """What all plugins of one simulation use together."""
 
-    def __init__(self, world: World, mailbox: Mailbox, renderer: Callable[[], Renderer]):
+    def __init__(self, world: World, mailbox: Mailbox, agenda: Agenda, drawing: DrawingThread,
+                 lockstep: Lockstep):
         self.world = world
         self.mailbox = mailbox
-        self.renderer = renderer  # opened by the first camera
+        self.agenda = agenda
+        self.drawing = drawing
+        self.lockstep = lockstep
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
     def send_transforms(self, transforms: list[TransformStamped]) -> None:
@@ -49,6 +56,20 @@ class Host:
         self._sensor = sensor
         self._link = link
         self._closers: list[Callable[[], None]] = []
+        self._resets: list[Callable[[], None]] = []
+        self._drawn: Future | None = None
+        self._closed = False
+        self._duty: Duty | None = None  # the last that `every` was asked for
+
+    @property
+    def has_sensor(self) -> bool:
+        """Whether the plugin is in a sensor."""
+        return self._sensor is not None
+
+    @property
+    def updates(self) -> int:
+        """How often the plugin has done what it does at a rate."""
+        return self._duty.count if self._duty else 0
 
     @property
     def sensor(self) -> SensorDescription:
@@ -70,19 +91,81 @@ class Host:
         name = self.description.name or "(no name)"
         return f"model {self.model.name}:{sensor} plugin {name} ({self.description.filename})"
 
+    # --- when the loop calls
+
+    def every(self, rate_hz: float, action: Callable[[], None],
+              wanted: Callable[[], bool] = always) -> None:
+        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step."""
+        agenda = self.shared.agenda
+        self._duty = duty = agenda.add(rate_hz, self._guarded(action), wanted)
+        self._closers.append(lambda: agenda.remove(duty))
+
+    def each_step(self, action: Callable[[], None]) -> None:
+        """Call `action` after each single physics step."""
+        guarded = self._guarded(action)
+        world = self.world
+        world.each_step = [*world.each_step, guarded]
+
+        def forget() -> None:
+            world.each_step = [other for other in world.each_step if other is not guarded]
+
+        self._closers.append(forget)
+
+    def on_reset(self, action: Callable[[], None]) -> None:
+        """Call `action` after reset_simulation."""
+        self._resets.append(self._guarded(action))
+
+    def reset(self) -> None:
+        """Time is back at the start."""
+        for action in self._resets:
+            action()
+
+    def draw(self, job: Callable[[], None]) -> None:
+        """Have `job` done by the drawing thread; first waits for this plugin's job before it.
+
+        What that one failed with is raised here.
+        """
+        if self._drawn is not None and not self._drawn.done():
+            with self.world.stages.measure("wait"):
+                self._drawn.exception()
+        if self._drawn is not None:
+            self._drawn.result()
+        self._drawn = self.shared.drawing.submit(job)
+
+    def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
+        def run() -> None:
+            if self._closed:
+                return
+            try:
+                action()
+            except Exception as error:  # a plugin's fault must not take the simulation with it
+                log.error("%s failed and is switched off: %s", self.describe(), told(error))
+                self.close()
+        return run
+
+    # --- ROS
+
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the plugin."""
-        publisher = rospy.Publisher(_legal(topic), kind, **options)
+        """A publisher that lives as long as the plugin. Small messages do not wait for company."""
+        publisher = rospy.Publisher(_legal(topic), kind, tcp_nodelay=True, **options)
         self._closers.append(publisher.unregister)
         return publisher
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
         """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        lockstep = self.shared.lockstep
+        answers = rospy.resolve_name(_legal(topic)) == lockstep.topic
+
         def leave(message) -> None:
             function = take(message)
             if function is not None:
                 self.shared.mailbox.leave(function)
+            if answers:
+                lockstep.hear()
 
+        if answers:
+            lockstep.join()
+            self._closers.append(lockstep.leave)
         subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
         self._closers.append(subscriber.unregister)
         return subscriber
@@ -98,6 +181,9 @@ class Host:
 
     def close(self) -> None:
         """End all topics and services of the plugin."""
+        self._closed = True
+        if self._drawn is not None:
+            self._drawn.exception()  # waits: its topics are still needed
         while self._closers:
             self._closers.pop()()
 

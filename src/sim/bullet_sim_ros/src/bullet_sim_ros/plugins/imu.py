@@ -8,11 +8,10 @@ from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.imu import Imu, ImuReading
 from bullet_sim_ros import convert, names
+from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.parameters import PluginError
 from bullet_sim_ros.plugins.registry import plugin
 
 
@@ -32,19 +31,15 @@ class ImuPlugin:
         if self._noise < 0:
             raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
         self._random_name = f"{link.scoped_name}::{host.description.name}"
-        self._random = host.world.random(self._random_name)
-        self._schedule = Schedule(p.number("updateRate", 0.0), host.world.timestep)
-        self._schedule.restart(host.world.tick)
         topic = names.join(namespace, p.text("topicName", "/default_imu"))
         service = names.join(namespace, p.text("serviceName", "/default_imu"))
         self._readings = host.advertise(topic, ImuMsg, queue_size=1)
         host.serve(service, Empty, lambda _request: EmptyResponse())
+        host.every(p.number("updateRate", 0.0), self._measure, self._readings.get_num_connections)
+        host.on_reset(self._imu.restart)
 
-    def update(self) -> None:
-        """Measure when due and asked for."""
-        if not self._schedule.due(self._world.tick) or not self._readings.get_num_connections():
-            return
-        reading = self._in_link_axes(self._imu.sample())
+    def _measure(self) -> None:
+        reading = self._with_noise(self._in_link_axes(self._imu.sample()))
         self._readings.publish(convert.imu_to_msg(reading, self._frame, self._noise ** 2))
 
     def _in_link_axes(self, reading: ImuReading) -> ImuReading:
@@ -52,17 +47,16 @@ class ImuPlugin:
         return dataclasses.replace(
             reading,
             orientation=multiply(self._offset, reading.orientation),
-            angular_velocity=self._noisy(rotate(back, reading.angular_velocity)),
-            linear_acceleration=self._noisy(rotate(back, reading.linear_acceleration)),
+            angular_velocity=rotate(back, reading.angular_velocity),
+            linear_acceleration=rotate(back, reading.linear_acceleration),
         )
 
-    def _noisy(self, vector):
+    def _with_noise(self, reading: ImuReading) -> ImuReading:
         if not self._noise:
-            return vector
-        return tuple(vector + self._random.normal(0.0, self._noise, 3))
-
-    def reset(self) -> None:
-        """Forget the last velocity and draw the noise from the start."""
-        self._imu.restart()
-        self._random = self._world.random(self._random_name)
-        self._schedule.restart(self._world.tick)
+            return reading
+        noise = self._world.random(self._random_name).normal(0.0, self._noise, 6)
+        return dataclasses.replace(
+            reading,
+            angular_velocity=tuple(reading.angular_velocity + noise[:3]),
+            linear_acceleration=tuple(reading.linear_acceleration + noise[3:]),
+        )

@@ -6,7 +6,6 @@ import logging
 
 from sensor_msgs.msg import JointState
 
-from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugins.host import Host
@@ -29,16 +28,9 @@ class JointStatePublisherPlugin:
             if name not in host.model.joints:
                 log.error("model %s: joint_state_publisher: no joint named %r; there are: %s",
                           host.model.name, name, ", ".join(host.model.joints))
-        self._schedule = Schedule(p.number("updateRate", 100.0), host.world.timestep)
-        self._schedule.restart(host.world.tick)
         self._states = host.advertise(names.join(namespace, "joint_states"), JointState,
                                       queue_size=1000)
+        host.every(p.number("updateRate", 100.0), self._publish, self._states.get_num_connections)
 
-    def update(self) -> None:
-        """Publish when due."""
-        if self._schedule.due(self._world.tick) and self._states.get_num_connections():
-            self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))
-
-    def reset(self) -> None:
-        """Count the rate from here."""
-        self._schedule.restart(self._world.tick)
+    def _publish(self) -> None:
+        self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))

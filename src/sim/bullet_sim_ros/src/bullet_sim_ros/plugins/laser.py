@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from sensor_msgs.msg import LaserScan
 
-from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugins.host import Host
@@ -17,21 +16,12 @@ class LaserPlugin:
 
     def __init__(self, host: Host):
         p = host.parameters
-        self._world = host.world
         self._laser = Laser(host.world, host.link, host.sensor)
         namespace = p.namespace(missing="/", empty=host.model.name)
         self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
-        self._schedule = Schedule(host.sensor.update_rate, host.world.timestep)
-        self._schedule.restart(host.world.tick)
         topic = names.join(namespace, p.text("topicName", "/world"))
         self._scans = host.advertise(topic, LaserScan, queue_size=1)
+        host.every(host.sensor.update_rate, self._sweep, self._scans.get_num_connections)
 
-    def update(self) -> None:
-        """Sweep when due."""
-        if self._schedule.due(self._world.tick) and self._scans.get_num_connections():
-            self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))
-
-    def reset(self) -> None:
-        """Count the rate and draw the noise from the start."""
-        self._laser.restart()
-        self._schedule.restart(self._world.tick)
+    def _sweep(self) -> None:
+        self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))

@@ -5,14 +5,11 @@ from __future__ import annotations
 import logging
 
 from bullet_sim.description import PluginDescription
+from bullet_sim_ros.errors import PluginError
 
 log = logging.getLogger("bullet_sim.plugins")
 
 TRUE, FALSE = ("true", "1"), ("false", "0")
-
-
-class PluginError(Exception):
-    """A plugin that cannot work as written; the message names the tag."""
 
 
 class PluginParameters:

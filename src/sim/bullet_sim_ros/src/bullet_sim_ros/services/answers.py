@@ -8,8 +8,8 @@ from typing import Any
 import rospy
 
 from bullet_sim.errors import SimulationError
+from bullet_sim_ros.errors import told
 from bullet_sim_ros.mailbox import Closed, Mailbox
-from bullet_sim_ros.plugins.registry import told
 
 
 class CallFails(Exception):

@@ -1,0 +1,62 @@
+"""Where the wall-clock time goes: a stopwatch for each stage of the work."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+
+@dataclass
+class Stage:
+    """What one stage has cost so far; wall time in s."""
+
+    count: int = 0
+    total: float = 0.0
+    worst: float = 0.0
+
+
+class Stages:
+    """Stages by name. Several threads may add at once, each to stages of its own."""
+
+    def __init__(self):
+        self.stages: dict[str, Stage] = {}
+        self._thread = threading.local()
+
+    def add(self, name: str, seconds: float, count: int = 1) -> None:
+        """Something was done `count` times in so many seconds of wall time."""
+        stage = self.stages.get(name)
+        if stage is None:
+            stage = self.stages[name] = Stage()
+        stage.count += count
+        stage.total += seconds
+        stage.worst = max(stage.worst, seconds / count)
+
+    @contextmanager
+    def measure(self, name: str) -> Iterator[None]:
+        """Time what stands in the `with` block, less what is measured by itself inside it."""
+        outer = getattr(self._thread, "inside", 0.0)
+        self._thread.inside = 0.0  # s, of this thread, measured inside the present block
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            took = time.perf_counter() - start
+            self.add(name, took - self._thread.inside)
+            self._thread.inside = outer + took
+
+    def totals(self) -> dict[str, float]:
+        """Seconds of wall time by stage, since the start."""
+        return {name: stage.total for name, stage in list(self.stages.items())}
+
+    def table(self, elapsed: float) -> str:
+        """A row for each stage, the costliest first; `elapsed` is the wall time (s) it all took."""
+        head = f"{'stage':<12}{'times':>9}{'ms each':>10}{'worst ms':>10}{'share':>8}"
+        rows = sorted(self.stages.items(), key=lambda item: -item[1].total)
+        return "\n".join([head] + [
+            f"{name:<12}{stage.count:>9}{stage.total / stage.count * 1e3:>10.3f}"
+            f"{stage.worst * 1e3:>10.2f}{stage.total / elapsed:>8.1%}"
+            for name, stage in rows
+        ])

@@ -1,0 +1,65 @@
+"""What is done at rates of simulated time, and when the next of it is due."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from bullet_sim.schedule import Schedule
+from bullet_sim.world import World
+
+# s, simulated: nothing is looked at less often, so that new listeners and commands need not wait.
+LONGEST = 0.01
+
+
+def always() -> bool:
+    """For what is done whether or not anybody listens."""
+    return True
+
+
+class Duty:
+    """One thing to be done again and again, while it is wanted."""
+
+    def __init__(self, schedule: Schedule, action: Callable[[], None], wanted: Callable[[], bool]):
+        self.schedule = schedule
+        self.action = action
+        self.wanted = wanted
+        self.count = 0  # how often it has been done
+
+
+class Agenda:
+    """All duties, done in the order in which they were added."""
+
+    def __init__(self, world: World):
+        self._world = world
+        self._duties: list[Duty] = []
+
+    def add(self, rate_hz: float, action: Callable[[], None],
+            wanted: Callable[[], bool] = always) -> Duty:
+        """Do something `rate_hz` times a simulated second from now on; 0: every step."""
+        schedule = Schedule(rate_hz, self._world.timestep, self._world.tick)
+        self._duties.append(Duty(schedule, action, wanted))
+        return self._duties[-1]
+
+    def remove(self, duty: Duty) -> None:
+        """Not any more."""
+        self._duties = [other for other in self._duties if other is not duty]
+
+    def restart(self) -> None:
+        """Count every rate from this tick, in steps of the present length."""
+        for duty in self._duties:
+            duty.schedule.restart(self._world.tick, self._world.timestep)
+
+    def next_tick(self) -> int:
+        """When to look again: the first tick at which something is due that is wanted now."""
+        now = self._world.tick
+        latest = now + max(1, round(LONGEST / self._world.timestep))
+        return min([latest] + [duty.schedule.next_tick(now)
+                               for duty in self._duties if duty.wanted()])
+
+    def run(self) -> None:
+        """Do what is due at this tick."""
+        now = self._world.tick
+        for duty in self._duties:
+            if duty.schedule.due(now) and duty.wanted():
+                duty.count += 1
+                duty.action()

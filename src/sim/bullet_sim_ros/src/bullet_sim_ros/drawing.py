@@ -1,0 +1,50 @@
+"""Pictures are drawn, made into messages and sent beside the physics, by one thread of their own.
+
+A thread is enough, it need not be a process: llvmpipe, OpenCV and the network work without Python's
+lock, and what a picture is made from never changes while it is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import rospy
+
+from bullet_sim.rendering.renderer import Renderer, open_renderer
+from bullet_sim.stages import Stages
+
+
+class DrawingThread:
+    """Opens the renderer at once, while the world is still being loaded; then does jobs in turn."""
+
+    def __init__(self, stages: Stages):
+        self._stages = stages
+        self._executor = ThreadPoolExecutor(1, "drawing")
+        self._last: Future | None = None
+        self._renderer = self._executor.submit(self._open)
+
+    def renderer(self) -> Renderer:
+        """The renderer, or the SimulationError that opening it ended with."""
+        return self._renderer.result()
+
+    def submit(self, job: Callable[[], None]) -> Future:
+        """Have something done after all that was submitted before."""
+        self._last = self._executor.submit(job)
+        return self._last
+
+    def settle(self) -> None:
+        """Wait until nothing is being drawn."""
+        if self._last is not None:
+            self._last.exception()
+
+    def close(self) -> None:
+        """End the thread; what has not begun is dropped."""
+        self._executor.shutdown(cancel_futures=True)
+        if not self._renderer.cancelled() and self._renderer.exception() is None:
+            self._renderer.result().close()
+
+    def _open(self) -> Renderer:
+        renderer = open_renderer(stages=self._stages)
+        rospy.loginfo("Cameras are drawn by %s", renderer.name)
+        return renderer

@@ -1,0 +1,15 @@
+"""Errors of the ROS side, and what is said about any error."""
+
+from __future__ import annotations
+
+from bullet_sim.errors import SimulationError
+
+
+class PluginError(SimulationError):
+    """A plugin that cannot work as written; the message names the tag."""
+
+
+def told(error: Exception) -> str:
+    """One line for the terminal; the kind of error where it is none of ours."""
+    text = " ".join(str(error).split())
+    return text if isinstance(error, SimulationError) else f"{type(error).__name__}: {text}"

@@ -1,0 +1,67 @@
+"""After each camera frame the world stands still until somebody has answered it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import rospy
+
+from bullet_sim_ros.mailbox import Mailbox
+
+LOOK = 0.1  # s, wall: how often to see whether the simulation has been told to stop
+
+
+class Lockstep:
+    """Waits for one message on a topic; without a topic it never waits.
+
+    The message is heard in the loop, behind the commands that it carries: where a plugin takes the
+    same topic, its own subscription tells us after it has left its command in the mailbox.
+    """
+
+    def __init__(self, topic: str, timeout: float, mailbox: Mailbox):
+        self.topic = rospy.resolve_name(topic) if topic else ""
+        self._timeout = timeout  # s, wall
+        self._mailbox = mailbox
+        self._expecting = False
+        self._plugins = 0  # how many plugins tell us
+        self._subscriber: rospy.Subscriber | None = None  # where none does
+
+    def expect(self) -> None:
+        """A frame was taken for somebody: wait for the answer before the next step."""
+        self._expecting = bool(self.topic)
+        if self._expecting and not self._plugins and self._subscriber is None:
+            self._subscriber = rospy.Subscriber(
+                self.topic, rospy.AnyMsg, lambda _msg: self.hear(), tcp_nodelay=True)
+
+    def join(self) -> None:
+        """A plugin subscribes to the topic, and will call `hear` after each of its messages."""
+        self._plugins += 1
+        if self._subscriber is not None:  # of another message type, and there is one per topic
+            self._subscriber.unregister()
+            self._subscriber = None
+
+    def leave(self) -> None:
+        """That plugin is gone."""
+        self._plugins -= 1
+
+    def hear(self) -> None:
+        """From any thread: a message came."""
+        self._mailbox.leave(self.cancel)
+
+    def cancel(self) -> None:
+        """Wait no longer."""
+        self._expecting = False
+
+    def wait(self, stopped: Callable[[], bool]) -> None:
+        """Run what comes into the mailbox until the answer is there or the time is over."""
+        until = time.monotonic() + self._timeout
+        while self._expecting and not stopped():
+            left = until - time.monotonic()
+            if left <= 0:
+                self._expecting = False
+                rospy.logwarn_throttle(10.0, (
+                    f"lockstep: no message on {self.topic} within {self._timeout:g} s of a camera "
+                    "frame; going on without. Does the follower answer every image there?"))
+                return
+            self._mailbox.run_pending(min(left, LOOK))
