@@ -123,7 +123,7 @@ def test_a_plugin_that_fails_at_work_is_switched_off_with_one_error(world, caplo
     (broken, sound), agenda = load(world, described("libgood.so", body), described("libgood.so"))
     with caplog.at_level(logging.ERROR):
         for _ in range(5):
-            world.step()
+            world.step(agenda.next_tick() - world.tick)
             agenda.run()
         for host in (broken, sound):
             host.reset()

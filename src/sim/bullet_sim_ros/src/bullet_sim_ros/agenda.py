@@ -19,10 +19,12 @@ def always() -> bool:
 class Duty:
     """One thing to be done again and again, while it is wanted."""
 
-    def __init__(self, schedule: Schedule, action: Callable[[], None], wanted: Callable[[], bool]):
+    def __init__(self, schedule: Schedule, tick: int, action: Callable[[], None],
+                 wanted: Callable[[], bool]):
         self.schedule = schedule
         self.action = action
         self.wanted = wanted
+        self.next_tick = schedule.next_tick(tick)
         self.count = 0  # how often it has been done
 
 
@@ -36,8 +38,9 @@ class Agenda:
     def add(self, rate_hz: float, action: Callable[[], None],
             wanted: Callable[[], bool] = always) -> Duty:
         """Do something `rate_hz` times a simulated second from now on; 0: every step."""
-        schedule = Schedule(rate_hz, self._world.timestep, self._world.tick)
-        self._duties.append(Duty(schedule, action, wanted))
+        tick = self._world.tick
+        schedule = Schedule(rate_hz, self._world.timestep, tick)
+        self._duties.append(Duty(schedule, tick, action, wanted))
         return self._duties[-1]
 
     def remove(self, duty: Duty) -> None:
@@ -46,20 +49,26 @@ class Agenda:
 
     def restart(self) -> None:
         """Count every rate from this tick, in steps of the present length."""
+        tick, timestep = self._world.tick, self._world.timestep
         for duty in self._duties:
-            duty.schedule.restart(self._world.tick, self._world.timestep)
+            duty.schedule.restart(tick, timestep)
+            duty.next_tick = duty.schedule.next_tick(tick)
 
     def next_tick(self) -> int:
         """When to look again: the first tick at which something is due that is wanted now."""
         now = self._world.tick
-        latest = now + max(1, round(LONGEST / self._world.timestep))
-        return min([latest] + [duty.schedule.next_tick(now)
-                               for duty in self._duties if duty.wanted()])
+        first = now + max(1, round(LONGEST / self._world.timestep))
+        for duty in self._duties:
+            if duty.next_tick <= now:
+                duty.next_tick = duty.schedule.next_tick(now)
+            if duty.next_tick < first and duty.wanted():
+                first = duty.next_tick
+        return first
 
     def run(self) -> None:
         """Do what is due at this tick."""
         now = self._world.tick
         for duty in self._duties:
-            if duty.schedule.due(now) and duty.wanted():
+            if duty.next_tick == now and duty.wanted():
                 duty.count += 1
                 duty.action()

@@ -19,14 +19,22 @@ class DrawingThread:
     """Opens the renderer at once, while the world is still being loaded; then does jobs in turn."""
 
     def __init__(self, stages: Stages):
-        self._stages = stages
         self._executor = ThreadPoolExecutor(1, "drawing")
         self._last: Future | None = None
-        self._renderer = self._executor.submit(self._open)
+        self._renderer = self._executor.submit(open_renderer, stages=stages)
+        self._told = False
 
     def renderer(self) -> Renderer:
-        """The renderer, or the SimulationError that opening it ended with."""
-        return self._renderer.result()
+        """The renderer, or the SimulationError that opening it ended with. For the loop's thread.
+
+        Only that one logs: when it loads a body, it keeps PyBullet's chatter from the terminal, and
+        with it what another thread has to say.
+        """
+        renderer = self._renderer.result()
+        if not self._told:
+            self._told = True
+            rospy.loginfo("Cameras are drawn by %s", renderer.name)
+        return renderer
 
     def submit(self, job: Callable[[], None]) -> Future:
         """Have something done after all that was submitted before."""
@@ -43,8 +51,3 @@ class DrawingThread:
         self._executor.shutdown(cancel_futures=True)
         if not self._renderer.cancelled() and self._renderer.exception() is None:
             self._renderer.result().close()
-
-    def _open(self) -> Renderer:
-        renderer = open_renderer(stages=self._stages)
-        rospy.loginfo("Cameras are drawn by %s", renderer.name)
-        return renderer

@@ -19,6 +19,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
+from bullet_sim_ros.prompt_connection import send_promptly
 from bullet_sim_ros.services.models import offer_model_services
 from bullet_sim_ros.services.physics import offer_physics_services
 from bullet_sim_ros.services.states import offer_state_services
@@ -88,6 +89,7 @@ def main() -> int:
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     wait_for_master()
+    send_promptly()
     # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
     # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
     rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)

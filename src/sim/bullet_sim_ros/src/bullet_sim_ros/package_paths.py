@@ -33,8 +33,16 @@ def _exports(packages: rospkg.RosPack, attribute: str) -> list[Path]:
     """`<export><gazebo_ros ATTRIBUTE="${prefix}/a:${prefix}/b"/>` of every package."""
     found: dict[Path, None] = {}
     for name in packages.list():
-        manifest = packages.get_manifest(name)
-        for value in manifest.get_export("gazebo_ros", attribute):
-            value = value.replace("${prefix}", packages.get_path(name))
+        folder = packages.get_path(name)
+        if not _manifest_mentions(Path(folder), attribute):
+            continue
+        for value in packages.get_manifest(name).get_export("gazebo_ros", attribute):
+            value = value.replace("${prefix}", folder)
             found.update((Path(part), None) for part in value.split(":") if part)
     return list(found)
+
+
+def _manifest_mentions(folder: Path, word: str) -> bool:
+    """Whether it is worth parsing: to parse all of them takes longer than to load a world."""
+    manifests = [folder / "package.xml", folder / "manifest.xml"]
+    return any(word.encode() in file.read_bytes() for file in manifests if file.is_file())

@@ -39,7 +39,7 @@ class Simulation:
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
         self._shared = Shared(world, self.mailbox, self.agenda, self._drawing, self._lockstep)
         self._plugins: dict[str, list[Host]] = {}
-        self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10, tcp_nodelay=True)
+        self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
         self.agenda.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
         if parameters.enable_ros_network:
@@ -92,8 +92,8 @@ class Simulation:
 
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
-        # This node needs no /clock: it tells rospy the time directly, for its log stamps.
-        rospy.rostime._set_rostime(now)
+        # This node needs no /clock: its log stamps get the time directly. Nobody here sleeps by it.
+        rospy.rostime._rostime_current = now
         self._clock.publish(Clock(now))
 
     # --- pace

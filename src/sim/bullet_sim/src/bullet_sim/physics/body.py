@@ -41,16 +41,21 @@ class Body:
         inertial = self._dynamics(BASE)
         self._pose_base_com = Pose(inertial[3], inertial[4])
         self._set_up_contacts()
+        self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
         for name in self._joint_index:
             self.release(name)
+        client.rest.bodies.append(self)
 
     # --- set-up
 
     def _call(self, function, *args, **kwargs):
         return self._client.call(function, self.number, *args, **kwargs)
 
+    def _read(self, function, *args, **kwargs):
+        return self._client.read(function, self.number, *args, **kwargs)
+
     def _dynamics(self, index: int):
-        return self._call(pybullet.getDynamicsInfo, index)
+        return self._read(pybullet.getDynamicsInfo, index)
 
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; Gazebo does so only where <velocity_decay> asks for it.
@@ -74,11 +79,11 @@ class Body:
         """Pose and twist of every described link frame."""
         states = {}
         base = self.tree.links[0]
-        linear, angular = self._call(pybullet.getBaseVelocity)
+        linear, angular = self._read(pybullet.getBaseVelocity)
         states[base.described] = _described(
             base, self.base_frame(), self._com_position(BASE), linear, angular
         )
-        rows = self._call(pybullet.getLinkStates, self._link_indices, computeLinkVelocity=1,
+        rows = self._read(pybullet.getLinkStates, self._link_indices, computeLinkVelocity=1,
                           computeForwardKinematics=1) if self._link_indices else ()
         for link, row in zip(self.tree.links[1:], rows, strict=True):
             if link.name == link.described:
@@ -87,7 +92,7 @@ class Body:
 
     def base_frame(self) -> Pose:
         """The base link's frame in the world, as the engine has it."""
-        pose_com = Pose(*self._call(pybullet.getBasePositionAndOrientation))
+        pose_com = Pose(*self._read(pybullet.getBasePositionAndOrientation))
         return pose_com * self._pose_base_com.inverse()
 
     def set_base_frame(self, frame: Pose) -> None:
@@ -114,14 +119,14 @@ class Body:
 
     def _com_position(self, index: int) -> Vector3:
         if index == BASE:
-            return self._call(pybullet.getBasePositionAndOrientation)[0]
-        return self._call(pybullet.getLinkState, index)[0]
+            return self._read(pybullet.getBasePositionAndOrientation)[0]
+        return self._read(pybullet.getLinkState, index)[0]
 
     # --- joints
 
     def joint_state(self, joint: str) -> tuple[float, float]:
         """Position and rate: rad and rad/s, or m and m/s."""
-        row = self._call(pybullet.getJointState, self._joint_index[joint])
+        row = self._read(pybullet.getJointState, self._joint_index[joint])
         return row[0], row[1]
 
     def reset_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
@@ -130,11 +135,15 @@ class Body:
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a rate with at most `effort` (N m or N), until told otherwise."""
+        if self._motors.get(joint) == (velocity, effort):
+            return
+        self._motors[joint] = (velocity, effort)
         self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
                    pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
 
     def drive_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step."""
+        self._motors.pop(joint, None)
         self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
                    pybullet.TORQUE_CONTROL, force=effort)
 
@@ -153,7 +162,26 @@ class Body:
 
     def remove(self) -> None:
         """Take the body out of the world."""
+        self._client.rest.bodies.remove(self)
         self._call(pybullet.removeBody)
+
+    # --- rest
+
+    def wants_to_move(self) -> bool:
+        """Whether a motor is to hold a rate other than zero."""
+        return any(velocity and effort for velocity, effort in self._motors.values())
+
+    def speeds(self) -> tuple[float, float]:
+        """Greatest speed, m/s, and rate of turn, rad/s, of base and joints."""
+        linear, angular = self._read(pybullet.getBaseVelocity)
+        speed, rate = max(map(abs, linear)), max(map(abs, angular))
+        for joint, index in self._joint_index.items():
+            moved = abs(self._read(pybullet.getJointState, index)[1])
+            if self.joint_description(joint).type == "prismatic":
+                speed = max(speed, moved)
+            else:
+                rate = max(rate, moved)
+        return speed, rate
 
 
 def cross(a, b) -> Vector3:

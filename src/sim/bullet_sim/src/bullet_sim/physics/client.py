@@ -8,6 +8,7 @@ from pathlib import Path
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.physics.quiet import STDOUT, pybullet, quiet
+from bullet_sim.physics.rest import Rest
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 
@@ -25,9 +26,10 @@ RAYS_AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 
 
 class PhysicsClient:
-    """Owner of one engine instance. Everything else reaches PyBullet through `call`."""
+    """Owner of one engine instance. Everything else reaches PyBullet through `call` and `read`."""
 
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
+        self.rest = Rest()
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
 
@@ -47,19 +49,25 @@ class PhysicsClient:
         self.call(pybullet.setGravity, *gravity)
 
     def call(self, function, *args, **kwargs):
-        """Run a pybullet function on this client."""
+        """Run a pybullet function that changes something."""
+        self.rest.disturb()
+        return function(*args, physicsClientId=self._id, **kwargs)
+
+    def read(self, function, *args, **kwargs):
+        """Run a pybullet function that only reads."""
         return function(*args, physicsClientId=self._id, **kwargs)
 
     def step(self) -> None:
-        """Advance the engine by one fixed step."""
-        pybullet.stepSimulation(physicsClientId=self._id)
+        """Advance the engine by one fixed step, unless it would change nothing."""
+        if self.rest.step_needed():
+            pybullet.stepSimulation(physicsClientId=self._id)
 
     def cast_rays(self, starts: list, ends: list) -> list:
         """Rows of (body, link, fraction, position, normal); body -1 where nothing was hit."""
         rows = []
         for first in range(0, len(starts), RAYS_AT_ONCE):
             some = slice(first, first + RAYS_AT_ONCE)
-            rows += self.call(pybullet.rayTestBatch, starts[some], ends[some])
+            rows += self.read(pybullet.rayTestBatch, starts[some], ends[some])
         return rows
 
     def load(self, tree: Tree, pose: Pose) -> int:

@@ -146,8 +146,8 @@ class Host:
     # --- ROS
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the plugin. Small messages do not wait for company."""
-        publisher = rospy.Publisher(_legal(topic), kind, tcp_nodelay=True, **options)
+        """A publisher that lives as long as the plugin."""
+        publisher = rospy.Publisher(_legal(topic), kind, **options)
         self._closers.append(publisher.unregister)
         return publisher
 

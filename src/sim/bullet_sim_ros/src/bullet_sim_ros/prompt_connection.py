@@ -1,0 +1,111 @@
+"""Sends messages at once where the socket takes them; a subscriber that hangs still delays nobody.
+
+rospy hands every message to a thread of the connection. At the rates of a simulator these switches
+between threads cost more than the rest of publishing: 0.25 ms for each small message (measured), a
+third of the time for a frame when time runs at four times its usual pace.
+"""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections import deque
+
+import rospy.topics
+from rospy.exceptions import TransportTerminated
+from rospy.impl.transport import Transport
+
+
+def send_promptly() -> None:
+    """Have every publisher of this process that has a queue send this way. Before the first one."""
+    rospy.topics.QueuedConnection = PromptConnection
+
+
+class PromptConnection:
+    """In the place of rospy's QueuedConnection: what the socket does not take waits in a queue."""
+
+    def __init__(self, connection: Transport, queue_size: int):
+        """A queue of `queue_size` messages, 0: without limit; when full, the oldest one goes."""
+        self._connection = connection
+        self._queue_size = queue_size
+        self._changed = threading.Condition()
+        self._queue: deque[memoryview] = deque()
+        self._sending: memoryview | None = None  # begun, so it has to be sent to its end
+        self._error: Exception | None = None
+        self._thread: threading.Thread | None = None
+        connection.set_cleanup_callback(self._closed)
+        connection.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def __getattr__(self, name: str):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self._connection, name)
+
+    def write_data(self, data: bytes) -> bool:
+        """Send a message, or queue it; what went wrong before is raised now."""
+        try:
+            with self._changed:
+                self._take(memoryview(data))
+        except OSError as error:
+            # Not under our lock: closing takes rospy's lock of the topic, and who holds that one
+            # to close a connection comes here for ours.
+            self._connection.close()
+            raise TransportTerminated(str(error)) from error
+        return True
+
+    def _take(self, data: memoryview) -> None:
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
+        if self._sending is None and not self._queue:
+            data = self._send(data)
+            if not data:
+                return
+            self._sending = data
+        else:
+            if 0 < self._queue_size == len(self._queue):
+                self._queue.popleft()
+            self._queue.append(data)
+        self._start_thread()
+        self._changed.notify()
+
+    def _send(self, data: memoryview) -> memoryview:
+        """Give the socket what it takes without waiting; returns the rest."""
+        connection = self._connection
+        if connection.done or not connection.socket:
+            raise TransportTerminated("connection closed")
+        try:
+            sent = connection.socket.send(data, socket.MSG_DONTWAIT)
+        except BlockingIOError:
+            sent = 0
+        connection.stat_bytes += sent
+        connection.stat_num_msg += sent == len(data)
+        return data[sent:]
+
+    def _start_thread(self) -> None:
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._work_off, daemon=True)
+            self._thread.start()
+
+    def _work_off(self) -> None:
+        """In the connection's thread: send what waits, however long the subscriber takes."""
+        while not self._connection.done:
+            with self._changed:
+                while self._sending is None and not self._queue and not self._connection.done:
+                    self._changed.wait()
+                if self._sending is None and self._queue:
+                    self._sending = self._queue.popleft()
+                data = self._sending
+            if data is None:
+                return
+            try:
+                self._connection.write_data(data)
+                error = None
+            except Exception as failure:  # raised where the next message is published
+                error = failure
+            with self._changed:
+                self._sending, self._error = None, error
+
+    def _closed(self, _connection: Transport) -> None:
+        with self._changed:
+            self._changed.notify()
