@@ -3,6 +3,7 @@
 #
 #   scripts/setup.sh                 everything that running needs
 #   scripts/setup.sh --tests         and what only the tests need
+#   scripts/setup.sh --bench         and what only the benchmark needs (its chart); the tests need it too
 #   scripts/setup.sh --build         build even where no input of the build has changed
 #   scripts/setup.sh --dependencies  all but the build
 #
@@ -10,17 +11,18 @@
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 debian_mb=2000  # measured: 1550 installed, 405 in apt's cache
-python_mb=1050  # measured: 735 installed, 250 in pip's cache and while it unpacks
+python_mb=1150  # measured: 830 installed, 250 in pip's cache and while it unpacks
 build_mb=40     # measured: 8 with the packages of the first release
 
 state=$root/.setup venv=$root/.venv
-tests=no force_build=no build=yes
+tests=no bench=no force_build=no build=yes
 for option in "$@"; do
   case "$option" in
-    --tests) tests=yes ;;
+    --tests) tests=yes bench=yes ;;
+    --bench) bench=yes ;;
     --build) force_build=yes ;;
     --dependencies) build=no ;;
-    *) fail "unknown option $option; there are --tests, --build and --dependencies" ;;
+    *) fail "unknown option $option; there are --tests, --bench, --build and --dependencies" ;;
   esac
 done
 did=no
@@ -134,7 +136,8 @@ python_environment() {
 }
 python_packages() {
   local file
-  for file in requirements.txt $([ "$tests" = no ] || echo requirements-test.txt); do
+  for file in requirements.txt $([ "$tests" = no ] || echo requirements-test.txt) \
+    $([ "$bench" = no ] || echo requirements-bench.txt); do
     ! cmp -s "$root/$file" "$state/$file" || continue
     step 4 "installing the Python packages of $file"
     touch "$state/venv-unfinished"

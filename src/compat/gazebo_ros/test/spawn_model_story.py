@@ -153,6 +153,27 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((process.returncode, self.gazebo.names()), (0, ["spawn_urdf_model"]))
         self.assertIn("Waiting for model table before proceeding.", said)
 
+    def start_before_the_simulator(self, gazebo):
+        process = self.start(*PLAIN, "-gazebo_namespace", gazebo)
+        line = next(line for line in process.stdout if "Waiting" in line)
+        self.assertIn(f"Waiting for service {gazebo}/spawn_urdf_model", line)
+        time.sleep(0.1)  # several looks: none of them may find it
+        self.assertIsNone(process.poll())
+        return process
+
+    def test_a_simulator_that_comes_later(self):
+        process = self.start_before_the_simulator("/late")
+        late = FakeGazebo("/late")
+        said, _ = process.communicate(timeout=LIMIT)
+        self.assertEqual((process.returncode, late.names()), (0, ["spawn_urdf_model"]), said)
+
+    def test_stopped_before_there_is_a_simulator(self):
+        process = self.start_before_the_simulator("/never")
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate(timeout=LIMIT)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("spawn_model: stopped before it was done", said)
+
     def test_stopped_while_waiting(self):
         process = self.start(*PLAIN, "-wait", "table")
         until(self.gazebo.states.get_num_connections, "the subscription to model_states")

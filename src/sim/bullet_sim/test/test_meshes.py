@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -134,6 +136,40 @@ def test_submesh_is_a_collada_node_and_can_be_centred(dae):
         load_mesh(Mesh(str(dae), submesh="middle"))
 
 
+def test_stl_text_with_two_solids(tmp_path):
+    triangle = "FACET normal 0 0 1\n outer loop\n{}\n endloop\nendfacet\n"
+    corners = ["vertex 0 0 {z}", "vertex 1.5e0 0 {z}", "VERTEX 0 +2 {z}"]
+    path = tmp_path / "two.STL"
+    path.write_text("".join(
+        f"solid {name}\n" + triangle.format("\n".join(corners).format(z=z)) + f"endsolid {name}\n"
+        for name, z in (("low one", "0"), ("high", "-.5"))
+    ))
+    low, _ = load_mesh(Mesh(str(path)))
+    np.testing.assert_array_equal(low.vertices, [(0, 0, 0), (1.5, 0, 0), (0, 2, 0)])
+    (high,) = load_mesh(Mesh(str(path), submesh="high"))
+    np.testing.assert_array_equal(high.vertices[:, 2], [-0.5] * 3)
+    with pytest.raises(FormatError, match="'middle'; there are: high, low one"):
+        load_mesh(Mesh(str(path), submesh="middle"))
+
+
+def test_binary_stl_may_begin_like_a_text(tmp_path, box):
+    content = box.export(file_type="stl")
+    (tmp_path / "box.stl").write_bytes(b"solid box".ljust(80) + content[80:])
+    (part,) = load_mesh(Mesh(str(tmp_path / "box.stl")))
+    assert len(part.faces) == 12
+
+
+def test_the_robots_meshes_are_read_without_trimesh(tmp_path, box, dae):
+    """Its import costs more than all of a robot's spawning."""
+    box.export(tmp_path / "box.stl")
+    script = (
+        "import sys; from bullet_sim.description import Mesh; from bullet_sim.meshes import *;"
+        f"load_mesh(Mesh({str(tmp_path / 'box.stl')!r})); load_mesh(Mesh({str(dae)!r}));"
+        "sys.exit(' '.join({'trimesh', 'scipy'} & sys.modules.keys()) or 0)"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
+
+
 def test_obj_with_two_materials(tmp_path):
     (tmp_path / "sign.png").write_bytes(b"not looked at when loading")
     (tmp_path / "two.mtl").write_text(
@@ -165,6 +201,9 @@ def test_obj_without_its_material_library_still_loads(tmp_path):
 @pytest.mark.parametrize(("name", "content", "reason"), [
     ("junk.stl", b"nonsense" * 30, "neither text nor binary STL"),
     ("empty.stl", b"", "neither text nor binary STL"),
+    ("cut.stl", b"a header".ljust(80) + b"\2\0\0\0" + bytes(99), "neither text nor binary STL"),
+    ("cut_text.stl", b"solid x\nvertex 0 0 0\nvertex 1 0 0\n", "'x' has a facet without three"),
+    ("word.stl", b"solid\nvertex 0 0 zero\n", "could not convert string to float: 'zero'"),
     ("cut.dae", b"<COLLADA", "XML Parsing Error"),
     ("text.obj", b"hello", "no triangles"),
     ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "out of bounds"),

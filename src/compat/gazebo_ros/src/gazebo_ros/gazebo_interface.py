@@ -8,6 +8,8 @@ from gazebo_msgs.srv import *  # noqa: F403
 from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Wrench  # noqa: F401
 
+from gazebo_ros.service_wait import wait_for_service
+
 JOINT_DELAY = 1.0  # s, wall time; upstream's answer to its issue 93
 
 
@@ -43,7 +45,7 @@ def _spawn(language, gazebo_namespace, *request):
 
 def _call(service, kind, title, request, delay=0.0):
     rospy.loginfo(f"Waiting for service {service}")
-    rospy.wait_for_service(service)
+    wait_for_service(service)
     if delay:
         rospy.loginfo(f"Waiting {delay:.0f} s so that the joints are there (upstream issue 93)")
         time.sleep(delay)

@@ -12,6 +12,8 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
 from gazebo_ros import gazebo_interface, model_source, spawn_arguments
+from gazebo_ros.quiet_end import end_quietly
+from gazebo_ros.service_wait import wait_for_service
 
 POLL_PERIOD = 0.1  # s
 
@@ -63,7 +65,7 @@ def spawn(options, positions: list[float]) -> bool:
 
 def unpause(gazebo: str) -> bool:
     rospy.loginfo("Unpausing physics")
-    rospy.wait_for_service(f"{gazebo}/unpause_physics")
+    wait_for_service(f"{gazebo}/unpause_physics")
     try:
         rospy.ServiceProxy(f"{gazebo}/unpause_physics", Empty)()
     except rospy.ServiceException as error:
@@ -114,6 +116,7 @@ def main() -> int:
     options = spawn_arguments.parser().parse_args(rospy.myargv()[1:])
     try:
         positions = spawn_arguments.joint_positions(options.joints)
+        end_quietly()
         rospy.init_node("spawn_model", anonymous=True)
         return run(options, positions)
     except ValueError as error:

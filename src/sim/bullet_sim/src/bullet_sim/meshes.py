@@ -14,7 +14,8 @@ import numpy as np
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.mesh_collada import read_collada
-from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.mesh_part import MeshPart, NamedPart
+from bullet_sim.mesh_stl import read_stl
 from bullet_sim.mesh_wavefront import read_wavefront
 
 __all__ = ["MeshPart", "collision_mesh", "load_mesh", "to_obj"]
@@ -143,25 +144,10 @@ def _scaled(part: MeshPart, scale: tuple[float, float, float]) -> MeshPart:
     )
 
 
-def _read_stl(path: Path, split: bool) -> list[NamedPart]:
-    """Text or binary STL: one part, flat shaded, no material."""
-    from trimesh.exchange.stl import load_stl
-
-    with path.open("rb") as file:
-        loaded = load_stl(file)
-    if not loaded.get("geometry") and "vertices" not in loaded:
-        raise FormatError("neither text nor binary STL, or empty")
-    solids = loaded.get("geometry") or {path.stem: loaded}
-    return [
-        (name, flat_shaded(np.asarray(solid["vertices"]), np.asarray(solid["faces"])))
-        for name, solid in solids.items()
-    ]
-
-
 _READERS = {
-    ".stl": _read_stl,
-    ".stla": _read_stl,
-    ".stlb": _read_stl,
+    ".stl": read_stl,
+    ".stla": read_stl,
+    ".stlb": read_stl,
     ".obj": read_wavefront,
     ".dae": read_collada,
 }

@@ -78,7 +78,7 @@ class Model:
     """A spawned description. Everything is in world coordinates unless a name says otherwise."""
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
-                 client: PhysicsClient, gravity: Vector3):
+                 client: PhysicsClient):
         self.name = name
         self.description = description
         self.static = description.static
@@ -101,9 +101,7 @@ class Model:
             for body in self.bodies for joint in body.joint_names()
         }
         self._weightless = [] if self.static else [
-            (link, gravity_compensation(link.description, gravity))
-            for link in self.links.values() if not link.description.gravity
-        ]
+            link for link in self.links.values() if not link.description.gravity]
 
     # --- state
 
@@ -166,10 +164,10 @@ class Model:
 
     # --- for the world
 
-    def before_step(self) -> None:
-        """Forces that act every step."""
-        for link, force in self._weightless:
-            link.apply_force(force)
+    def before_step(self, gravity: Vector3) -> None:
+        """Forces that act every step; gravity in m/s^2."""
+        for link in self._weightless:
+            link.apply_force(gravity_compensation(link.description, gravity))
 
     def link(self, name: str) -> Link:
         """The link, or the one that took it in when fixed joints were lumped."""

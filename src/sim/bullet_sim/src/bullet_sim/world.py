@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import zlib
 from collections.abc import Callable
@@ -14,6 +15,7 @@ from bullet_sim.errors import NameTaken, UnknownName
 from bullet_sim.model import Link, Model
 from bullet_sim.physics.body import Twist
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.limits import check_physics
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.stages import Stages
@@ -51,9 +53,10 @@ class World:
     def __init__(self, description: WorldDescription | None = None, seed: int = 0,
                  initial_time: float = 0.0):
         self.description = description or WorldDescription()
+        check_physics(self.description.physics)
         self.seed = seed
-        self._initial_tick = round(initial_time / self.timestep)
-        self.tick = self._initial_tick
+        self._initial_time = initial_time
+        self.tick = round(initial_time / self.timestep)
         self.paused = False
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightDescription] = {}
@@ -86,9 +89,10 @@ class World:
             return
         start = time.perf_counter()
         step, moving, each_step = self._client.step, self._moving, self.each_step
+        gravity = self.description.gravity
         for _ in range(count):
             for model in moving:
-                model.before_step()
+                model.before_step(gravity)
             step()
             self.tick += 1
             for model in moving:
@@ -113,8 +117,7 @@ class World:
         name = name or description.name
         if name in self.models:
             raise NameTaken(f"a model named {name!r} is already there; delete it or choose another")
-        model = Model(name, description, pose * description.pose, self._client,
-                      self.description.gravity)
+        model = Model(name, description, pose * description.pose, self._client)
         self.models[name] = model
         self._note_moving()
         try:
@@ -201,7 +204,7 @@ class World:
     def reset_simulation(self) -> None:
         """As `reset_models`, and time starts again where it began."""
         self.reset_models()
-        self.tick = self._initial_tick
+        self.tick = round(self._initial_time / self.timestep)
 
     # --- reads
 
@@ -232,12 +235,14 @@ class World:
         return RayHits(fraction, retro)
 
     def configure_physics(self, **changes) -> None:
-        """Change fields of the world's PhysicsDescription, and gravity (m/s^2)."""
+        """Change fields of the world's PhysicsDescription, and gravity (m/s^2): all or none."""
         gravity = changes.pop("gravity", self.description.gravity)
         physics = replace(self.description.physics, **changes)
-        self.tick = round(self.time / physics.max_step_size)
-        self.description = replace(self.description, physics=physics, gravity=gravity)
+        check_physics(physics)
         self._client.configure(physics, gravity)
+        # Up to a whole number of the new steps: time must not go back.
+        self.tick = math.ceil(self.time / physics.max_step_size - 1e-6)
+        self.description = replace(self.description, physics=physics, gravity=gravity)
 
     def close(self) -> None:
         """Let go of the engine."""

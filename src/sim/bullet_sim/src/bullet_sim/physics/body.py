@@ -45,6 +45,7 @@ class Body:
         for name in self._joint_index:
             self.release(name)
         client.rest.bodies.append(self)
+        client.planes.put(self.number, tree, self.base_frame())
 
     # --- set-up
 
@@ -100,6 +101,7 @@ class Body:
         frame = Pose(frame.position, normalised(frame.orientation))
         com = frame * self._pose_base_com
         self._call(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
+        self._client.planes.put(self.number, self.tree, frame)
 
     def set_twist(self, twist: Twist, origin: Vector3) -> None:
         """Move as a rigid whole whose point `origin` (world) has that twist."""
@@ -163,6 +165,7 @@ class Body:
     def remove(self) -> None:
         """Take the body out of the world."""
         self._client.rest.bodies.remove(self)
+        self._client.planes.remove(self.number)
         self._call(pybullet.removeBody)
 
     # --- rest

@@ -76,7 +76,7 @@ def tell_frame_time(host: Host, camera: Camera, topic: str) -> None:
         line = f"camera {topic} ({view.width}x{view.height}): {min(took) * 1e3:.1f} ms a frame"
         host.shared.mailbox.leave(lambda: rospy.loginfo("%s", line))
 
-    host.draw(measure)
+    host.shared.drawing.submit(measure)
 
 
 @plugin("libgazebo_ros_camera.so")
@@ -97,10 +97,10 @@ class CameraPlugin:
         return bool(self._images.get_num_connections() or self._infos.get_num_connections())
 
     def _take(self) -> None:
-        exposure = self._camera.expose()
-        self._host.draw(lambda: self._send(exposure))
         if self._images.get_num_connections():
             self._host.shared.lockstep.expect()
+        exposure = self._camera.expose()
+        self._host.draw(lambda: self._send(exposure))
 
     def _send(self, exposure: Exposure) -> None:
         """In the drawing thread."""

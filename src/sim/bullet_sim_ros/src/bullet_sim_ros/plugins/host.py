@@ -123,8 +123,13 @@ class Host:
     def draw(self, job: Callable[[], None]) -> None:
         """Have `job` done by the drawing thread; first waits for this plugin's job before it.
 
-        What that one failed with is raised here.
+        What that one failed with is raised here. In lockstep the world waits for the picture anyway
+        and the job is done at once.
         """
+        if self.shared.lockstep.topic:
+            self.shared.drawing.settle()  # the renderer does one thing at a time
+            job()
+            return
         if self._drawn is not None and not self._drawn.done():
             with self.world.stages.measure("wait"):
                 self._drawn.exception()

@@ -49,10 +49,10 @@ class OpenniKinectPlugin:
         return any(publisher.get_num_connections() for publisher in self._wakers)
 
     def _take(self) -> None:
-        exposure = self._camera.expose()
-        self._host.draw(lambda: self._send(exposure))
         if any(publisher.get_num_connections() for publisher in self._pictures):
             self._host.shared.lockstep.expect()
+        exposure = self._camera.expose()
+        self._host.draw(lambda: self._send(exposure))
 
     def _send(self, exposure: Exposure) -> None:
         """In the drawing thread."""

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 
+from bullet_sim.errors import SimulationError
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
 
 if TYPE_CHECKING:
     from bullet_sim_ros.simulation import Simulation
 
-LONGEST_STEP = 0.1  # s; with longer ones contacts are no physics any more
 # Fields of gazebo_msgs/ODEPhysics and of our PhysicsDescription.
 ODE = {
     "sor_pgs_precon_iters": "precon_iterations",
@@ -50,17 +50,14 @@ def get_physics_properties(simulation: Simulation, response) -> None:
 
 def set_physics_properties(simulation: Simulation, request, response) -> None:
     """Writes every field, as upstream: get first, change, then set."""
-    if not 0 < request.time_step <= LONGEST_STEP:
-        raise ServiceError(f"SetPhysicsProperties: time_step is {request.time_step:g} s; more than "
-                           f"0 and at most {LONGEST_STEP:g} is possible")
-    if not 0 <= request.max_update_rate <= convert.LARGEST:
-        raise ServiceError(f"SetPhysicsProperties: max_update_rate is {request.max_update_rate:g} "
-                           "Hz; 0 (as fast as it goes) or more is possible")
     if not convert.is_sane(request.gravity):
         raise ServiceError("SetPhysicsProperties: gravity is not finite")
     gravity = (request.gravity.x, request.gravity.y, request.gravity.z)
     ode = {ours: getattr(request.ode_config, field) for field, ours in ODE.items()}
-    simulation.configure_physics(
-        max_step_size=request.time_step, real_time_update_rate=request.max_update_rate,
-        gravity=gravity, **ode)
+    try:
+        simulation.configure_physics(
+            max_step_size=request.time_step, real_time_update_rate=request.max_update_rate,
+            gravity=gravity, **ode)
+    except SimulationError as error:
+        raise ServiceError(f"SetPhysicsProperties: {error}") from None
     done(response, "physics engine updated")

@@ -1,0 +1,1 @@
+"""`make bench`: measures the simulator beside what else there is; writes figures and a chart."""

@@ -1,0 +1,215 @@
+"""The course's picture worked out ray by ray: what a perfect renderer would give.
+
+A ray through each pixel is cut with the floor's planes; the texture is averaged over many points of
+the pixel, and lit as Gazebo lights it: emissive + ambient x the scene's ambient + the sum over
+directional lights of diffuse x diffuse x cosine, at most 1, times the texture. Highlights, which
+are less than half a grey level on these floors, and the robot, which its camera does not see, are
+left out. Nothing here is shared with the renderer but the description of the world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from bullet_sim.description import Plane, WorldDescription
+from bullet_sim.pose import Pose, rotate
+from bullet_sim.rendering.frame import CameraView
+
+COLUMNS_PER_PIXEL = 4  # samples side by side
+MOST_ROWS_PER_PIXEL, FEWEST_ROWS_PER_PIXEL = 64, 4
+# A trilinear texture filter reaches three of the pixel's longest sides on the floor to every side:
+# its coarser level has texels of up to two sides, and takes in one and a half of them.
+FILTER_REACH = 3.0
+EDGE_STEP = 2  # grey levels between neighbouring texels that make an edge
+
+
+@dataclass(frozen=True)
+class FloorPlane:
+    """A horizontal rectangle, centred at `pose`, seen from above."""
+
+    pose: Pose
+    size: tuple[float, float]  # m
+    light: np.ndarray  # (3,) RGB, what the texture or white is multiplied with, 0..1
+    texture: np.ndarray | None  # (height, width, 3) float32 RGB 0..255, first row at +y
+    edge_distance: np.ndarray | None  # (height, width) float32 m, of a texel from an edge in it
+
+    def local(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points of the world's floor in the plane's own axes, m."""
+        yaw = self.pose.rpy()[2]
+        dx, dy = x - self.pose.position[0], y - self.pose.position[1]
+        return np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx
+
+    def inside(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Which of these points of the plane lie in the rectangle."""
+        return (np.abs(u) <= self.size[0] / 2) & (np.abs(v) <= self.size[1] / 2)
+
+    def look_up(self, image: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """A picture of the plane, bilinearly, at points of the plane (2-D arrays)."""
+        height, width = image.shape[:2]
+        columns = (u / self.size[0] + 0.5) * width - 0.5
+        rows = (0.5 - v / self.size[1]) * height - 0.5
+        columns, rows = columns.astype(np.float32), rows.astype(np.float32)
+        return cv2.remap(image, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+
+
+@dataclass(frozen=True)
+class AnalyticPicture:
+    """The picture, and how far from any edge each pixel is."""
+
+    rgb: np.ndarray  # (height, width, 3) float32, 0..255
+    clear: np.ndarray  # (height, width) bool: no edge within the reach of a texture filter
+
+
+def floor_planes(description: WorldDescription) -> list[FloorPlane]:
+    """The planes of a world's static models, the smallest first: it lies on top."""
+    planes = []
+    for model in description.models:
+        for link in model.links:
+            for visual in link.visuals:
+                if isinstance(visual.geometry, Plane):
+                    pose = model.pose * link.pose * visual.pose
+                    planes.append(_floor_plane(description, pose, visual))
+    return sorted(planes, key=lambda plane: max(plane.size))
+
+
+def render(description: WorldDescription, view: CameraView) -> AnalyticPicture:
+    """The floor and the background as a camera above it sees them."""
+    planes = floor_planes(description)
+    background = 255 * np.array(description.scene.background[:3], np.float32)
+    rgb = np.empty((view.height, view.width, 3), np.float32)
+    clear = np.empty((view.height, view.width), bool)
+    for row in range(view.height):
+        size = _pixel_size(view, row)
+        samples = _rows_per_pixel(planes, size)
+        rgb[row] = _row_colours(planes, view, row, samples, background)
+        clear[row] = _row_clear(planes, view, row, size)
+    return AnalyticPicture(rgb, clear & ~_near_horizon(view))
+
+
+def difference(picture: np.ndarray, analytic: AnalyticPicture) -> np.ndarray:
+    """Grey levels, the worst channel of each pixel: (height, width) float32."""
+    return np.abs(picture.astype(np.float32) - analytic.rgb).max(axis=2)
+
+
+def floor_points(
+    view: CameraView, columns: np.ndarray, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, y (m) where rays through picture points meet z = 0, and whether they do.
+
+    Pixel edges are whole numbers; a point counts if it lies between the near and far planes.
+    """
+    focal = view.focal_length_px
+    left = (view.width / 2 - columns) / focal
+    up = (view.height / 2 - rows) / focal
+    turn = view.pose.matrix()[:3, :3]
+    ray = [turn[i, 0] + turn[i, 1] * left + turn[i, 2] * up for i in range(3)]
+    eye = view.pose.position
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = np.where(ray[2] < 0, -eye[2] / ray[2], np.inf)
+        met = (depth >= view.near) & (depth <= view.far)
+        depth = np.where(met, depth, 0.0)
+    return eye[0] + depth * ray[0], eye[1] + depth * ray[1], met
+
+
+def _floor_plane(description: WorldDescription, pose: Pose, visual: object) -> FloorPlane:
+    material, texture, edges = visual.material, None, None
+    size = visual.geometry.size
+    if material.texture is not None:
+        texture = cv2.cvtColor(cv2.imread(material.texture), cv2.COLOR_BGR2RGB).astype(np.float32)
+        edges = _edge_distance(texture, max(size) / max(texture.shape))
+    light = np.array(material.emissive[:3], np.float32)
+    light = light + np.multiply(material.ambient[:3], description.scene.ambient[:3])
+    for source in description.lights:
+        if source.type == "directional":
+            direction = np.array(rotate(source.pose.orientation, source.direction))
+            cosine = max(0.0, -direction[2] / np.linalg.norm(direction))
+            light = light + cosine * np.multiply(material.diffuse[:3], source.diffuse[:3])
+    return FloorPlane(pose, size, np.minimum(light, 1.0).astype(np.float32), texture, edges)
+
+
+def _edge_distance(texture: np.ndarray, metres_per_texel: float) -> np.ndarray:
+    """How far (m) each texel is from the next one that differs from a neighbour."""
+    step = np.zeros(texture.shape[:2], bool)
+    across = np.abs(np.diff(texture, axis=1)).max(axis=2) > EDGE_STEP
+    along = np.abs(np.diff(texture, axis=0)).max(axis=2) > EDGE_STEP
+    step[:, 1:] |= across
+    step[:, :-1] |= across
+    step[1:] |= along
+    step[:-1] |= along
+    return cv2.distanceTransform((~step).astype(np.uint8), cv2.DIST_L2, 5) * metres_per_texel
+
+
+def _pixel_size(view: CameraView, row: int) -> np.ndarray:
+    """The longest side (m) that each pixel of a row has on the floor; inf in the sky."""
+    columns = np.arange(view.width + 1, dtype=float)
+    upper = floor_points(view, columns, np.full(view.width + 1, float(row)))
+    lower = floor_points(view, columns, np.full(view.width + 1, row + 1.0))
+    along = np.hypot(upper[0] - lower[0], upper[1] - lower[1])
+    across = np.hypot(np.diff(upper[0]), np.diff(upper[1]))
+    met = upper[2] & lower[2]
+    longest = np.maximum(np.maximum(along[1:], along[:-1]), across)
+    return np.where(met[1:] & met[:-1], longest, np.inf)
+
+
+def _rows_per_pixel(planes: list[FloorPlane], size: np.ndarray) -> int:
+    """As many samples that two fall into each texel, within bounds."""
+    textured = [plane for plane in planes if plane.texture is not None]
+    longest = size[np.isfinite(size)]
+    if not textured or not len(longest):
+        return FEWEST_ROWS_PER_PIXEL
+    texel = min(max(plane.size) / max(plane.texture.shape) for plane in textured)
+    wanted = int(np.ceil(2 * longest.max() / texel))
+    return min(max(wanted, FEWEST_ROWS_PER_PIXEL), MOST_ROWS_PER_PIXEL)
+
+
+def _row_colours(
+    planes: list[FloorPlane], view: CameraView, row: int, samples: int, background: np.ndarray
+) -> np.ndarray:
+    """(width, 3) float32: the mean of samples x COLUMNS_PER_PIXEL points of each pixel."""
+    count = view.width * COLUMNS_PER_PIXEL
+    columns = (np.arange(count) + 0.5) / COLUMNS_PER_PIXEL
+    rows = row + (np.arange(samples) + 0.5) / samples
+    x, y, met = floor_points(view, *np.meshgrid(columns, rows))
+    colours = np.broadcast_to(background, (*x.shape, 3)).copy()
+    open_points = met
+    for plane in planes:
+        u, v = plane.local(x, y)
+        here = open_points & plane.inside(u, v)
+        if not here.any():
+            continue
+        seen = 255.0 if plane.texture is None else plane.look_up(plane.texture, u, v)[here]
+        colours[here] = seen * plane.light
+        open_points = open_points & ~here
+    shape = (samples, view.width, COLUMNS_PER_PIXEL, 3)
+    return colours.reshape(shape).mean(axis=(0, 2))
+
+
+def _row_clear(
+    planes: list[FloorPlane], view: CameraView, row: int, size: np.ndarray
+) -> np.ndarray:
+    """Which pixels of a row have no edge, of a texture or of a plane, within a filter's reach."""
+    columns = np.arange(view.width) + 0.5
+    x, y, met = floor_points(view, columns, np.full(view.width, row + 0.5))
+    nearest = np.full(view.width, np.inf)
+    for plane in planes:
+        u, v = plane.local(x, y)
+        border = np.maximum(np.abs(u) - plane.size[0] / 2, np.abs(v) - plane.size[1] / 2)
+        nearest = np.minimum(nearest, np.abs(border))
+        inside = plane.inside(u, v)
+        if plane.edge_distance is not None and inside.any():
+            distance = plane.look_up(plane.edge_distance, u[None], v[None])[0]
+            nearest = np.where(inside, np.minimum(nearest, distance), nearest)
+    sky = ~met & ~np.isfinite(size)
+    with np.errstate(invalid="ignore"):
+        return sky | (nearest > FILTER_REACH * size)
+
+
+def _near_horizon(view: CameraView) -> np.ndarray:
+    """Pixels within two of where the floor's first pixel is: (height, width) bool."""
+    columns, rows = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
+    met = floor_points(view, columns, rows)[2].astype(np.uint8)
+    kernel = np.ones((5, 5), np.uint8)
+    return cv2.dilate(met, kernel) != cv2.erode(met, kernel)

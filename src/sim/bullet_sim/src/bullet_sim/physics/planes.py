@@ -1,0 +1,63 @@
+"""Infinite planes that lie in one place: only the first of them collides.
+
+A course is a plane on the ground plane. With both, each wheel has two contacts in one point; the
+solver shares the load out between them, which doubles its work and halves its accuracy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from bullet_sim.description import Collision, Plane
+from bullet_sim.physics.assembly import Tree
+from bullet_sim.pose import Pose, rotate
+
+Place = tuple[float, ...]  # unit normal and distance from the origin (m), friction, restitution
+
+
+class Planes:
+    """Bodies that are one plane and stand still; `switch(body, on)` has one collide or not."""
+
+    def __init__(self, switch: Callable[[int, bool], None]):
+        self._switch = switch
+        self._places: dict[int, Place] = {}
+        self._idle: set[int] = set()
+
+    def put(self, body: int, tree: Tree, frame: Pose) -> None:
+        """A body has come, or was moved; `frame` is that of its base in the world."""
+        collision = _only_plane(tree)
+        if collision is not None:
+            self._places[body] = _place(collision, frame)
+            self._update()
+
+    def remove(self, body: int) -> None:
+        """A body is gone."""
+        if self._places.pop(body, None) is not None:
+            self._idle.discard(body)
+            self._update()
+
+    def _update(self) -> None:
+        taken: set[Place] = set()
+        for body, place in self._places.items():
+            idle = place in taken
+            taken.add(place)
+            if idle != (body in self._idle):
+                self._switch(body, not idle)
+                self._idle ^= {body}
+
+
+def _only_plane(tree: Tree) -> Collision | None:
+    if not tree.fixed or len(tree.links) != 1 or len(tree.links[0].collisions) != 1:
+        return None
+    collision = tree.links[0].collisions[0]
+    return collision if isinstance(collision.geometry, Plane) else None
+
+
+def _place(collision: Collision, frame: Pose) -> Place:
+    pose = frame * collision.pose
+    normal = rotate(pose.orientation, collision.geometry.normal)
+    distance = sum(n * p for n, p in zip(normal, pose.position, strict=True))
+    surface = collision.surface
+    # More than 1 counts as 1 on what never moves, see Body.
+    alike = (min(surface.mu, 1.0), surface.restitution, collision.laser_retro)
+    return tuple(round(value, 6) + 0.0 for value in (*normal, distance, *alike))

@@ -1,0 +1,98 @@
+"""Planes in one place: one collides, and another takes over when it goes away."""
+
+import pybullet
+import pytest
+
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Inertial,
+    LinkDescription,
+    ModelDescription,
+    Plane,
+    Surface,
+)
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+
+UP = (0.0, 0.0, 1.0)
+
+
+def plane(name, mu=100.0, normal=UP):
+    shape = Collision("c", Plane(normal, (4.0, 4.0)), surface=Surface(mu=mu))
+    return ModelDescription(name, static=True, links=(LinkDescription("l", collisions=(shape,)),))
+
+
+def box():
+    inertia = (1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3)
+    link = LinkDescription("l", inertial=Inertial(mass=0.6, inertia=inertia),
+                           collisions=(Collision("c", Box((0.1, 0.1, 0.1))),))
+    return ModelDescription("box", links=(link,))
+
+
+@pytest.fixture
+def world():
+    made = World()
+    yield made
+    made.close()
+
+
+def touched(world):
+    """Numbers of the bodies that the box has contacts with, once for each contact."""
+    return sorted(point[2] for point in world._client.read(
+        pybullet.getContactPoints, world.model("box").bodies[0].number))
+
+
+def number(world, name):
+    return world.model(name).bodies[0].number
+
+
+def settle(world):
+    world.step(300)
+    return world.model("box").pose.position[2]
+
+
+def test_of_two_planes_in_one_place_the_first_is_touched(world):
+    for name in ("ground", "course"):
+        world.spawn(plane(name))
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    assert settle(world) == pytest.approx(0.05, abs=1e-4)
+    assert touched(world) == [number(world, "ground")] * 4
+
+
+@pytest.mark.parametrize("leave", ["delete", "move"])
+def test_when_the_first_goes_the_second_holds(world, leave):
+    for name in ("ground", "course"):
+        world.spawn(plane(name))
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    settle(world)
+    if leave == "delete":
+        world.delete("ground")
+    else:
+        world.model("ground").set_pose(Pose((0.0, 0.0, -1.0)))
+    assert settle(world) == pytest.approx(0.05, abs=1e-4)
+    assert touched(world) == [number(world, "course")] * 4
+    if leave == "move":
+        world.model("ground").set_pose(Pose())
+        settle(world)
+        assert touched(world) == [number(world, "ground")] * 4
+
+
+@pytest.mark.parametrize("other", [
+    {"mu": 0.5}, {"normal": (0.0, 0.1, 0.995)},
+])
+def test_planes_that_differ_both_collide(world, other):
+    world.spawn(plane("ground"))
+    world.spawn(plane("course", **other))
+    world.spawn(box(), Pose((0.0, 0.0, 0.05)))
+    world.step(300)
+    assert number(world, "course") in touched(world)
+
+
+def test_a_plane_moved_into_another_stops_colliding(world):
+    world.spawn(plane("ground"))
+    world.spawn(plane("course"), Pose((0.0, 0.0, -0.5)))
+    world.model("course").set_pose(Pose((1.0, 2.0, 0.0)))
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    settle(world)
+    assert set(touched(world)) == {number(world, "ground")}
