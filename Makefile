@@ -1,15 +1,20 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course test setup build lint clean
+.PHONY: help course test bench setup build lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
 
-course: ## drive the line course and report [LAPS=1] [DURATION=s] [FOLLOWER=06follower_pid.py]
+course: ## drive the line course and report [LAPS=1] [DURATION=s] [FOLLOWER=06follower_pid.py] [FAST=1] [CAMERA=640x480] [SEED=0]
 	@scripts/course.sh $(if $(LAPS),--laps "$(LAPS)") $(if $(DURATION),--duration "$(DURATION)") \
-	  $(if $(FOLLOWER),--follower "$(FOLLOWER)")
+	  $(if $(FOLLOWER),--follower "$(FOLLOWER)") $(if $(filter-out 0,$(FAST)),--fast) \
+	  $(if $(CAMERA),--camera "$(CAMERA)") $(if $(SEED),--seed "$(SEED)")
 
 test: ## run every check and test [JOBS=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")
+
+bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]
+	@scripts/bench.sh $(if $(ONLY),--only "$(ONLY)") $(if $(filter-out 0,$(QUICK)),--quick) \
+	  $(if $(MEMORY_S),--memory-s "$(MEMORY_S)")
 
 setup: ## install what is missing, and build
 	@scripts/setup.sh

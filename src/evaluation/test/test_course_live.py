@@ -1,4 +1,4 @@
-"""The main job with the real simulator: a lap by each follower, and a part that dies."""
+"""The main job with the real simulator: a lap by each follower, equal runs, a part that dies."""
 
 import json
 import os
@@ -49,6 +49,32 @@ def test_a_follower_closes_its_lap_near_the_line(tmp_path, follower, worst_rms):
     for name in ("path.png", "run.mp4"):
         assert (out / name).stat().st_size > 10_000
     assert processes_of(out) == {}
+
+
+def drive_fast(out: Path, *options: str) -> dict:
+    """The simulated figures of four seconds as fast as they go."""
+    command = [sys.executable, str(SCRIPT), "--fast", "--duration", "4", "--no-video", *options]
+    done = subprocess.run(
+        [*command, "--out", str(out)], capture_output=True, text=True, timeout=START_LIMIT
+    )
+    assert done.returncode == 1, done.stdout + done.stderr  # time is up before the lap is closed
+    report = json.loads((out / "report.json").read_text())
+    return {
+        key: value
+        for key, value in report.items()
+        if key not in ("wall_s", "real_time_factor", "followers")
+    }
+
+
+@pytest.mark.parametrize("follower", ["05follower_proporation.py", "06follower_pid.py"])
+def test_a_fast_drive_is_repeated_to_the_bit(tmp_path, follower):
+    options = ("--camera", "320x240", "--seed", "5", "--follower", follower)
+    first = drive_fast(tmp_path / "first", *options)
+    assert drive_fast(tmp_path / "again", *options) == first
+    assert first["frames_dropped"] == 0 and first["frames_sent"] > 100
+    assert first["distance_m"] > 0.3
+    wider = drive_fast(tmp_path / "wider", "--camera", "400x240", *options[2:])
+    assert wider["drive_sha256"] != first["drive_sha256"]
 
 
 @pytest.mark.parametrize(

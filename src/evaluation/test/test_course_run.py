@@ -1,5 +1,6 @@
 """The main job against a stand-in simulator: each way to end, exit codes, nothing left running."""
 
+import ast
 import json
 import os
 import re
@@ -128,6 +129,60 @@ def test_the_report_shows_followers_side_by_side(start):
     assert not (run.out / "run.mp4").exists()
 
 
+def report_of(run: Run) -> dict:
+    """What is the same in two equal runs."""
+    report = json.loads((run.out / "report.json").read_text())
+    for name in ("wall_s", "real_time_factor", "followers", "film"):
+        del report[name]
+    return report
+
+
+def test_fast_runs_are_equal_to_the_last_figure(start):
+    reports = []
+    for _ in range(2):
+        run = start(*FAKE, "--fast", "--duration", "30", "--seed", "2")
+        assert run.wait() == 1, run.output
+        reports.append(report_of(run))
+    assert reports[0] == reports[1]
+    assert reports[0]["frames_sent"] == 902 and reports[0]["frames_dropped"] == 0
+    assert reports[0]["fast"] and reports[0]["seed"] == 2
+    assert len(reports[0]["drive_sha256"]) == 64
+    run = start(*FAKE, "--fast", "--duration", "30", "--seed", "3", "--no-video")
+    assert run.wait() == 1, run.output
+    assert report_of(run)["drive_sha256"] != reports[0]["drive_sha256"]
+
+
+def test_time_begins_when_all_are_connected(start):
+    run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=late")
+    assert run.wait() == 1, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
+    assert "without a command" not in run.output
+
+
+def test_a_fast_follower_that_does_not_answer_is_told(start):
+    run = start(*FAKE, "--fast", "--duration", "2", "--launch-arg", "behaviour:=mute")
+    assert run.wait() == 1, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert 0 < report["frames_dropped"] < report["frames_sent"]
+    assert f"{report['frames_dropped']} images without a command" in run.output
+
+
+def test_the_launch_file_is_told_what_was_asked_for(start):
+    run = start(*FAKE, "--fast", "--camera", "64x48", "--seed", "7", "--duration", "1")
+    assert run.wait() == 1, run.output
+    log = (run.out / "log" / "roslaunch.log").read_text()
+    asked = ast.literal_eval(re.search("asked for (.*)", log)[1])
+    assert asked == {
+        "paused": True,
+        "real_time_factor": "0",
+        "lockstep": "/cmd_vel",
+        "seed": 7,
+        "camera_width": 64,
+        "camera_height": 48,
+    }
+
+
 @pytest.mark.parametrize(
     ("behaviour", "words"),
     [("leaves", "the car left the course at x="), ("stalls", "the car stalled at x=")],
@@ -141,6 +196,11 @@ def test_a_bad_drive_ends_with_1_and_says_where(start, behaviour, words):
 @pytest.mark.parametrize(
     ("behaviour", "options", "words"),
     [
+        (
+            "blind",
+            ("--fast", "--startup-timeout", "5"),
+            "the follower (nobody subscribes to /camera/rgb/image_raw) was not there within 5 s",
+        ),
         (
             "fails",
             (),
@@ -217,7 +277,12 @@ def test_even_a_killed_run_leaves_nothing(start):
         (("--follower", "07nothing.py"), "there are: 05follower_proporation.py, 06follower_pid.py"),
         (("--launch-arg", "x_pos=1"), "--launch-arg must look like name:=value, got 'x_pos=1'"),
         (("--track", "nowhere.yaml"), "nowhere.yaml: No such file or directory"),
-        (("--fast",), "unrecognized arguments: --fast"),
+        (("--camera", "640"), "--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480"),
+        (("--camera", "0x480"), "got '0x480'"),
+        (("--camera", "640x480.5"), "got '640x480.5'"),
+        (("--seed", "-1"), "--seed (SEED=) must be a whole number, 0 or more; got '-1'"),
+        (("--seed", "abc"), "got 'abc'"),
+        (("--quick",), "unrecognized arguments: --quick"),
     ],
 )
 def test_a_mistyped_command_is_one_line_and_2(start, arguments, words):

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro_files import expand
 
 PACKAGE = Path(__file__).resolve().parent.parent
@@ -269,6 +270,30 @@ def test_camera(robots, model):
     assert numbers(" ".join(sensor.find("camera/clip").itertext())) == (0.03, 100)
     expected = {**CAMERA_PLUGIN, **(DEPTH_PLUGIN if kind == "depth" else {})}
     assert tags(plugin(robots[model], filename), expected) == expected
+
+
+def image_size(model, **arguments):
+    robot = ElementTree.fromstring(expand(xacro_path(model), arguments))
+    image = robot.find(".//camera/image")
+    return image.findtext("width"), image.findtext("height")
+
+
+@pytest.mark.parametrize("model", CAMERAS)
+def test_arguments_set_the_cameras_size(model):
+    own = tuple(map(str, CAMERAS[model][3:5]))
+    assert image_size(model, camera_width="320", camera_height="200") == ("320", "200")
+    assert image_size(model, camera_width="320") == ("320", own[1])
+    assert image_size(model, camera_width="", camera_height="") == own
+
+
+@pytest.mark.parametrize("size", ["0", "-5", "wide", "64.5", "1e3", "6 4", "True"])
+@pytest.mark.parametrize("argument", ["camera_width", "camera_height"])
+def test_a_wrong_camera_size_is_one_clear_error(argument, size):
+    with pytest.raises(FormatError) as raised:
+        expand(xacro_path("waffle"), {argument: size})
+    said = str(raised.value)
+    assert f"{argument} is " in said and "a whole number of pixels, 1 or more" in said
+    assert "\n" not in said
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -17,6 +17,7 @@ LAUNCHES = {  # name: world, x_pos, y_pos
 }
 EMPTY_WORLD = {"paused": "false", "use_sim_time": "true", "gui": "true", "headless": "false",
                "debug": "false"}
+CAMERA_SIZE = {"camera_width": "", "camera_height": ""}  # ours: as the robot's own
 LIMBS = {"head": (3.5, 0.0, 0.8), "left_hand": (1.8, 2.7, 0.55), "right_hand": (1.8, -2.7, 0.55),
          "left_foot": (-1.8, 2.7, 0.55), "right_foot": (-1.8, -2.7, 0.55)}  # x, y, size in m
 
@@ -56,7 +57,9 @@ def test_world_launch(name):
     world, x, y = LAUNCHES[name]
     launch = parse("launch", f"{name}.launch")
     assert defaults(launch) == {"model": "$(optenv TURTLEBOT3_MODEL waffle)", "x_pos": x,
-                                "y_pos": y, "z_pos": "0.0"}
+                                "y_pos": y, "z_pos": "0.0", **CAMERA_SIZE}
+    for name in CAMERA_SIZE:
+        assert f"{name}:=$(arg {name})" in launch.find("param").get("command")
     given = {arg.get("name"): arg.get("value") for arg in launch.findall("include/arg")}
     assert given.pop("world_name") == f"$(find turtlebot3_gazebo)/worlds/{world}.world"
     assert given == EMPTY_WORLD

@@ -20,7 +20,7 @@ from std_srvs.srv import Empty
 
 from evaluation.course_run.failure import RunError
 from evaluation.course_run.launch import Launched
-from evaluation.course_run.observer import WORLD
+from evaluation.course_run.names import WORLD
 from evaluation.picture import FONT, PAPER, TEXT, write_text
 
 WINDOW_WIDTH_PX, BAR_PX, GAP_PX = 640, 34, 14

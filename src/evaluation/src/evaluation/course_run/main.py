@@ -17,8 +17,15 @@ from evaluation.course_run.observer import Observer
 from evaluation.course_run.options import Options, parse_options
 from evaluation.course_run.processes import Family, strip_terminal_codes
 from evaluation.course_run.progress import Progress
-from evaluation.course_run.report import summarize, table, versions, write_report
-from evaluation.course_run.video import Film
+from evaluation.course_run.report import (
+    conditions,
+    frame_figures,
+    summarize,
+    table,
+    versions,
+    write_report,
+)
+from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
 from evaluation.track import TrackError, TrackFile, build_track, load_track_file
@@ -49,17 +56,18 @@ class CourseRun:
     def __init__(self, options: Options, track_file: TrackFile, progress: Progress):
         self.options, self.track_file, self.progress = options, track_file, progress
         self.drive = LapScorer(build_track(track_file), options.laps)
-        self.film = Film(options.out / "run.mp4", track_file, self.drive)
-        self._began = self._ended = 0.0  # s, wall: first and last sample
-        self._moved_at = time.monotonic()  # when simulated time last went on
+        period = FAST_FILM_PERIOD if options.fast else FILM_PERIOD
+        self.film = Film(options.out / "run.mp4", track_file, self.drive, period)
+        self._first_at = self._last_at = time.monotonic()  # s, wall: when these samples came
         self._observer: Observer | None = None
+        self._counted = 0, 0  # images and commands
 
     def bring_up(self, launched: Launched) -> None:
         """Start everything and wait until the car stands on the course."""
         options = self.options
         self.progress.status("starting roscore")
         launched.start_roscore()
-        self._observer = Observer(launched.master_uri, options.robot)
+        self._observer = Observer(launched.master_uri, options.robot, lockstep=options.fast)
         arguments = ("gui:=false", f"follower:={options.follower}", *options.launch_args)
         launched.start("roslaunch", ["roslaunch", *options.launch, *arguments])
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
@@ -67,49 +75,58 @@ class CourseRun:
         until = time.monotonic() + options.startup_timeout
         while not self._take_samples():
             launched.check(None)
-            self.progress.status(f"waiting for {self._missing()}")
+            missing = self._observer.missing
+            self.progress.status(f"waiting for {missing}")
             if time.monotonic() > until:
                 limit = f"{options.startup_timeout:.0f} s"
-                raise RunError(f"{self._missing()} was not there within {limit}", launched.tail())
-        self._began = time.monotonic()
+                raise RunError(f"{missing} was not there within {limit}", launched.tail())
         if options.video:
             self.film.start()
 
     def watch(self, launched: Launched) -> tuple[str, str]:
         """Follow the car until its verdict or the duration's end; returns outcome and reason."""
-        first = self.drive.samples[0].time
-        while self.drive.verdict is Verdict.DRIVING:
+        while self.drive.verdict is Verdict.DRIVING and not self._time_is_up:
             self._take_samples()
-            self._ended = time.monotonic()
             self.progress.show(self.drive)
             now = self.drive.samples[-1].time
             launched.check(now)
             self._check_time_moves(now)
-            if now - first > self.options.duration:
-                share = f"lap {len(self.drive.laps) + 1} was {self.drive.driven_share:.0%} driven"
-                return "time is up", f"{self.options.duration:g} simulated s are over: {share}"
+        if self.drive.verdict is Verdict.DRIVING:
+            share = f"lap {len(self.drive.laps) + 1} was {self.drive.driven_share:.0%} driven"
+            return "time is up", f"{self.options.duration:g} simulated s are over: {share}"
         return self.drive.verdict.value, self.drive.why
 
     def _take_samples(self) -> int:
-        samples = self._observer.samples(LOOK_PERIOD)
-        for sample in samples:
-            if not self.drive.samples or sample.time > self.drive.samples[-1].time:
-                self._moved_at = time.monotonic()
+        """Score what came in the last LOOK_PERIOD; what came after the end does not count."""
+        arrivals = self._observer.samples(LOOK_PERIOD)
+        for arrived, sample in arrivals:
+            if self._time_is_up or self.drive.verdict is not Verdict.DRIVING:
+                break
+            if not self.drive.samples:
+                self._first_at = self._last_at = arrived
+            elif sample.time > self.drive.samples[-1].time:
+                self._last_at = arrived
             self.drive.add(sample)
-        return len(samples)
+        return len(arrivals)
+
+    @property
+    def _time_is_up(self) -> bool:
+        samples = self.drive.samples
+        return bool(samples) and samples[-1].time - samples[0].time > self.options.duration
 
     def _check_time_moves(self, now: float) -> None:
-        still = time.monotonic() - self._moved_at
+        still = time.monotonic() - self._last_at
         if still > self.options.stuck_timeout:
             raise RunError(
                 f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
                 " the simulator is paused or hangs"
             )
 
-    def _missing(self) -> str:
-        if not self._observer.simulator_up:
-            return "the simulator (service /gazebo/get_world_properties)"
-        return f"the car (model {self.options.robot})"
+    def count(self) -> None:
+        """Film no more, and count the images up to the last sample while all still runs."""
+        self.film.stop()
+        if self.drive.samples:
+            self._counted = self._observer.count(self.drive.samples[-1].time)
 
     def close(self) -> None:
         """Ask and film no more."""
@@ -119,16 +136,20 @@ class CourseRun:
 
     def report(self, outcome: tuple[str, str], log: Path) -> None:
         """Write path.png and report.json, print the table and where the files are."""
-        out, follower, seen = self.options.out, self.options.follower, self._observer
-        wall = self._ended - self._began
-        summary = summarize(self.drive, outcome, seen.frames_sent, seen.commands, wall)
+        out, follower = self.options.out, self.options.follower
         lines = strip_terminal_codes(log.read_text(encoding="utf-8", errors="replace")).splitlines()
+        frames = frame_figures(*self._counted, lines if self.options.fast else None)
+        wall = self._last_at - self._first_at
+        summary = summarize(self.drive, outcome, frames, wall) | conditions(self.options)
         made_with = versions(Path(__file__).parent, lines)
         summary |= {"film": self.film.codec or None, "versions": made_with}
         picture = path_picture(self.track_file, self.drive, *_titles(follower, summary))
         cv2.imwrite(str(out / "path.png"), picture)
         runs = write_report(out, follower, summary)
         self.progress.say("\n" + table(runs, follower))
+        unanswered = summary["frames_dropped"]
+        if self.options.fast and unanswered:
+            self.progress.say(f"{unanswered} images without a command: no run will repeat this one")
         made = [str(_short(out / name)) for name in RESULTS if (out / name).exists()]
         self.progress.say(f"files: {'  '.join(made)}")
 
@@ -155,6 +176,7 @@ def _run(options: Options) -> int:
             outcome = run.watch(launched)
         except (KeyboardInterrupt, RunError) as ended_early:
             end, outcome = ended_early, ("ended early", str(ended_early) or "interrupted")
+        run.count()
         family.interrupt(spare=run.film.process_id)  # they end while the film is being finished
         run.close()
     if run.drive.samples:

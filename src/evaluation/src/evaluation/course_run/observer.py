@@ -8,74 +8,130 @@ import os
 import queue
 import threading
 import time
-from collections.abc import Iterator
+import xmlrpc.client
+from collections.abc import Callable, Iterator
 
+import rosgraph
 import rospy
 from gazebo_msgs.srv import GetModelState, GetWorldProperties
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Pose, Twist
+from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo
+from std_srvs.srv import Empty
 
+from evaluation.course_run import names
+from evaluation.course_run.connections import Connections, look_up
+from evaluation.course_run.frames import FrameCount
 from evaluation.lap import Sample
 
-CAMERA_INFO, COMMANDS = "/camera/rgb/camera_info", "/cmd_vel"
-WORLD, POSE = "/gazebo/get_world_properties", "/gazebo/get_model_state"
 SAMPLE_RATE_HZ = 25.0
 SETUP_RATE_HZ = 5.0
+LAST_IMAGE_TIME, LAST_COMMAND_TIME = 1.0, 0.1  # s, wall, to wait for them
 
 
 class Observer:
-    """Asks for the car's pose 25 times a second.
+    """Sees where the car is; in lockstep it also lets time begin, once all are connected.
 
-    Asking costs the simulator less than /gazebo/model_states, which comes with every physics step
-    and without a time. The node must exist before use_sim_time is set: then it needs no /clock.
+    Without lockstep it asks for the pose 25 times a second: that costs the simulator less than
+    /gazebo/model_states, which comes without a time. In lockstep the poses are those of odometry,
+    which the waffle's drive takes from the world: they come at fixed simulated times, so that
+    every run is scored from the same samples, and cost nobody a wait.
+    The node must exist before use_sim_time is set: then it needs no /clock.
     """
 
-    def __init__(self, master_uri: str, robot: str):
+    def __init__(self, master_uri: str, robot: str, lockstep: bool = False):
         os.environ["ROS_MASTER_URI"] = master_uri
-        self._robot = robot
-        self._samples: queue.SimpleQueue[Sample] = queue.SimpleQueue()
+        self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
+        self._samples: queue.SimpleQueue[tuple[float, Sample]] = queue.SimpleQueue()
         self._ended = threading.Event()
-        self.simulator_up = False
-        self.sim_time: float | None = None  # s, latest known
-        self.frames_sent = 0
-        self.commands = 0
-        self._last_frame = self._first_frame = None  # header.seq
+        self.missing = f"the simulator (service {names.WORLD})"
+        self.frames = FrameCount(lockstep)
         rospy.init_node("course_run", anonymous=True, disable_signals=True, disable_rosout=True)
         self._thread = threading.Thread(target=self._watch, daemon=True, name="pose")
 
     def start(self) -> None:
-        """Begin to ask and to count."""
-        rospy.Subscriber(CAMERA_INFO, CameraInfo, self._count_frame, queue_size=100)
-        rospy.Subscriber(COMMANDS, Twist, self._count_command, queue_size=100)
+        """Begin to look and to count."""
+        rospy.Subscriber(names.CAMERA_INFO, CameraInfo, self.frames.count_frame)
+        rospy.Subscriber(names.COMMANDS, Twist, self.frames.count_command)
+        if self._lockstep:
+            rospy.Subscriber(names.ODOMETRY, Odometry, self._take_odometry)
         self._thread.start()
 
     def stop(self) -> None:
-        """Ask no more; does not wait for an answer that may never come."""
+        """Look no more; does not wait for an answer that may never come."""
         self._ended.set()
 
-    def samples(self, wait: float) -> list[Sample]:
-        """All samples since the last call; waits this long (s, wall) for the first."""
+    def samples(self, wait: float) -> list[tuple[float, Sample]]:
+        """All samples since the last call and within this time (s, wall), each with its arrival.
+
+        Arrivals are s of time.monotonic().
+        """
+        self._ended.wait(wait)
         found = []
         with contextlib.suppress(queue.Empty):
-            found.append(self._samples.get(timeout=wait))
             while True:
                 found.append(self._samples.get_nowait())
         return found
 
+    def count(self, until: float) -> tuple[int, int]:
+        """Images up to this simulated time (s), and the commands that have come.
+
+        Waits for what is still on its way, but not long: later commands answer later images.
+        """
+        frames = self.frames
+        _wait_for(lambda: frames.later_than(until), LAST_IMAGE_TIME)
+        _wait_for(lambda: frames.commands >= frames.sent(until), LAST_COMMAND_TIME)
+        return frames.sent(until), frames.commands
+
     def _watch(self) -> None:
-        for _ in self._ticks(SETUP_RATE_HZ, WORLD, GetWorldProperties):
+        self._wait_for_car()
+        if self._lockstep:
+            self._wait_for_connections()
+            self._begin()
+        else:
+            self._ask_poses()
+
+    def _wait_for_car(self) -> None:
+        for _ in self._ticks(SETUP_RATE_HZ, names.WORLD, GetWorldProperties):
             reply = self._call()
-            if reply is not None:
-                self.simulator_up, self.sim_time = True, reply.sim_time
-                if self._robot in reply.model_names:
-                    break
-        for _ in self._ticks(SAMPLE_RATE_HZ, POSE, GetModelState):
+            if reply is None:
+                continue
+            self.missing = f"the car (model {self._robot})"
+            if self._robot in reply.model_names:
+                return
+
+    def _wait_for_connections(self) -> None:
+        me = rospy.get_name()
+        topics = (names.CAMERA, names.CAMERA_INFO, names.COMMANDS, names.ODOMETRY)
+        for _ in self._ticks(SETUP_RATE_HZ):
+            try:
+                missing = missing_connection(look_up(self._master_uri, me, topics), me)
+            except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+                continue
+            if missing is None:
+                return
+            self.missing = missing
+
+    def _begin(self) -> None:
+        self.missing = f"the beginning of simulated time (service {names.UNPAUSE})"
+        for _ in self._ticks(SETUP_RATE_HZ, names.UNPAUSE, Empty):
+            if self._call() is not None:
+                self.missing = f"the first pose (topic {names.ODOMETRY})"
+                return
+
+    def _ask_poses(self) -> None:
+        for _ in self._ticks(SAMPLE_RATE_HZ, names.POSE, GetModelState):
             reply = self._call(self._robot, "world")
             if reply is not None and reply.success:
-                self.sim_time = reply.header.stamp.to_sec()
-                self._samples.put(_to_sample(self.sim_time, reply.pose))
+                self._put(reply.header.stamp, reply.pose)
 
-    def _ticks(self, rate_hz: float, service: str, kind: type) -> Iterator[None]:
+    def _take_odometry(self, message: Odometry) -> None:
+        self._put(message.header.stamp, message.pose.pose)
+
+    def _put(self, stamp: rospy.Time, pose: Pose) -> None:
+        self._samples.put((time.monotonic(), _to_sample(stamp, pose)))
+
+    def _ticks(self, rate_hz: float, service: str = "", kind: type = Empty) -> Iterator[None]:
         """Times to ask a service; the connection stays open and is made again when it broke."""
         self._service, self._kind, self._proxy = service, kind, None
         while not self._ended.is_set():
@@ -92,19 +148,35 @@ class Observer:
             self._proxy = None
             return None
 
-    def _count_frame(self, message: CameraInfo) -> None:
-        self._last_frame = message.header.seq
-        if self._first_frame is not None:
-            self.frames_sent = self._last_frame - self._first_frame + 1
 
-    def _count_command(self, _message: Twist) -> None:
-        """Pictures count from the one that the follower's first command answers."""
-        if self._first_frame is None:
-            self._first_frame = self._last_frame
-        self.commands += 1
+def missing_connection(found: Connections, me: str) -> str | None:
+    """What a run in lockstep still waits for before time may begin, in words; None: nothing.
+
+    From the first image on, the follower must answer, and this node (`me`) see pose and answer.
+    """
+    watching = found.subscribers[names.CAMERA] - {me}
+    driving = found.publishers[names.COMMANDS] - {me}
+    if not found.publishers[names.CAMERA]:
+        return f"the camera (topic {names.CAMERA})"
+    if not found.publishers[names.ODOMETRY]:
+        return f"the odometry (topic {names.ODOMETRY})"
+    if not watching:
+        return f"the follower (nobody subscribes to {names.CAMERA})"
+    if not driving:
+        return f"the follower (nobody publishes {names.COMMANDS})"
+    if not found.subscribers[names.COMMANDS] - driving - {me}:
+        return f"the car's drive (nobody subscribes to {names.COMMANDS})"
+    links = (found.missing_link(topic) for topic in found.publishers)
+    return next((link for link in links if link), None)
 
 
-def _to_sample(sim_time: float, pose: object) -> Sample:
+def _wait_for(condition: Callable[[], bool], limit: float) -> None:
+    until = time.monotonic() + limit
+    while not condition() and time.monotonic() < until:
+        time.sleep(0.005)
+
+
+def _to_sample(stamp: rospy.Time, pose: Pose) -> Sample:
     q = pose.orientation
     yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Sample(sim_time, pose.position.x, pose.position.y, yaw)
+    return Sample(stamp.to_sec(), pose.position.x, pose.position.y, yaw)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import rospkg
 
+from evaluation.course_run import names
 from evaluation.course_run.failure import RunError
 
 DEFAULT_FOLLOWER = "05follower_proporation.py"
@@ -25,7 +27,10 @@ class Options:
     out: Path
     track: Path
     launch: tuple[str, str]  # package and launch file
-    launch_args: tuple[str, ...]
+    launch_args: tuple[str, ...]  # for roslaunch, name:=value
+    fast: bool  # as fast as it goes, in lockstep with the follower
+    camera_px: tuple[int, int] | None  # width and height; None: the robot's own
+    seed: int | None  # None: the launch file's own
     video: bool
     startup_timeout: float  # s, wall
     stuck_timeout: float  # s, wall
@@ -60,6 +65,7 @@ def parse_options(arguments: list[str]) -> Options:
     for argument in given.launch_arg:
         if ":=" not in argument:
             raise RunError(f"--launch-arg must look like name:=value, got {argument!r}")
+    camera_px, seed = _camera_px(given.camera), _seed(given.seed)
     return Options(
         laps,
         duration,
@@ -67,7 +73,10 @@ def parse_options(arguments: list[str]) -> Options:
         given.out.resolve(),
         given.track or _own_track(),
         launch,
-        tuple(given.launch_arg),
+        (*_launch_args(given.fast, camera_px, seed), *given.launch_arg),
+        given.fast,
+        camera_px,
+        seed,
         given.video,
         given.startup_timeout,
         given.stuck_timeout,
@@ -95,6 +104,15 @@ def _parser() -> argparse.ArgumentParser:
         metavar="DIR",
         help="where path.png, run.mp4, report.json and log/ go (out/course)",
     )
+    parser.add_argument(
+        "--fast",
+        action="store_true",
+        help="as fast as the machine goes: after each image the world waits for the follower",
+    )
+    parser.add_argument(
+        "--camera", metavar="WIDTHxHEIGHT", help="size of the camera's images, px (the robot's own)"
+    )
+    parser.add_argument("--seed", metavar="N", help="of all noise; with --fast, repeats a run (0)")
     parser.add_argument(
         "--launch-arg",
         action="append",
@@ -138,6 +156,35 @@ def _number(name: str, text: str, kind: type, wanted: str) -> int | float:
     if not 0 < value < 1e9:
         raise RunError(f"{name} must be {wanted}; got {text!r}")
     return value
+
+
+def _camera_px(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    size = re.fullmatch(r"([1-9][0-9]{0,4})x([1-9][0-9]{0,4})", text)
+    if not size:
+        raise RunError(f"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got {text!r}")
+    return int(size[1]), int(size[2])
+
+
+def _seed(text: str | None) -> int | None:
+    if text is None:
+        return None
+    if not re.fullmatch(r"[0-9]{1,9}", text):
+        raise RunError(f"--seed (SEED=) must be a whole number, 0 or more; got {text!r}")
+    return int(text)
+
+
+def _launch_args(fast: bool, camera_px: tuple[int, int] | None, seed: int | None) -> list[str]:
+    """What these options are for the launch file."""
+    found = []
+    if fast:
+        found += ["paused:=true", "real_time_factor:=0", f"lockstep:={names.COMMANDS}"]
+    if camera_px is not None:
+        found += [f"camera_width:={camera_px[0]}", f"camera_height:={camera_px[1]}"]
+    if seed is not None:
+        found.append(f"seed:={seed}")
+    return found
 
 
 def _own_track() -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
 import json
 import platform
@@ -9,10 +10,14 @@ import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
+import numpy as np
+
+from evaluation.course_run.options import Options
 from evaluation.lap import LapScorer
 
 PACKAGES = ("pybullet", "moderngl", "opencv-python-headless", "numpy")
 RENDERER_SAYS = "Cameras are drawn by"  # the simulator's log line
+UNANSWERED_SAYS = "lockstep: no message on"  # its warning, once in ten seconds
 COLUMNS = (  # heading, key, factor, digits
     ("laps", "laps_closed", 1, 0),
     ("lap s", "mean_lap_s", 1, 1),
@@ -25,14 +30,22 @@ COLUMNS = (  # heading, key, factor, digits
 )
 
 
-def summarize(
-    drive: LapScorer, outcome: tuple[str, str], frames_sent: int, commands: int, wall: float
-) -> dict:
-    """The figures of one drive; lengths in m, times in s, all simulated but wall_s.
+def frame_figures(sent: int, commands: int, lockstep_log: list[str] | None) -> dict:
+    """Images sent, answered and dropped.
 
     A follower answers each picture with one command, so pictures without a command were dropped
-    on the way to it or by it.
+    on the way to it or by it. In lockstep (with the run's log) they are all answered, unless the
+    simulator said that it went on without.
     """
+    dropped = max(sent - commands, 0)
+    if lockstep_log is not None:
+        went_on = any(UNANSWERED_SAYS in line for line in lockstep_log)
+        dropped = max(dropped, 1) if went_on else 0
+    return {"frames_sent": sent, "frames_answered": sent - dropped, "frames_dropped": dropped}
+
+
+def summarize(drive: LapScorer, outcome: tuple[str, str], frames: dict, wall: float) -> dict:
+    """The figures of one drive; lengths in m, times in s, all simulated but wall_s."""
     times = [lap.time for lap in drive.laps]
     simulated = drive.samples[-1].time - drive.samples[0].time if drive.samples else 0.0
     return {
@@ -54,13 +67,31 @@ def summarize(
             }
             for lap in drive.laps
         ],
-        "frames_sent": frames_sent,
-        "frames_answered": min(commands, frames_sent),
-        "frames_dropped": max(frames_sent - commands, 0),
-        "frames_per_simulated_s": round(frames_sent / simulated, 2) if simulated > 0 else None,
+        **frames,
+        "frames_per_simulated_s": (
+            round(frames["frames_sent"] / simulated, 2) if simulated > 0 else None
+        ),
+        "drive_sha256": fingerprint(drive),
         "simulated_s": round(simulated, 3),
         "wall_s": round(wall, 3),
         "real_time_factor": round(simulated / wall, 3) if wall > 0 else None,
+    }
+
+
+def fingerprint(drive: LapScorer) -> str:
+    """SHA-256 over times and poses of all samples: two drives with one are equal to the bit."""
+    rows = [(sample.time, sample.x, sample.y, sample.yaw) for sample in drive.samples]
+    return hashlib.sha256(np.array(rows, "<f8").tobytes()).hexdigest()
+
+
+def conditions(options: Options) -> dict:
+    """What was asked for that makes a run drive otherwise; None is what the launch file says."""
+    camera = options.camera_px
+    return {
+        "fast": options.fast,
+        "seed": options.seed,
+        "camera_width_px": camera[0] if camera else None,
+        "camera_height_px": camera[1] if camera else None,
     }
 
 

@@ -12,15 +12,17 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
+from evaluation.course_run import names
 from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
 from evaluation.lap import LapScorer
 from evaluation.picture import PAPER, TEXT, CourseMap, draw_line, lap_colour, write_text
 from evaluation.track import TrackFile
 
-CAMERA = "/camera/rgb/image_raw"
-FRAME_PERIOD = 0.2  # s, simulated, between two pictures of the film
-FILM_RATE_HZ = 10  # so the film runs at twice the speed
+FILM_PERIOD = 0.2  # s, simulated, between two pictures of the film
+FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
+FILM_RATE_HZ = 10  # so the film runs at 2 or 8 times the speed
 LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
+LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
 VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
 MAP_WIDTH_PX, BAR_PX = 520, 44
 MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow
@@ -28,17 +30,17 @@ MASK_TINT = (80, 60, 240)
 
 
 class Film:
-    """Adds one camera picture in FRAME_PERIOD to the film; works in the camera's thread.
+    """Adds one camera picture in `period` (s, simulated) to the film; works in the camera's thread.
 
-    The callback waits until the next picture is due, so the rest of the 190 MB/s that the camera
-    sends is dropped by the publisher's queue and never copied here.
+    The callback waits until the next picture is nearly due, so the rest of the 190 MB a simulated
+    second that the camera sends is dropped by the publisher's queue and never copied here.
     """
 
-    def __init__(self, path: Path, track_file: TrackFile, drive: LapScorer):
-        self._path, self._drive = path, drive
+    def __init__(self, path: Path, track_file: TrackFile, drive: LapScorer, period: float):
+        self._path, self._drive, self._period = path, drive, period
         self._map = CourseMap(track_file, MAP_WIDTH_PX)
         self._floor, self._drawn = self._map.empty(), 0
-        self._last_time: float | None = None  # s, simulated
+        self._last: tuple[int, float] | None = None  # the last picture's number and s, wall
         self._ended = threading.Event()
         self._lock = threading.Lock()
         self._writer: FfmpegEncoder | OpenCvEncoder | None = None
@@ -49,7 +51,7 @@ class Film:
         """Begin to film."""
         # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
         self._subscriber = rospy.Subscriber(
-            CAMERA, Image, self._take, queue_size=1, buff_size=2**20
+            names.CAMERA, Image, self.take, queue_size=1, buff_size=2**20
         )
 
     @property
@@ -57,30 +59,34 @@ class Film:
         """Of the encoder, if it is a process."""
         return getattr(self._writer, "process_id", None)
 
+    def stop(self) -> None:
+        """Take no more pictures."""
+        self._ended.set()
+
     def close(self) -> None:
         """Finish the file, if any picture came."""
-        self._ended.set()
+        self.stop()
         with self._lock:
             if self._writer is not None:
                 self._writer.close()
 
-    def _take(self, message: Image) -> None:
+    def take(self, message: Image) -> None:
+        """Add a camera picture if one is due, and wait until the next one nearly is."""
         began, now = time.monotonic(), message.header.stamp.to_sec()
-        if self._ended.is_set():
+        number = int(now / self._period + 1e-6)  # stamps are rounded
+        last, last_began = self._last or (number - 1, began)
+        if self._ended.is_set() or number == last:
             return
-        if self._last_time is not None and 0 <= now - self._last_time < FRAME_PERIOD:
-            return
-        gap = FRAME_PERIOD if self._last_time is None else now - self._last_time
-        self._last_time = now
+        self._last = number, began
         frame = cv2.resize(CvBridge().imgmsg_to_cv2(message), VIEW_PX, interpolation=cv2.INTER_AREA)
         if message.encoding == "rgb8":
             frame = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
         with self._lock:
             if not self._ended.is_set():
-                self._add(
-                    self._page(frame, now), min(max(round(gap / FRAME_PERIOD), 1), LONGEST_GAP)
-                )
-        self._ended.wait(max(0.0, began + 0.8 * FRAME_PERIOD - time.monotonic()))
+                self._add(self._page(frame, now), min(max(number - last, 1), LONGEST_GAP))
+        pace = (began - last_began) / max(number - last, 1)  # s, wall, from one picture to the next
+        due = began + 0.8 * pace
+        self._ended.wait(min(max(0.0, due - time.monotonic()), LONGEST_WAIT))
 
     def _add(self, page: np.ndarray, times: int) -> None:
         if self._writer is None:
@@ -106,7 +112,8 @@ class Film:
         write_text(
             page, f"{figures}   beside the line {drive.lateral * 100:+5.1f} cm", (270, 29), 14
         )
-        write_text(page, "film at 2x", (page.shape[1] - 110, 29), 12)
+        speed = f"film at {self._period * FILM_RATE_HZ:g}x"
+        write_text(page, speed, (page.shape[1] - 110, 29), 12)
         return page
 
     def _plan(self) -> np.ndarray:

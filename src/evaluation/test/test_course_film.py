@@ -1,0 +1,40 @@
+"""The film of a drive: one picture a period of simulated time, whatever the pace and the gaps."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import rospy
+from sensor_msgs.msg import Image
+
+from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
+from evaluation.lap import LapScorer, Sample
+from evaluation.track import build_track, load_track_file
+
+TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"
+PICTURE = np.zeros((9, 16, 3), np.uint8).tobytes()
+
+
+def film_of(path: Path, period: float, stamps: np.ndarray) -> int:
+    """Pictures in the film that is made from camera images with these stamps (s)."""
+    track_file = load_track_file(TRACK)
+    drive = LapScorer(build_track(track_file))
+    drive.add(Sample(0.0, 0.0, 0.0, 0.0))
+    film = Film(path, track_file, drive, period)
+    for stamp in stamps:
+        image = Image(height=9, width=16, encoding="rgb8", step=48, data=PICTURE)
+        image.header.stamp = rospy.Time.from_sec(stamp)
+        film.take(image)
+    film.close()
+    return int(cv2.VideoCapture(str(path)).get(cv2.CAP_PROP_FRAME_COUNT))
+
+
+@pytest.mark.parametrize("period", [FILM_PERIOD, FAST_FILM_PERIOD])
+def test_one_picture_a_period(tmp_path, period):
+    stamps = np.arange(0, 8, 0.1)
+    assert film_of(tmp_path / "run.mp4", period, stamps) == pytest.approx(8 / period, abs=1)
+
+
+def test_a_gap_is_filled(tmp_path):
+    assert film_of(tmp_path / "run.mp4", 0.8, np.array([0.0, 0.8, 4.8, 5.6])) == 8
