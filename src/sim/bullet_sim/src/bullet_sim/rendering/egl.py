@@ -20,7 +20,6 @@ import numpy as np
 from bullet_sim.rendering import lights
 from bullet_sim.rendering.frame import CameraView, Frame
 from bullet_sim.rendering.projection import (
-    frustum_planes,
     metres_from_depth,
     projection_matrix,
     view_matrix,
@@ -33,6 +32,7 @@ from bullet_sim.rendering.surfaces import (
     Surface,
     SurfaceStore,
 )
+from bullet_sim.rendering.visibility import Outlines
 from bullet_sim.stages import Stages
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
@@ -58,7 +58,8 @@ class _Prepared:
     """The lights and draw list of one version of a scene."""
 
     lights: moderngl.Buffer
-    items: list[tuple[list[_Item], list[_Item]]]  # opaque and see-through, in the nodes' order
+    items: list[list[_Item]]  # of each node's parts, in the nodes' order
+    outlines: Outlines
     recess: dict[float, float]  # by size of plane, how far back in the depth buffer it is drawn
 
 
@@ -117,17 +118,16 @@ class EglRenderer:
     def _build(self, scene: SceneState) -> _Prepared:
         near_lights = lights.needs_pixels(scene)
         shine = lights.strongest_highlight(scene)
-        by_node = []
+        items = []
         for node in scene.nodes.values():
-            items = []
-            for surface in self._store.of(node.shape):
-                per_pixel = near_lights or surface.highlight * shine > _VISIBLE
-                items.append(_Item(surface, *self._store.array(surface, per_pixel)))
-            opaque = [item for item in items if item.surface.opaque]
-            by_node.append((opaque, [item for item in items if not item.surface.opaque]))
+            surfaces = self._store.of(node.shape)
+            per_pixel = [near_lights or s.highlight * shine > _VISIBLE for s in surfaces]
+            items.append([_Item(surface, *self._store.array(surface, lit))
+                          for surface, lit in zip(surfaces, per_pixel, strict=True)])
+        outlines = Outlines([node.shape for node in scene.nodes.values()])
         block = self._context.buffer(lights.lights_block(scene), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
-        return _Prepared(block, by_node, recess)
+        return _Prepared(block, items, outlines, recess)
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
                 target: _Target) -> None:
@@ -136,15 +136,21 @@ class EglRenderer:
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
         prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
         target.start(self._context, scene.description.background)
-        seen = _near_first(scene, prepared, clip_world, view)
-        for node, opaque, _ in seen:
+        nodes = list(scene.nodes.values())
+        seen = prepared.outlines.seen(nodes, clip_world, eye[:3])
+        see_through = []
+        for index in seen.order:
+            node, clip_node = nodes[index], seen.clip_node[index]
+            items = [item for item, visible in
+                     zip(prepared.items[index], seen.parts[index], strict=True) if visible]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
-            _render(node, opaque, clip_world)
-        if any(see_through for _, _, see_through in seen):
+            _render(node, [item for item in items if item.surface.opaque], clip_node)
+            see_through.append((node, [i for i in items if not i.surface.opaque], clip_node))
+        if any(items for _, items, _ in see_through):
             target.blend(self._context)
             self._context.polygon_offset = (0.0, 0.0)
-            for node, _, see_through in reversed(seen):
-                _render(node, see_through, clip_world)
+            for what in reversed(see_through):
+                _render(*what)
 
 
 class _Target:
@@ -192,28 +198,11 @@ def _open_context() -> moderngl.Context:
     raise refusals[0]
 
 
-def _near_first(scene: SceneState, prepared: _Prepared, clip_world: np.ndarray,
-                view: CameraView) -> list[tuple[Node, list[_Item], list[_Item]]]:
-    """Nodes that can be in the picture, nearest first; of those around the camera, small first."""
-    planes = frustum_planes(clip_world)
-    eye = np.array(view.pose.position)
-    seen = []
-    for index, (node, items) in enumerate(zip(scene.nodes.values(), prepared.items, strict=True)):
-        shape, matrix = node.shape, node.matrix
-        centre = matrix[:3, :3] @ shape.centre + matrix[:3, 3]
-        if not shape.parts or (planes[:, :3] @ centre + planes[:, 3]).min() < -shape.radius:
-            continue
-        gap = max(0.0, float(np.linalg.norm(centre - eye)) - shape.radius)
-        seen.append(((gap, shape.radius, index), (node, *items)))
-    seen.sort(key=lambda pair: pair[0])
-    return [entry for _, entry in seen]
-
-
-def _render(node: Node, items: list[_Item], clip_world: np.ndarray) -> None:
+def _render(node: Node, items: list[_Item], clip_node: np.ndarray) -> None:
     if not items:
         return
     model = node.matrix.T.astype(np.float32).tobytes()
-    projection_model = (clip_world @ node.matrix).T.astype(np.float32).tobytes()
+    projection_model = clip_node.T.astype(np.float32).tobytes()
     for item in items:
         item.program.model.write(model)
         item.program.projection_model.write(projection_model)

@@ -51,9 +51,3 @@ def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
     np.reciprocal(result, out=result)
     result[background] = np.inf
     return result
-
-
-def frustum_planes(matrix: np.ndarray) -> np.ndarray:
-    """(6, 4) planes of a world-to-clip matrix; plane @ (x, y, z, 1) is the distance, inside > 0."""
-    rows = np.concatenate([matrix[3] + matrix[:3], matrix[3] - matrix[:3]])
-    return rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)

@@ -1,0 +1,54 @@
+"""What of a scene can be in the picture, and in which order to draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bullet_sim.mesh_part import MeshPart
+from bullet_sim.rendering.scene import LinkShape, Node
+
+
+@dataclass(frozen=True)
+class Visibility:
+    """Of one picture; row i of an array belongs to the scene's node i."""
+
+    clip_node: np.ndarray  # (n, 4, 4), node frame to clip coordinates
+    parts: list[np.ndarray]  # for each node, whether each of its parts can be seen
+    order: list[int]  # nodes, nearest first; of those around the camera, small first
+
+
+class Outlines:
+    """Boxes around the parts of all nodes, tested against a view in one go."""
+
+    def __init__(self, shapes: Sequence[LinkShape]):
+        boxes = [_corners(part) for shape in shapes for part in shape.parts]
+        self._corners = np.array(boxes).reshape(-1, 4, 8)
+        counts = [len(shape.parts) for shape in shapes]
+        self._owner = np.repeat(np.arange(len(shapes)), counts)
+        self._ends = np.cumsum(counts)[:-1]
+        self._centres = np.array([[*shape.centre, 1.0] for shape in shapes]).reshape(-1, 4, 1)
+        self._radii = np.array([shape.radius for shape in shapes])
+
+    def seen(self, nodes: Sequence[Node], clip_world: np.ndarray, eye: np.ndarray) -> Visibility:
+        """`clip_world` (4, 4) is world to clip coordinates, `eye` (3,) the camera in the world."""
+        world_node = np.array([node.matrix for node in nodes]).reshape(-1, 4, 4)
+        clip_node = clip_world @ world_node
+        clip = clip_node[self._owner] @ self._corners
+        axes, w = clip[:, :3], clip[:, 3:]
+        # Outside if all corners are beyond one and the same side of the view.
+        outside = (axes < -w).all(axis=2) | (axes > w).all(axis=2)
+        parts = np.split(~outside.any(axis=1), self._ends)
+        centres = (world_node @ self._centres)[:, :3, 0]
+        gaps = np.maximum(0.0, np.linalg.norm(centres - eye, axis=1) - self._radii)
+        order = np.lexsort((self._radii, gaps)).tolist()
+        return Visibility(clip_node, parts, [index for index in order if parts[index].any()])
+
+
+def _corners(part: MeshPart) -> np.ndarray:
+    """(4, 8) homogeneous corners of the box around a part, in the node's frame."""
+    bounds = np.array([part.vertices.min(axis=0), part.vertices.max(axis=0)], float)
+    picks = np.indices((2, 2, 2)).reshape(3, 8)
+    return np.vstack([bounds[picks[axis], axis] for axis in range(3)] + [np.ones(8)])
