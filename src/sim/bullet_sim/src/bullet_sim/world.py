@@ -87,6 +87,9 @@ class World:
         """So many steps forward; while paused, time stands still."""
         if self.paused:
             return
+        if self._client.rest.reached and not self.each_step:
+            self.tick += count
+            return
         start = time.perf_counter()
         step, moving, each_step = self._client.step, self._moving, self.each_step
         gravity = self.description.gravity

@@ -7,8 +7,10 @@ from collections.abc import Callable
 from bullet_sim.schedule import Schedule
 from bullet_sim.world import World
 
-# s, simulated: nothing is looked at less often, so that new listeners and commands need not wait.
+# s, wall: at the wanted pace nothing is looked at less often, so that new listeners and commands
+# need not wait.
 LONGEST = 0.01
+UNPACED = 0.05  # s, simulated: the same where time runs as fast as it goes
 
 
 def always() -> bool:
@@ -34,6 +36,11 @@ class Agenda:
     def __init__(self, world: World):
         self._world = world
         self._duties: list[Duty] = []
+        self._longest = LONGEST
+
+    def set_pace(self, factor: float) -> None:
+        """The real-time factor aimed at; 0: as fast as it goes."""
+        self._longest = factor * LONGEST if factor > 0 else UNPACED
 
     def add(self, rate_hz: float, action: Callable[[], None],
             wanted: Callable[[], bool] = always) -> Duty:
@@ -57,7 +64,7 @@ class Agenda:
     def next_tick(self) -> int:
         """When to look again: the first tick at which something is due that is wanted now."""
         now = self._world.tick
-        first = now + max(1, round(LONGEST / self._world.timestep))
+        first = now + max(1, round(self._longest / self._world.timestep))
         for duty in self._duties:
             if duty.next_tick <= now:
                 duty.next_tick = duty.schedule.next_tick(now)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import time
 from io import BytesIO
 
 import numpy as np
@@ -37,11 +36,10 @@ class ArrayImage(Image):
 
     def serialize(self, buff: BytesIO) -> None:
         """Write the message as ROS sends it."""
-        start = time.perf_counter()
-        self.header.serialize(buff)
-        encoding = self.encoding.encode()
-        buff.write(struct.pack(
-            f"<III{len(encoding)}sBII", self.height, self.width, len(encoding), encoding,
-            self.is_bigendian, self.step, self._pixels.nbytes))
-        buff.write(self._pixels.data)
-        self._stages.add("serialise", time.perf_counter() - start)
+        with self._stages.measure("serialise"):
+            self.header.serialize(buff)
+            encoding = self.encoding.encode()
+            buff.write(struct.pack(
+                f"<III{len(encoding)}sBII", self.height, self.width, len(encoding), encoding,
+                self.is_bigendian, self.step, self._pixels.nbytes))
+            buff.write(self._pixels.data)

@@ -27,12 +27,15 @@ class Lockstep:
         self._plugins = 0  # how many plugins tell us
         self._subscriber: rospy.Subscriber | None = None  # where none does
 
+    def listen(self) -> None:
+        """Subscribe to the topic if no plugin does: before time begins, for answers miss nobody."""
+        if self.topic and not self._plugins and self._subscriber is None:
+            self._subscriber = rospy.Subscriber(
+                self.topic, rospy.AnyMsg, lambda _msg: self.hear(), tcp_nodelay=True)
+
     def expect(self) -> None:
         """A frame was taken for somebody: wait for the answer before the next step."""
         self._expecting = bool(self.topic)
-        if self._expecting and not self._plugins and self._subscriber is None:
-            self._subscriber = rospy.Subscriber(
-                self.topic, rospy.AnyMsg, lambda _msg: self.hear(), tcp_nodelay=True)
 
     def join(self) -> None:
         """A plugin subscribes to the topic, and will call `hear` after each of its messages."""

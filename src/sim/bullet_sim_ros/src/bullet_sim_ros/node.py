@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import signal
 import sys
 import time
@@ -115,6 +116,7 @@ def main() -> int:
     else:
         rospy.loginfo("ROS gazebo topics/services are disabled")
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
+    gc.freeze()  # modules and world stay: the collector need not look through them again
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: simulation.stop())
     try:

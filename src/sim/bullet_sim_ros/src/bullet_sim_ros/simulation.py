@@ -47,6 +47,7 @@ class Simulation:
             self._metrics = MetricsTopic(self)
         for model in world.models.values():
             self._load_plugins(model)
+        self._lockstep.listen()
 
     # --- the loop
 
@@ -102,6 +103,7 @@ class Simulation:
         """Real-time factor as the world's physics says: step times real_time_update_rate."""
         physics = self.world.description.physics
         self.pacer.factor = physics.max_step_size * physics.real_time_update_rate
+        self.agenda.set_pace(self.pacer.factor)
         self._restart_pace()
 
     def configure_physics(self, **changes) -> None:
@@ -120,6 +122,7 @@ class Simulation:
         """Put a model in and load its plugins."""
         model = self.world.spawn(description, pose, name)
         self._load_plugins(model)
+        self._lockstep.listen()
         return model
 
     def delete(self, name: str) -> None:
@@ -127,6 +130,7 @@ class Simulation:
         self.world.delete(name)
         for host in self._plugins.pop(name, ()):
             host.close()
+        self._lockstep.listen()
 
     def reset(self) -> None:
         """Time and models back to the start; plugins are told."""

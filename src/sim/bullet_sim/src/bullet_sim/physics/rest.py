@@ -37,8 +37,13 @@ class Rest:
         """Something was changed: a motor, a pose, gravity, what there is."""
         self._steps = self._looks = 0
 
+    @property
+    def reached(self) -> bool:
+        """Whether the next step would change nothing."""
+        return self._looks >= LOOKS
+
     def step_needed(self) -> bool:
-        """Whether the next step would do anything."""
+        """Whether the next step would do anything; to be asked before each."""
         if self._looks >= LOOKS:
             return False
         self._steps += 1

@@ -98,7 +98,7 @@ class CameraPlugin:
 
     def _take(self) -> None:
         if self._images.get_num_connections():
-            self._host.shared.lockstep.expect()
+            self._host.expect_answer()
         exposure = self._camera.expose()
         self._host.draw(lambda: self._send(exposure))
 

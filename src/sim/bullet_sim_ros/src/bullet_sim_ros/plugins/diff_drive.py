@@ -41,6 +41,8 @@ class DiffDrivePlugin:
         self._publish_tf = p.flag("publishTf", True)
         self._publish_odom_tf = p.flag("publishOdomTF", True)
         self._publish_wheel_tf = p.flag("publishWheelTF", False)
+        if self._publish_tf and (self._publish_odom_tf or self._publish_wheel_tf):
+            host.shared.announce_transforms()
         prefix = params.tf_prefix(namespace)
         self._odom_frame = names.frame(prefix, p.text("odometryFrame", "odom"))
         self._base_frame = names.frame(prefix, p.text("robotBaseFrame", "base_footprint"))
@@ -64,7 +66,7 @@ class DiffDrivePlugin:
 
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
         host = self._host
-        self._odometry = host.advertise(names.join(namespace, odometry), Odometry, queue_size=1)
+        self._odometry = host.advertise(names.join(namespace, odometry), Odometry, queue_size=10)
         self._states = host.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if joints else None
@@ -87,7 +89,7 @@ class DiffDrivePlugin:
         if self._states:
             reading = sample_joints(world, self._joints)
             self._states.publish(convert.joints_to_msg(reading, velocities=False))
-        if self._publish_tf:
+        if self._publish_tf and self._heard():
             self._publish(self._reading())
         self._drive.update(world.time - self._updated)
         self._updated = world.time
@@ -96,6 +98,10 @@ class DiffDrivePlugin:
         if self._true:
             return true_odometry(self._host.world, self._host.model)
         return self._wheel_odometry.sample()
+
+    def _heard(self) -> bool:
+        shared = self._host.shared
+        return bool(self._odometry.get_num_connections()) or shared.transforms_wanted()
 
     def _publish(self, reading: OdometryReading) -> None:
         """Upstream's publishTf switches the odometry topic as well as the transforms."""

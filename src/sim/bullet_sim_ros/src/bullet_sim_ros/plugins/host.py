@@ -36,11 +36,18 @@ class Shared:
         self.lockstep = lockstep
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
-    def send_transforms(self, transforms: list[TransformStamped]) -> None:
-        """Publish on /tf."""
+    def announce_transforms(self) -> None:
+        """Make /tf known, so that who is there before time begins misses nothing."""
         if self._broadcaster is None:
             self._broadcaster = tf2_ros.TransformBroadcaster()
+
+    def send_transforms(self, transforms: list[TransformStamped]) -> None:
+        """Publish on /tf, after `announce_transforms`."""
         self._broadcaster.sendTransform(transforms)
+
+    def transforms_wanted(self) -> bool:
+        """Whether anybody listens to /tf."""
+        return bool(self._broadcaster and self._broadcaster.pub_tf.get_num_connections())
 
 
 class Host:
@@ -59,6 +66,7 @@ class Host:
         self._resets: list[Callable[[], None]] = []
         self._drawn: Future | None = None
         self._closed = False
+        self._expects_answers = False
         self._duty: Duty | None = None  # the last that `every` was asked for
 
     @property
@@ -137,6 +145,11 @@ class Host:
             self._drawn.result()
         self._drawn = self.shared.drawing.submit(job)
 
+    def expect_answer(self) -> None:
+        """A frame is about to go to somebody: in lockstep the world then waits for the answer."""
+        self._expects_answers = True
+        self.shared.lockstep.expect()
+
     def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
         def run() -> None:
             if self._closed:
@@ -187,6 +200,8 @@ class Host:
     def close(self) -> None:
         """End all topics and services of the plugin."""
         self._closed = True
+        if self._expects_answers:
+            self.shared.lockstep.cancel()
         if self._drawn is not None:
             self._drawn.exception()  # waits: its topics are still needed
         while self._closers:

@@ -50,7 +50,7 @@ class OpenniKinectPlugin:
 
     def _take(self) -> None:
         if any(publisher.get_num_connections() for publisher in self._pictures):
-            self._host.shared.lockstep.expect()
+            self._host.expect_answer()
         exposure = self._camera.expose()
         self._host.draw(lambda: self._send(exposure))
 
