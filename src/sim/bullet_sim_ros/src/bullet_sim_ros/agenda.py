@@ -10,7 +10,7 @@ from bullet_sim.world import World
 # s, wall: at the wanted pace nothing is looked at less often, so that new listeners and commands
 # need not wait.
 LONGEST = 0.01
-UNPACED = 0.05  # s, simulated: the same where time runs as fast as it goes
+UNPACED = 0.05  # s, simulated: nor less often than this, however fast time is to run
 
 
 def always() -> bool:
@@ -40,7 +40,7 @@ class Agenda:
 
     def set_pace(self, factor: float) -> None:
         """The real-time factor aimed at; 0: as fast as it goes."""
-        self._longest = factor * LONGEST if factor > 0 else UNPACED
+        self._longest = min(factor * LONGEST, UNPACED) if factor > 0 else UNPACED
 
     def add(self, rate_hz: float, action: Callable[[], None],
             wanted: Callable[[], bool] = always) -> Duty:

@@ -1,0 +1,327 @@
+"""Steps are left out where nothing moves, and only there."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pybullet
+import pytest
+
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Cylinder,
+    Inertial,
+    JointDescription,
+    LinkDescription,
+    ModelDescription,
+    Plane,
+    Sphere,
+    Surface,
+)
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
+from bullet_sim.physics.body import Twist
+from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.world import World
+
+SETTLE = 3.0  # s within which all that stands here comes to rest
+WHEEL_RADIUS = 0.03  # m
+
+
+def inertia(mass: float, size: float) -> tuple[float, ...]:
+    """Of a cube."""
+    moment = mass * size * size / 6
+    return (moment, 0.0, 0.0, moment, 0.0, moment)
+
+
+def body(name: str, shape, mass: float = 1.0, pose: Pose = IDENTITY, **fields) -> LinkDescription:
+    return LinkDescription(name, pose, Inertial(mass, IDENTITY, inertia(mass, 0.1)),
+                           collisions=(Collision(name, shape),), **fields)
+
+
+def single(name: str, shape, **fields) -> ModelDescription:
+    return ModelDescription(name, links=(body("link", shape, **fields),))
+
+
+def ground(mu: float = 100.0) -> ModelDescription:
+    plane = Collision("plane", Plane((0.0, 0.0, 1.0), (100.0, 100.0)), surface=Surface(mu=mu))
+    return ModelDescription("ground", static=True,
+                            links=(LinkDescription("link", collisions=(plane,)),))
+
+
+BOX = single("box", Box((0.1, 0.1, 0.1)))
+BALL = single("ball", Sphere(0.05))
+
+
+def robot() -> ModelDescription:
+    """Two wheels, and a skid behind that carries a part of the weight."""
+    skid = Collision("skid", Sphere(0.01), Pose((-0.1, 0.0, -0.02)), Surface(mu=0.0))
+    base = body("base", Box((0.2, 0.15, 0.03)), 2.0, Pose((0.0, 0.0, WHEEL_RADIUS)))
+    base = replace(base, collisions=(*base.collisions, skid),
+                   inertial=replace(base.inertial, pose=Pose((-0.04, 0.0, 0.0))))
+    links, joints = [base], []
+    for side, y in (("left", 0.1), ("right", -0.1)):
+        pose = Pose.from_xyz_rpy((0.0, y, WHEEL_RADIUS), (-math.pi / 2, 0.0, 0.0))
+        links.append(body(side, Cylinder(WHEEL_RADIUS, 0.02), 0.05, pose))
+        joints.append(JointDescription(f"{side}_joint", "continuous", "base", side))
+    return ModelDescription("robot", links=tuple(links), joints=tuple(joints))
+
+
+class Drive(DiffDrive):
+    """The robot's drive; a command counts at once."""
+
+    def __init__(self, world: World):
+        self.model = world.spawn(robot())
+        joints = (self.model.joint("left_joint"), self.model.joint("right_joint"))
+        super().__init__(*joints, DiffDriveParameters(0.2, 2 * WHEEL_RADIUS, 0.0, 5.0))
+        self.command(0.0, 0.0)
+
+    def command(self, forward: float, yaw_rate: float) -> None:
+        super().command(forward, yaw_rate)
+        self.update(0.01)
+
+
+def pendulum(length: float = 1.0) -> ModelDescription:
+    """A bob that swings about y, hung from the world at a height of 2 m."""
+    bob = body("bob", Sphere(0.02), pose=Pose((0.0, 0.0, 2.0 - length)))
+    hinge = JointDescription("hinge", "revolute", "world", "bob", Pose((0.0, 0.0, length)),
+                             axis=(0.0, 1.0, 0.0))
+    return ModelDescription("pendulum", links=(bob,), joints=(hinge,))
+
+
+class Counted:
+    """A world, and how often the engine has stepped."""
+
+    def __init__(self):
+        self.world = World()
+        self.steps = 0
+
+    def run(self, seconds: float) -> int:
+        """Goes on for so long; returns how many of the steps the engine did."""
+        before = self.steps
+        self.world.step(round(seconds / self.world.timestep))
+        return self.steps - before
+
+    def settle(self) -> None:
+        """Goes on until steps are left out."""
+        self.run(SETTLE)
+        assert self.run(0.1) == 0, "not at rest"
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    made = Counted()
+    step = pybullet.stepSimulation
+
+    def count(**options):
+        made.steps += 1
+        step(**options)
+
+    monkeypatch.setattr(pybullet, "stepSimulation", count)
+    yield made
+    made.world.close()
+
+
+# --- at rest
+
+STANDING = {
+    "box": lambda w: w.spawn(BOX, Pose((0.3, 0.2, 0.2))),
+    "pendulum": lambda w: w.spawn(pendulum()),
+    "robot": lambda w: Drive(w),
+    "nothing": lambda w: None,
+}
+
+
+@pytest.mark.parametrize("thing", STANDING)
+def test_what_stands_comes_to_rest_and_stays_where_it_is(counted, thing):
+    world = counted.world
+    world.spawn(ground())
+    STANDING[thing](world)
+    counted.settle()
+    before = world.snapshot()
+    assert counted.run(60.0) == 0
+    assert world.snapshot().models == before.models
+    assert world.time == pytest.approx(SETTLE + 60.1)
+
+
+def test_rest_changes_no_result(counted, monkeypatch):
+    """A robot that waited for half a minute drives as one that was solved all that time."""
+    ends = []
+    for leave_out in (True, False):
+        world = World()
+        if not leave_out:
+            monkeypatch.setattr(world._client.rest, "step_needed", lambda: True)
+        world.spawn(ground())
+        drive = Drive(world)
+        world.step(30_000)
+        start = drive.model.pose
+        drive.command(0.1, 0.0)
+        world.step(2000)
+        ends.append((start.inverse() * drive.model.pose).position)
+        world.close()
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4)
+
+
+def test_a_world_is_solved_until_all_of_it_is_still(counted):
+    world = counted.world
+    world.spawn(ground())
+    world.spawn(BOX, Pose((0.0, 0.0, 0.05)))
+    counted.settle()
+    world.spawn(BALL, Pose((1.0, 0.0, 100.0)))  # falls for 4.5 s
+    assert counted.run(4.0) == 4000
+
+
+# --- what ends it
+
+DISTURBANCES = {
+    "motor": lambda w: w.model("robot").joint("left_joint").drive_velocity(1.0, 5.0),
+    "effort": lambda w: w.model("robot").joint("left_joint").drive_effort(0.5),
+    "joint position": lambda w: w.model("pendulum").joint("hinge").reset(0.5),
+    "force": lambda w: w.link("box::link").apply_force((0.0, 0.0, 1000.0)),
+    "torque": lambda w: w.link("box::link").apply_force((0.0, 0.0, 0.0), (0.0, 0.0, 50.0)),
+    "pose": lambda w: w.model("box").set_pose(Pose((1.0, 0.0, 0.5))),
+    "twist": lambda w: w.model("box").set_twist(Twist((0.0, 0.0, 1.0))),
+    "something falls on it": lambda w: w.spawn(BALL, Pose((1.0, 0.02, 0.6))),
+    "its support goes": lambda w: w.delete("table"),
+    "its support is moved": lambda w: w.model("table").set_pose(Pose((5.0, 0.0, 0.0))),
+    "gravity": lambda w: w.configure_physics(gravity=(1.0, 0.0, 9.8)),
+    "reset": lambda w: w.reset_models(),
+    "reset of time": lambda w: w.reset_simulation(),
+}
+
+
+@pytest.mark.parametrize("disturbance", DISTURBANCES)
+def test_every_disturbance_ends_it(counted, disturbance):
+    world = counted.world
+    world.spawn(ground())
+    Drive(world)
+    world.spawn(pendulum(), Pose((0.0, 2.0, 0.0)))
+    world.spawn(single("table", Box((0.3, 0.3, 0.2))), Pose((1.0, 0.0, 0.1)))
+    box = world.spawn(BOX, Pose((1.0, 0.0, 0.4)))  # falls 15 cm on the table
+    counted.settle()
+    before = world.snapshot()
+    DISTURBANCES[disturbance](world)
+    assert counted.run(0.4) == 400
+    moved = {name for name, model in world.snapshot().models.items()
+             if not _close(model, before.models.get(name))}
+    assert moved - {"ball"}, "nothing moved"
+    assert box.pose.position[2] > 0.04
+    world.configure_physics(gravity=(0.0, 0.0, -9.8))
+
+
+def _close(model, before) -> bool:
+    if before is None:
+        return False
+    joints = zip(model.joints.values(), before.joints.values(), strict=True)
+    return (math.dist(model.pose.position, before.pose.position) < 1e-5
+            and math.dist(model.pose.orientation, before.pose.orientation) < 1e-5
+            and all(abs(now[0] - then[0]) < 1e-4 for now, then in joints))
+
+
+def test_a_command_repeated_unchanged_does_not_end_it(counted):
+    world = counted.world
+    world.spawn(ground())
+    drive = Drive(world)
+    counted.settle()
+    for _ in range(100):
+        drive.command(0.0, 0.0)
+        assert counted.run(0.01) == 0
+    drive.command(0.001, 0.0)
+    assert counted.run(0.01) == 10
+
+
+def test_looking_does_not_end_it(counted):
+    world = counted.world
+    world.spawn(ground())
+    Drive(world)
+    counted.settle()
+    world.snapshot()
+    world.update_scene()
+    world.cast_rays(np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, -1.0]]))
+    assert counted.run(0.1) == 0
+
+
+# --- what moves slowly, or not yet, is not at rest
+
+@pytest.mark.parametrize("speed", [0.001, 0.0001])  # the second one is below what counts as still
+def test_a_robot_that_creeps_on_command_is_solved_and_arrives(counted, speed):
+    world = counted.world
+    world.spawn(ground())
+    drive = Drive(world)
+    counted.settle()
+    start = drive.model.pose.position[0]
+    drive.command(speed, 0.0)
+    assert counted.run(20.0) == 20_000
+    assert drive.model.pose.position[0] - start == pytest.approx(20 * speed, rel=0.2)
+
+
+def test_a_motor_against_a_stop_is_solved(counted):
+    hinge = JointDescription("hinge", "revolute", "world", "bob", axis=(0.0, 0.0, 1.0),
+                             lower=-0.5, upper=0.5)
+    arm = ModelDescription("arm", links=(body("bob", Sphere(0.1)),), joints=(hinge,))
+    joint = counted.world.spawn(arm).joint("hinge")
+    joint.drive_velocity(1.0, 1.0)
+    counted.run(SETTLE)
+    assert joint.position == pytest.approx(0.5, abs=0.01)
+    assert counted.run(1.0) == 1000
+    joint.drive_velocity(0.0, 1.0)
+    counted.settle()
+
+
+def test_a_pendulum_at_its_turning_point(counted):
+    model = counted.world.spawn(pendulum())
+    hinge = model.joint("hinge")
+    hinge.reset(0.02)  # lets go from there: 0.063 rad/s at its greatest
+    swung = []
+    for _ in range(200):
+        assert counted.run(0.05) == 50
+        swung.append(hinge.position)
+    assert min(swung) == pytest.approx(-0.02, rel=0.1)
+    assert max(swung[100:]) == pytest.approx(0.02, rel=0.1)
+
+
+def test_a_slow_pendulum_at_its_turning_point(counted):
+    """Ten metres long, a period of 6.3 s: nearly still for the whole of a look."""
+    model = counted.world.spawn(pendulum(10.0))
+    hinge = model.joint("hinge")
+    hinge.reset(0.05)
+    assert counted.run(8.0) == 8000
+    assert abs(hinge.position) < 0.051
+
+
+def test_a_ball_that_rolls_slowly_goes_on(counted):
+    world = counted.world
+    world.spawn(ground())
+    ball = world.spawn(BALL, Pose((0.0, 0.0, 0.05)))
+    counted.run(0.5)
+    ball.set_twist(Twist((0.002, 0.0, 0.0), (0.0, 0.04, 0.0)))
+    start = ball.pose.position[0]
+    assert counted.run(10.0) == 10_000
+    assert ball.pose.position[0] - start == pytest.approx(0.02, rel=0.2)
+
+
+def test_a_box_that_drifts_slowly_goes_on(counted):
+    world = counted.world
+    world.configure_physics(gravity=(0.0, 0.0, 0.0))
+    box = world.spawn(BOX)
+    box.set_twist(Twist((0.001, 0.0, 0.0)))
+    assert counted.run(10.0) == 10_000
+    assert box.pose.position == pytest.approx((0.01, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_weightless_link_floats_and_moves_when_pushed(counted):
+    world = counted.world
+    model = world.spawn(single("balloon", Sphere(0.1), gravity=False), Pose((0.0, 0.0, 1.0)))
+    counted.run(SETTLE)
+    assert model.pose.position == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+    model.links["link"].apply_force((100.0, 0.0, 0.0))
+    counted.run(1.0)
+    assert model.pose.position == pytest.approx((0.1, 0.0, 1.0), abs=1e-3)
+
+
+def test_a_weightless_link_floats_when_gravity_changes(counted):
+    world = counted.world
+    model = world.spawn(single("balloon", Sphere(0.1), gravity=False), Pose((0.0, 0.0, 1.0)))
+    world.configure_physics(gravity=(0.0, 0.0, -1.6))
+    counted.run(1.0)
+    assert model.pose.position == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
