@@ -6,14 +6,14 @@ help: ## list the verbs
 
 course: ## drive the line course and report [LAPS=1] [DURATION=s] [FOLLOWER=06follower_pid.py] [FAST=1] [CAMERA=640x480] [SEED=0]
 	@scripts/course.sh $(if $(LAPS),--laps "$(LAPS)") $(if $(DURATION),--duration "$(DURATION)") \
-	  $(if $(FOLLOWER),--follower "$(FOLLOWER)") $(if $(filter-out 0,$(FAST)),--fast) \
+	  $(if $(FOLLOWER),--follower "$(FOLLOWER)") $(if $(filter-out 0 no false,$(FAST)),--fast) \
 	  $(if $(CAMERA),--camera "$(CAMERA)") $(if $(SEED),--seed "$(SEED)")
 
 test: ## run every check and test [JOBS=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")
 
 bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]
-	@scripts/bench.sh $(if $(ONLY),--only "$(ONLY)") $(if $(filter-out 0,$(QUICK)),--quick) \
+	@scripts/bench.sh $(if $(ONLY),--only "$(ONLY)") $(if $(filter-out 0 no false,$(QUICK)),--quick) \
 	  $(if $(MEMORY_S),--memory-s "$(MEMORY_S)")
 
 setup: ## install what is missing, and build

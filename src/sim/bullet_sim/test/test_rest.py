@@ -300,6 +300,24 @@ def test_a_ball_that_rolls_slowly_goes_on(counted):
     assert ball.pose.position[0] - start == pytest.approx(0.02, rel=0.2)
 
 
+def test_a_pole_that_begins_to_fall_is_solved(counted):
+    """From 0.1 mrad beside upright it takes half a second to turn at 0.7 mrad/s, and falls."""
+    hinge = counted.world.spawn(pendulum(-1.0)).joint("hinge")
+    hinge.reset(1e-4)
+    counted.run(4.0)
+    assert hinge.position > 1.0
+
+
+@pytest.mark.parametrize("step", [1e-5, 1e-4, 0.002])
+def test_a_pendulum_does_not_stop_where_it_turns_however_short_a_step_is(counted, step):
+    world = counted.world
+    world.configure_physics(max_step_size=step)
+    hinge = world.spawn(pendulum()).joint("hinge")
+    hinge.reset(0.02)
+    counted.run(0.5)  # a quarter of its period
+    assert abs(hinge.position) < 0.002
+
+
 def test_a_box_that_drifts_slowly_goes_on(counted):
     world = counted.world
     world.configure_physics(gravity=(0.0, 0.0, 0.0))

@@ -37,6 +37,11 @@ def test_time_goes_on_in_steps_of_the_new_length(world):
     assert all(now > before for before, now in pairwise(times))
 
 
+def test_no_step_is_no_time(world):
+    world.step(0)
+    assert world.time == 5.0
+
+
 def test_a_reset_leads_back_to_the_same_time_whatever_the_step(world):
     world.step(100)
     world.configure_physics(max_step_size=0.002)

@@ -68,7 +68,7 @@ class Ending(unittest.TestCase):
     def test_a_time_to_start_at_that_is_none(self):
         process = self.start("--initial_sim_time", "-5")
         self.assertEqual(process.wait(RUN_LIMIT), 2)
-        self.assertIn("'-5' is not a number, 0 or more", self.output())
+        self.assertIn("'-5' is not a number, 0 to", self.output())
 
 
 if __name__ == "__main__":

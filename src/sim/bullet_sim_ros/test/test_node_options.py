@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from bullet_sim.errors import SimulationError
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 
@@ -23,6 +24,15 @@ def test_real_time_factor_becomes_the_update_rate(words, rate_hz):
     assert opened(*words).description.physics.real_time_update_rate == pytest.approx(rate_hz)
 
 
+@pytest.mark.parametrize("words", [(), ("--real-time-factor=1",)])
+def test_a_step_of_nothing_is_the_worlds_error_with_and_without_a_factor(tmp_path, words):
+    path = tmp_path / "step.world"
+    path.write_text("<sdf version='1.6'><world name='w'><physics type='ode'>"
+                    "<max_step_size>0</max_step_size></physics></world></sdf>")
+    with pytest.raises(SimulationError, match="a time step of 0 s is not possible"):
+        open_world(parse(["--world", str(path), *words]), open_resources())
+
+
 def test_seed_and_pause():
     assert (opened().seed, opened().paused) == (0, False)
     world = opened("--seed", "12345678901", "--paused")
@@ -30,7 +40,7 @@ def test_seed_and_pause():
 
 
 @pytest.mark.parametrize("option, value, said", [
-    *(("--real-time-factor", value, "is not a number, 0 or more")
+    *(("--real-time-factor", value, "is not a number, 0 to")
       for value in ("fast", "-1", "nan", "inf", "")),
     *(("--seed", value, "is not a whole number, 0 or more") for value in ("-1", "1.5", "x", ""))])
 def test_a_value_that_makes_no_sense_is_named(capsys, option, value, said):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime
 import importlib
+import os
 import signal
 import sys
 import time
@@ -46,6 +47,8 @@ def _run(options: Options) -> int:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RunError(f"--out {options.out}: {error.strerror}") from error
+    if not os.access(options.out, os.W_OK):
+        raise RunError(f"--out {options.out}: it cannot be written to")
     settings = Settings(options.quick, options.memory_s, options.out, _say)
     began = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
     results = Results(began, options.quick, machine.describe())

@@ -24,7 +24,6 @@ from bullet_sim.stages import Stages
 @dataclass(frozen=True)
 class ModelSnapshot:
     """One model at one moment, in the world frame."""
-
     pose: Pose
     twist: Twist
     links: dict[str, tuple[Pose, Twist]]
@@ -34,7 +33,6 @@ class ModelSnapshot:
 @dataclass(frozen=True)
 class Snapshot:
     """The world at one moment."""
-
     time: float  # s, simulated
     models: dict[str, ModelSnapshot]
 
@@ -42,7 +40,6 @@ class Snapshot:
 @dataclass(frozen=True)
 class RayHits:
     """Result of a batch of rays; row i belongs to ray i."""
-
     fraction: np.ndarray  # (n,) of the ray's length; 1 where nothing was hit
     retro: np.ndarray  # (n,) laser_retro of what was hit
 
@@ -85,7 +82,7 @@ class World:
 
     def step(self, count: int = 1) -> None:
         """So many steps forward; while paused, time stands still."""
-        if self.paused:
+        if self.paused or count < 1:
             return
         if self._client.rest.reached and not self.each_step:
             self.tick += count

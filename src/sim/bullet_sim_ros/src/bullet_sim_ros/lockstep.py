@@ -9,6 +9,7 @@ import rospy
 
 from bullet_sim_ros.mailbox import Mailbox
 
+WARNING_PERIOD = 10.0  # s, wall
 LOOK = 0.1  # s, wall: how often to see whether the simulation has been told to stop
 
 
@@ -24,7 +25,8 @@ class Lockstep:
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
         self._expecting = False
-        self._plugins = 0  # how many plugins tell us
+        self._next_warning = 0.0  # s, wall
+        self._plugins: list[object] = []  # that tell us, in the order in which they subscribed
         self._subscriber: rospy.Subscriber | None = None  # where none does
 
     def listen(self) -> None:
@@ -37,20 +39,26 @@ class Lockstep:
         """A frame was taken for somebody: wait for the answer before the next step."""
         self._expecting = bool(self.topic)
 
-    def join(self) -> None:
-        """A plugin subscribes to the topic, and will call `hear` after each of its messages."""
-        self._plugins += 1
+    def join(self, plugin: object) -> None:
+        """A plugin is about to subscribe; it will call `hear` after each message of the topic."""
+        self._plugins.append(plugin)
         if self._subscriber is not None:  # of another message type, and there is one per topic
             self._subscriber.unregister()
             self._subscriber = None
 
-    def leave(self) -> None:
+    def leave(self, plugin: object) -> None:
         """That plugin is gone."""
-        self._plugins -= 1
+        self._plugins.remove(plugin)
+        self.listen()
 
-    def hear(self) -> None:
-        """From any thread: a message came."""
-        self._mailbox.leave(self.cancel)
+    def hear(self, plugin: object = None) -> None:
+        """From any thread: a message came, to a plugin or to our own subscriber.
+
+        A robot may have two drives on one topic. rospy tells them in the order in which they
+        subscribed, so with the last one all have left their commands.
+        """
+        if plugin is None or self._plugins[-1:] == [plugin]:
+            self._mailbox.leave(self.cancel)
 
     def cancel(self) -> None:
         """Wait no longer."""
@@ -63,8 +71,16 @@ class Lockstep:
             left = until - time.monotonic()
             if left <= 0:
                 self._expecting = False
-                rospy.logwarn_throttle(10.0, (
-                    f"lockstep: no message on {self.topic} within {self._timeout:g} s of a camera "
-                    "frame; going on without. Does the follower answer every image there?"))
+                self._warn()
                 return
             self._mailbox.run_pending(min(left, LOOK))
+
+    def _warn(self) -> None:
+        """By the wall clock: rospy's own throttle goes by simulated time, which hardly passes."""
+        now = time.monotonic()
+        if now < self._next_warning:
+            return
+        self._next_warning = now + WARNING_PERIOD
+        rospy.logwarn(
+            "lockstep: no message on %s within %g s of a camera frame; going on without. Does the "
+            "follower answer every image there?", self.topic, self._timeout)

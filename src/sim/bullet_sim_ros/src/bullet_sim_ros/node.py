@@ -7,7 +7,9 @@ import gc
 import signal
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import replace
+from typing import NoReturn
 
 import rosgraph
 import rospy
@@ -15,6 +17,7 @@ from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_world
+from bullet_sim.physics.limits import check_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.log_bridge import forward_core_log
@@ -29,31 +32,41 @@ from bullet_sim_ros.simulation import Simulation
 
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
 SWITCH_INTERVAL = 0.0005
+FASTEST = 1000.0  # real-time factor; 0 is for more
+LATEST = 4e9  # s; ROS counts to 2**32
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """One line; the usage is what --help is for."""
+        self.exit(2, f"{self.prog}: error: {message}\n")
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     """Command line without ROS remappings."""
-    parser = argparse.ArgumentParser(prog="gzserver", description=__doc__)
+    parser = _Parser(prog="gzserver", description=__doc__)
     parser.add_argument("--world", default="worlds/empty.world", help="world file")
     parser.add_argument("--paused", action="store_true", help="start with time standing still")
     parser.add_argument("--physics", default="ode", help="accepted, no effect: Bullet computes")
     parser.add_argument("--seed", type=_seed, default=0, help="of everything random")
-    parser.add_argument("--real-time-factor", type=_not_negative, default=None,
+    parser.add_argument("--real-time-factor", type=_up_to(FASTEST), default=None,
                         help="1: real time, 0: as fast as it goes; without it as the world says")
     parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
     parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
-    parser.add_argument("--initial-sim-time", type=_not_negative, default=0.0, help="s")
+    parser.add_argument("--initial-sim-time", type=_up_to(LATEST), default=0.0, help="s")
     return parser.parse_args(arguments)
 
 
-def _not_negative(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number, 0 or more")
-    return value
+def _up_to(most: float) -> Callable[[str], float]:
+    def number(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = -1.0
+        if not 0 <= value <= most:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number, 0 to {most:g}")
+        return value
+    return number
 
 
 def _seed(text: str) -> int:
@@ -66,6 +79,7 @@ def open_world(options: argparse.Namespace, resources) -> World:
     """The world of the command line."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
+    check_physics(description.physics)
     if options.real_time_factor is not None:
         rate_hz = options.real_time_factor / description.physics.max_step_size
         physics = replace(description.physics, real_time_update_rate=rate_hz)

@@ -22,7 +22,7 @@ from bullet_sim_ros.plugins.host import Host, Shared
 from bullet_sim_ros.speed import Speed
 from bullet_sim_ros.state_topics import StateTopics
 
-IDLE = 0.05  # s, wall: how long to wait for a call while paused
+IDLE = 0.05  # s, wall: how long to wait for a call before looking whether all is to end
 
 
 class Simulation:
@@ -74,7 +74,7 @@ class Simulation:
             self._restart_pace()
             return
         while (ahead := self.pacer.ahead(self.world.time)) > 0 and not self._stopped():
-            self.mailbox.run_pending(ahead)
+            self.mailbox.run_pending(min(ahead, IDLE))
             if self.world.paused:
                 return
         self.mailbox.run_pending()

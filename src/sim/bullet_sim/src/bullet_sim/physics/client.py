@@ -50,6 +50,7 @@ class PhysicsClient:
             enableFileCaching=0,
         )
         self.call(pybullet.setGravity, *gravity)
+        self.rest.set_step(physics.max_step_size)
 
     def call(self, function, *args, **kwargs):
         """Run a pybullet function that changes something."""

@@ -6,12 +6,16 @@ for the world as a whole: one thing that moves, or a motor that wants to, and ev
 
 from __future__ import annotations
 
+import math
+from collections import deque
 from typing import Protocol
 
 STILL_SPEED = 2e-4  # m/s; contacts alone leave a standing robot creeping at 1.5e-5 (measured)
 STILL_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
-LOOK_EVERY = 50  # steps
+LOOK_PERIOD = 0.05  # s, simulated
 LOOKS = 10  # in a row that have to find everything still
+GROWTH = 1.5  # over these looks: more than that is the beginning of a fall
+NOTHING = 1e-3  # of what counts as still; below it growth is only that of rounding errors
 
 
 class Restable(Protocol):
@@ -31,32 +35,47 @@ class Rest:
 
     def __init__(self):
         self.bodies: list[Restable] = []
+        self.reached = False  # whether the next step would change nothing
+        self._motions: deque[float] = deque(maxlen=LOOKS)
+        self.set_step(LOOK_PERIOD)
+
+    def set_step(self, timestep: float) -> None:
+        """Length of a step, s: how long something has to be still does not depend on it."""
+        self._look_every = max(1, round(LOOK_PERIOD / timestep))  # steps
         self.disturb()
 
     def disturb(self) -> None:
         """Something was changed: a motor, a pose, gravity, what there is."""
-        self._steps = self._looks = 0
-
-    @property
-    def reached(self) -> bool:
-        """Whether the next step would change nothing."""
-        return self._looks >= LOOKS
+        self.reached = False
+        self._steps = 0
+        self._motions.clear()
 
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be asked before each."""
-        if self._looks >= LOOKS:
+        if self.reached:
             return False
         self._steps += 1
-        if self._steps % LOOK_EVERY == 0:
-            self._looks = self._looks + 1 if self._all_still() else 0
+        if self._steps % self._look_every == 0:
+            self._look()
         return True
 
-    def _all_still(self) -> bool:
-        return all(_is_still(body) for body in self.bodies)
+    def _look(self) -> None:
+        motion = 0.0
+        for body in self.bodies:
+            motion = max(motion, _motion(body))
+            if motion >= 1:
+                self._motions.clear()
+                return
+        self._motions.append(motion)
+        self.reached = (len(self._motions) == LOOKS
+                        and motion <= max(NOTHING, GROWTH * self._motions[0]))
 
 
-def _is_still(body: Restable) -> bool:
+def _motion(body: Restable) -> float:
+    """How fast it is, in parts of what counts as still; infinite if it is not, or not a number."""
     if body.wants_to_move():
-        return False
+        return math.inf
     speed, rate = body.speeds()
-    return speed < STILL_SPEED and rate < STILL_RATE
+    if speed < STILL_SPEED and rate < STILL_RATE:
+        return max(speed / STILL_SPEED, rate / STILL_RATE)
+    return math.inf

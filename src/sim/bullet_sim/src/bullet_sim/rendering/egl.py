@@ -18,7 +18,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.rendering import lights
-from bullet_sim.rendering.frame import CameraView, Frame
+from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.projection import (
     metres_from_depth,
     projection_matrix,
@@ -71,7 +71,10 @@ class EglRenderer:
         self._context = _open_context()
         with self._context:  # leaving it lets go of the context, so that any thread may draw
             self._context.gc_mode = "context_gc"
-            self.name = f"EGL, {self._context.info['GL_RENDERER']}"
+            info = self._context.info
+            self.name = f"EGL, {info['GL_RENDERER']}"
+            self.largest_px = min(LARGEST_PX, info["GL_MAX_RENDERBUFFER_SIZE"],
+                                  *info["GL_MAX_VIEWPORT_DIMS"])
             self._store = SurfaceStore(self._context)
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int], _Target] = {}

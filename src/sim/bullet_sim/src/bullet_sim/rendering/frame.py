@@ -9,6 +9,7 @@ import numpy as np
 
 from bullet_sim.pose import Pose
 
+LARGEST_PX = 8192  # longest side of a picture: a square one takes 1 GB already
 
 @dataclass(frozen=True)
 class CameraView:

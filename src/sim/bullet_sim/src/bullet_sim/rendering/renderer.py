@@ -25,6 +25,7 @@ class Renderer(Protocol):
     """Draws a scene. One call at a time; which thread makes it does not matter."""
 
     name: str  # backend and what it runs on, for people
+    largest_px: int  # longest side of a picture
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """One picture, and its depth if asked for; the arrays are the caller's own."""

@@ -15,7 +15,7 @@ import pybullet
 from bullet_sim.description import Material
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.pose import Pose, rotate
-from bullet_sim.rendering.frame import CameraView, Frame
+from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.projection import metres_from_depth, projection_matrix, view_matrix
 from bullet_sim.rendering.scene import LinkKey, LinkShape, SceneState
 from bullet_sim.stages import Stages
@@ -33,6 +33,7 @@ class TinyRenderer:
     """See `renderer.Renderer`."""
 
     name = "PyBullet's TinyRenderer"
+    largest_px = LARGEST_PX  # with much more it ends the whole process
 
     def __init__(self, stages: Stages | None = None) -> None:
         self._stages = stages or Stages()

@@ -49,12 +49,9 @@ class Camera:
         self._sensor = sensor
         self._renderer = renderer
         self._name = f"{link.scoped_name}::{sensor.name}::{number}"
-        if min(self.description.width, self.description.height) < 1:
-            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: an image of "
-                              f"{self.description.width}x{self.description.height} px")
-        if not 0 < self.description.horizontal_fov < math.pi:
-            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: <horizontal_fov> is "
-                              f"{self.description.horizontal_fov}, which is not between 0 and pi")
+        mistake = _mistake(self.description, renderer)
+        if mistake:
+            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: {mistake}")
         self._noise: ImageNoise | None = None
 
     def view(self) -> CameraView:
@@ -86,3 +83,18 @@ class Camera:
             if self._noise is None:
                 self._noise = ImageNoise(noise, rgb.shape, self._world.random(self._name, 0))
             return self._noise.add(rgb, self._world.random(self._name, exposure.tick))
+
+
+def _mistake(camera: CameraDescription, renderer: Renderer) -> str | None:
+    """What of a camera nobody can draw."""
+    size = f"an image of {camera.width}x{camera.height} px"
+    if min(camera.width, camera.height) < 1:
+        return size
+    if max(camera.width, camera.height) > renderer.largest_px:
+        return f"{size}; {renderer.name} draws at most {renderer.largest_px} a side"
+    if not 0 < camera.horizontal_fov < math.pi:
+        return f"<horizontal_fov> is {camera.horizontal_fov}, which is not between 0 and pi"
+    if not 0 < camera.near < camera.far < math.inf:
+        return (f"<clip> is from {camera.near} to {camera.far} m; it needs a <near> of more than 0 "
+                "and a <far> beyond it")
+    return None

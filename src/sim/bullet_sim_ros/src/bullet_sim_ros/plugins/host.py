@@ -179,11 +179,11 @@ class Host:
             if function is not None:
                 self.shared.mailbox.leave(function)
             if answers:
-                lockstep.hear()
+                lockstep.hear(self)
 
         if answers:
-            lockstep.join()
-            self._closers.append(lockstep.leave)
+            lockstep.join(self)
+            self._closers.append(lambda: lockstep.leave(self))
         subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
         self._closers.append(subscriber.unregister)
         return subscriber

@@ -1,0 +1,48 @@
+"""What the loop waits for in lockstep, without a master."""
+
+from bullet_sim_ros.lockstep import Lockstep
+from bullet_sim_ros.mailbox import Mailbox
+
+
+class Waiting:
+    """A loop in lockstep that has just taken a frame."""
+
+    def __init__(self):
+        self.mailbox = Mailbox()
+        self.lockstep = Lockstep("/cmd_vel", 10.0, self.mailbox)
+        self.commands = []
+
+    def joined(self, name):
+        """What a plugin does with a message."""
+        self.lockstep.join(name)
+
+        def take():
+            self.mailbox.leave(lambda: self.commands.append(name))
+            self.lockstep.hear(name)
+        return take
+
+    def goes_on(self):
+        """Whether the loop ends its wait with what has come."""
+        looks = iter((False, True))
+        self.lockstep.expect()
+        self.lockstep.wait(lambda: next(looks))
+        return next(looks, None) is not None
+
+
+def test_the_world_waits_until_every_plugin_has_its_command():
+    """Two drives on one topic; rospy tells them in the order in which they subscribed."""
+    loop = Waiting()
+    front, rear = loop.joined("front"), loop.joined("rear")
+    front()
+    assert not loop.goes_on()
+    rear()
+    assert loop.goes_on()
+    assert loop.commands == ["front", "rear"]
+
+
+def test_of_a_plugin_that_is_gone_nothing_is_awaited():
+    loop = Waiting()
+    front, _ = loop.joined("front"), loop.joined("rear")
+    loop.lockstep.leave("rear")
+    front()
+    assert loop.goes_on()

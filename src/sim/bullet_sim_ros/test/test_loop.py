@@ -1,0 +1,34 @@
+"""The loop's wait, without ROS's master."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from bullet_sim_ros.pacer import Pacer
+from bullet_sim_ros.simulation import IDLE, Simulation
+
+
+class ImpatientMailbox:
+    """Keeps how long the loop would have waited, and tells it to stop after a few times."""
+
+    def __init__(self, simulation):
+        self._simulation, self.waits = simulation, []
+
+    def run_pending(self, wait=0.0):
+        self.waits.append(wait)
+        if len(self.waits) == 3:
+            self._simulation.stop()
+
+
+@pytest.mark.parametrize("factor", [1e-4, 1e-14])
+def test_however_slow_time_runs_the_loop_soon_sees_that_it_is_to_end(factor):
+    """A timed wait of Python's goes on after a signal; one of centuries is an OverflowError."""
+    simulation = Simulation.__new__(Simulation)
+    simulation.world = SimpleNamespace(paused=False, time=0.0)
+    simulation.pacer = Pacer(factor)
+    simulation.mailbox = ImpatientMailbox(simulation)
+    simulation._told_to_stop = False
+    simulation.pacer.ahead(0.0)
+    simulation.world.time = 0.01
+    simulation._wait()
+    assert max(simulation.mailbox.waits) <= IDLE
