@@ -103,6 +103,7 @@ def main() -> int:
     """Run until shutdown; 1 if the world cannot be opened."""
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
+    sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
     wait_for_master()
     send_promptly()
     # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
