@@ -197,7 +197,6 @@ def test_the_table_says_when_others_used_the_machine():
 
 @pytest.mark.parametrize("names", [(), ("frame.ours.640x480", "ratio.tiny.1920x1080")])
 def test_a_chart_is_drawn_of_what_there_is(tmp_path, names):
-    pytest.importorskip("matplotlib")
     chart = importlib.import_module("evaluation.bench.chart")
     file = tmp_path / "bench.png"
     chart.write_chart(results(*(figure(name, "ms", [1.0, 3.0, 2.0]) for name in names)), file)
@@ -235,7 +234,6 @@ def test_the_launch_file_spawns_every_robot_in_its_own_namespace():
 
 
 def test_a_part_that_fails_is_said_and_the_others_go_on(tmp_path, monkeypatch, capsys):
-    pytest.importorskip("matplotlib")
 
     def fail(_settings):
         raise RunError("nothing works")
