@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime
 import importlib
 import os
-import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 from evaluation.bench import machine
@@ -24,6 +22,7 @@ from evaluation.bench.results import (
 )
 from evaluation.bench.settings import Settings
 from evaluation.course_run.failure import RunError
+from evaluation.course_run.interruption import interruptible
 
 MEASURED, NOT_MEASURED, INTERRUPTED = 0, 2, 130
 
@@ -31,7 +30,7 @@ MEASURED, NOT_MEASURED, INTERRUPTED = 0, 2, 130
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
     try:
-        with _interruptible():
+        with interruptible():
             return _run(parse_options(arguments))
     except RunError as failure:
         _complain(failure)
@@ -92,18 +91,3 @@ def _complain(failure: RunError, where: str = "") -> None:
     if failure.details:
         print(failure.details, file=sys.stderr)
     print(f"bench: {where}{failure}", file=sys.stderr)
-
-
-@contextlib.contextmanager
-def _interruptible() -> Iterator[None]:
-    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end."""
-
-    def interrupt(_number: int, _frame: object) -> None:
-        for number in caught:
-            signal.signal(number, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    caught = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    for number in caught:
-        signal.signal(number, interrupt)
-    yield

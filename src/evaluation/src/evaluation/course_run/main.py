@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
 
 from evaluation.course_run.failure import RunError
+from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.observer import Observer
 from evaluation.course_run.options import Options, parse_options
@@ -38,7 +36,7 @@ CLOSED, NOT_CLOSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
     try:
-        with _interruptible():
+        with interruptible():
             return _run(parse_options(arguments))
     except RunError as failure:
         if failure.details:
@@ -187,21 +185,6 @@ def _run(options: Options) -> int:
         return CLOSED
     print(f"course_run: {outcome[1]}", file=sys.stderr)
     return NOT_CLOSED
-
-
-@contextlib.contextmanager
-def _interruptible() -> Iterator[None]:
-    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end."""
-
-    def interrupt(_number: int, _frame: object) -> None:
-        for number in caught:
-            signal.signal(number, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    caught = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    for number in caught:
-        signal.signal(number, interrupt)
-    yield
 
 
 def _titles(follower: str, summary: dict) -> tuple[str, str]:
