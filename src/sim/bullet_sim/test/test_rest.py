@@ -150,7 +150,7 @@ def test_rest_changes_no_result(counted, monkeypatch):
     for leave_out in (True, False):
         world = World()
         if not leave_out:
-            monkeypatch.setattr(world._client.rest, "step_needed", lambda: True)
+            monkeypatch.setattr("bullet_sim.physics.rest.STILL_SPEED", 0.0)
         world.spawn(ground())
         drive = Drive(world)
         world.step(30_000)
@@ -253,6 +253,27 @@ def test_a_robot_that_creeps_on_command_is_solved_and_arrives(counted, speed):
     drive.command(speed, 0.0)
     assert counted.run(20.0) == 20_000
     assert drive.model.pose.position[0] - start == pytest.approx(20 * speed, rel=0.2)
+
+
+def test_a_slope_holds_a_box_while_a_robot_drives_briskly(counted):
+    """Then steps are solved less exactly; and exactly again when it stands."""
+    world, rest = counted.world, counted.world._client.rest
+    world.spawn(ground())
+    slope = Pose.from_xyz_rpy((0.0, 3.0, 1.0), (0.0, 0.3, 0.0))
+    plate = Collision("plate", Box((2.0, 2.0, 0.1)), surface=Surface(mu=1.0))
+    world.spawn(ModelDescription("plate", static=True, links=(
+        LinkDescription("link", collisions=(plate,)),)), slope)
+    held = world.spawn(BOX, slope * Pose((0.0, 0.0, 0.1)))
+    drive = Drive(world)
+    counted.settle()
+    start = held.pose.position
+    drive.command(0.2, 0.0)
+    counted.run(5.0)
+    assert rest.brisk
+    assert math.dist(held.pose.position, start) < 5e-4
+    drive.command(0.0, 0.0)
+    counted.settle()
+    assert not rest.brisk
 
 
 def test_a_motor_against_a_stop_is_solved(counted):

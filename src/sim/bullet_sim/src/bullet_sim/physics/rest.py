@@ -1,5 +1,7 @@
 """Knows when nothing moves: then a step would only repeat the one before, and is left out.
 
+And whether something moves briskly: then steps need not be solved to the last bit.
+
 Engines call this auto-disabling; ODE does it below 0.01 m/s and 0.01 rad/s. Ours is stricter, and
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
 """
@@ -12,6 +14,8 @@ from typing import Protocol
 
 STILL_SPEED = 2e-4  # m/s; contacts alone leave a standing robot creeping at 1.5e-5 (measured)
 STILL_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
+BRISK_SPEED = 0.05  # m/s; slower things are driven exactly
+BRISK_RATE = 0.5  # rad/s
 LOOK_PERIOD = 0.05  # s, simulated
 LOOKS = 10  # in a row that have to find everything still
 GROWTH = 1.5  # over these looks: more than that is the beginning of a fall
@@ -36,6 +40,8 @@ class Rest:
     def __init__(self):
         self.bodies: list[Restable] = []
         self.reached = False  # whether the next step would change nothing
+        self.brisk = False  # whether anything was brisk when last looked at
+        self._steps = 0
         self._motions: deque[float] = deque(maxlen=LOOKS)
         self.set_step(LOOK_PERIOD)
 
@@ -47,7 +53,6 @@ class Rest:
     def disturb(self) -> None:
         """Something was changed: a motor, a pose, gravity, what there is."""
         self.reached = False
-        self._steps = 0
         self._motions.clear()
 
     def step_needed(self) -> bool:
@@ -60,22 +65,23 @@ class Rest:
         return True
 
     def _look(self) -> None:
-        motion = 0.0
+        motion, self.brisk = 0.0, False
         for body in self.bodies:
-            motion = max(motion, _motion(body))
-            if motion >= 1:
-                self._motions.clear()
-                return
+            speed, rate = body.speeds()
+            self.brisk = self.brisk or speed > BRISK_SPEED or rate > BRISK_RATE
+            motion = max(motion, _motion(speed, rate, body.wants_to_move()))
+            if self.brisk:
+                break
+        if motion >= 1:
+            self._motions.clear()
+            return
         self._motions.append(motion)
         self.reached = (len(self._motions) == LOOKS
                         and motion <= max(NOTHING, GROWTH * self._motions[0]))
 
 
-def _motion(body: Restable) -> float:
+def _motion(speed: float, rate: float, wants_to_move: bool) -> float:
     """How fast it is, in parts of what counts as still; infinite if it is not, or not a number."""
-    if body.wants_to_move():
-        return math.inf
-    speed, rate = body.speeds()
-    if speed < STILL_SPEED and rate < STILL_RATE:
+    if speed < STILL_SPEED and rate < STILL_RATE and not wants_to_move:
         return max(speed / STILL_SPEED, rate / STILL_RATE)
     return math.inf
