@@ -53,7 +53,7 @@ def test_a_follower_closes_its_lap_near_the_line(tmp_path, follower, worst_rms):
 
 def drive_fast(out: Path, *options: str) -> dict:
     """The simulated figures of four seconds as fast as they go."""
-    command = [sys.executable, str(SCRIPT), "--fast", "--duration", "4", "--no-video", *options]
+    command = [sys.executable, str(SCRIPT), "--fast", "--duration", "4", "--fingerprint", *options]
     done = subprocess.run(
         [*command, "--out", str(out)], capture_output=True, text=True, timeout=START_LIMIT
     )
@@ -73,6 +73,9 @@ def test_a_fast_drive_is_repeated_to_the_bit(tmp_path, follower):
     assert drive_fast(tmp_path / "again", *options) == first
     assert first["frames_dropped"] == 0 and first["frames_sent"] > 100
     assert first["distance_m"] > 0.3
+    sums = first["sensor_sha256"]
+    assert set(sums) == {"/camera/rgb/image_raw", "/scan", "/imu", "/joint_states"}
+    assert all(re.fullmatch("[0-9a-f]{64}", total) for total in sums.values())
     wider = drive_fast(tmp_path / "wider", "--camera", "400x240", *options[2:])
     assert wider["drive_sha256"] != first["drive_sha256"]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import cv2
 
 from evaluation.course_run.failure import RunError
+from evaluation.course_run.fingerprints import Fingerprints
 from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.observer import Observer
@@ -59,6 +60,8 @@ class CourseRun:
         self._first_at = self._last_at = time.monotonic()  # s, wall: when these samples came
         self._observer: Observer | None = None
         self._counted = 0, 0  # images and commands
+        self._fingerprints = Fingerprints()
+        self._sensor_sums: dict[str, str | None] = {}
 
     def bring_up(self, launched: Launched) -> None:
         """Start everything and wait until the car stands on the course."""
@@ -70,6 +73,8 @@ class CourseRun:
         launched.start("roslaunch", ["roslaunch", *options.launch, *arguments])
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
         self._observer.start()
+        if options.fingerprint:
+            self._fingerprints.start()
         until = time.monotonic() + options.startup_timeout
         while not self._take_samples():
             launched.check(None)
@@ -124,7 +129,9 @@ class CourseRun:
         """Film no more, and count the images up to the last sample while all still runs."""
         self.film.stop()
         if self.drive.samples:
-            self._counted = self._observer.count(self.drive.samples[-1].time)
+            end = self.drive.samples[-1].time
+            self._counted = self._observer.count(end)
+            self._sensor_sums = self._fingerprints.sums(end) if self.options.fingerprint else {}
 
     def close(self) -> None:
         """Ask and film no more."""
@@ -141,6 +148,7 @@ class CourseRun:
         summary = summarize(self.drive, outcome, frames, wall) | conditions(self.options)
         made_with = versions(Path(__file__).parent, lines)
         summary |= {"film": self.film.codec or None, "versions": made_with}
+        summary |= {"sensor_sha256": self._sensor_sums} if self._sensor_sums else {}
         picture = path_picture(self.track_file, self.drive, *_titles(follower, summary))
         cv2.imwrite(str(out / "path.png"), picture)
         runs = write_report(out, follower, summary)

@@ -31,6 +31,7 @@ class Options:
     fast: bool  # as fast as it goes, in lockstep with the follower
     camera_px: tuple[int, int] | None  # width and height; None: the robot's own
     seed: int | None  # None: the launch file's own
+    fingerprint: bool  # also sum up what all sensors send
     video: bool
     startup_timeout: float  # s, wall
     stuck_timeout: float  # s, wall
@@ -77,7 +78,8 @@ def parse_options(arguments: list[str]) -> Options:
         given.fast,
         camera_px,
         seed,
-        given.video,
+        given.fingerprint,
+        given.video and not given.fingerprint,  # a node takes a topic raw or not
         given.startup_timeout,
         given.stuck_timeout,
     )
@@ -113,6 +115,11 @@ def _parser() -> argparse.ArgumentParser:
         "--camera", metavar="WIDTHxHEIGHT", help="size of the camera's images, px (the robot's own)"
     )
     parser.add_argument("--seed", metavar="N", help="of all noise; with --fast, repeats a run (0)")
+    parser.add_argument(
+        "--fingerprint",
+        action="store_true",
+        help="also report a SHA-256 of all that each sensor sent; writes no run.mp4",
+    )
     parser.add_argument(
         "--launch-arg",
         action="append",
