@@ -16,6 +16,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.physics.body import Twist
 from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim.sensors.imu import Imu
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.world import World
@@ -125,4 +126,33 @@ def test_imu_of_a_falling_and_of_a_turning_link():
     assert reading.angular_velocity == pytest.approx((0, 0, 2.0), abs=1e-6)
     assert 2 * math.atan2(reading.orientation[2], reading.orientation[3]) == pytest.approx(
         0.2, abs=1e-3)
+    world.close()
+
+
+def test_ground_truth_of_a_point_that_a_turning_link_carries():
+    world = World()
+    model = world.spawn(ModelDescription("thing", links=(LinkDescription("link"),)),
+                        Pose.from_xyz_rpy((1.0, 2.0, 3.0), (0.0, 0.0, math.pi / 2)))
+    model.set_twist(Twist((0.5, 0.0, 0.0), (0.0, 0.0, 2.0)))
+    reading = GroundTruth(world, model.links["link"], Pose((0.1, 0.0, 0.0))).sample()
+    assert reading.pose.position == pytest.approx((1.0, 2.1, 3.0), abs=1e-6)
+    assert reading.twist.linear == pytest.approx((0.5 - 0.2, 0.0, 0.0), abs=1e-6)
+    assert reading.twist.angular == pytest.approx((0.0, 0.0, 2.0), abs=1e-6)
+    world.close()
+
+
+def test_ground_truth_seen_from_another_link_is_in_its_axes():
+    world = World()
+    thing, other = (
+        world.spawn(ModelDescription(name, links=(LinkDescription("link"),)),
+                    Pose.from_xyz_rpy(position, (0.0, 0.0, math.pi / 2)))
+        for name, position in (("thing", (0.0, 3.0, 0.0)), ("other", (0.0, 1.0, 0.0))))
+    thing.set_twist(Twist((0.0, 1.0, 0.0)))
+    other.set_twist(Twist((0.0, 0.25, 0.0), (0.0, 0.0, 1.0)))
+    truth = GroundTruth(world, thing.links["link"], IDENTITY, other.links["link"])
+    reading = truth.sample()
+    assert reading.pose.position == pytest.approx((2.0, 0.0, 0.0), abs=1e-6)
+    # The other's frame runs after it at 0.25 m/s and carries a point 2 m ahead to its left.
+    assert reading.twist.linear == pytest.approx((0.75, -2.0, 0.0), abs=1e-6)
+    assert reading.twist.angular == pytest.approx((0.0, 0.0, -1.0), abs=1e-6)
     world.close()

@@ -108,6 +108,8 @@ def good(monkeypatch):
     ("libgazebo_ros_imu.so", "", "it needs a <bodyName>"),
     ("libgazebo_ros_imu.so", "<bodyName>link</bodyName><gaussianNoise>-1</gaussianNoise>",
      "<gaussianNoise> is -1.0, and a deviation is not negative"),
+    ("libgazebo_ros_p3d.so", "<bodyName>nope</bodyName>", "no link of model robot named 'nope'"),
+    ("libgazebo_ros_p3d.so", "<bodyName>link</bodyName>", "it needs a <topicName>"),
 ])
 def test_a_plugin_that_cannot_load_is_one_error_and_the_others_load(
         world, caplog, good, filename, body, said):

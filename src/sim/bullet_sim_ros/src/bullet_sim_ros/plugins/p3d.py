@@ -1,0 +1,59 @@
+"""libgazebo_ros_p3d.so: nav_msgs/Odometry of a link as the world has it."""
+
+from __future__ import annotations
+
+import numpy as np
+from nav_msgs.msg import Odometry
+
+from bullet_sim.pose import Pose, quaternion_from_rpy
+from bullet_sim.sensors.ground_truth import GroundTruth
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+INERTIAL = ("world", "/world", "map", "/map")
+
+
+@plugin("libgazebo_ros_p3d.so")
+class P3dPlugin:
+    """Seen from another link, the twist is truly that (upstream turns it the wrong way round)."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        namespace = p.namespace(missing="/", empty="/")
+        link = host.model.link(p.required("bodyName"))
+        frame = p.text("frameName", "world")
+        reference = None if frame in INERTIAL else host.model.link(frame)
+        offset = Pose(p.vector("xyzOffset"), quaternion_from_rpy(*p.vector("rpyOffset")))
+        self._truth = GroundTruth(host.world, link, offset, reference)
+        self._world, self._child = host.world, link.name
+        prefix = params.below(names.join(namespace, "tf_prefix"))
+        self._frame = names.frame(str(prefix or ""), frame)
+        self._noise = p.number("gaussianNoise", 0.0)
+        if self._noise < 0:
+            raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
+        self._random_name = f"{link.scoped_name}::{host.description.name}"
+        topic = names.join(namespace, p.required("topicName"))
+        self._poses = host.advertise(topic, Odometry, queue_size=1)
+        host.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections)
+
+    def _measure(self) -> None:
+        reading = self._truth.sample()
+        msg = Odometry(child_frame_id=self._child)
+        msg.header.stamp, msg.header.frame_id = convert.stamp(reading.time), self._frame
+        msg.pose.pose = convert.pose_to_msg(reading.pose)
+        msg.twist.twist = convert.twist_to_msg(reading.twist)
+        if self._noise:
+            self._disturb(msg)
+        self._poses.publish(msg)
+
+    def _disturb(self, msg: Odometry) -> None:
+        noise = self._world.random(self._random_name).normal(0.0, self._noise, 6).tolist()
+        linear, angular = msg.twist.twist.linear, msg.twist.twist.angular
+        for vector, values in ((linear, noise[:3]), (angular, noise[3:])):
+            vector.x, vector.y, vector.z = (
+                value + more for value, more in zip((vector.x, vector.y, vector.z), values,
+                                                    strict=True))
+        variances = np.diag([self._noise ** 2] * 6).ravel().tolist()
+        msg.pose.covariance = msg.twist.covariance = variances
