@@ -8,7 +8,8 @@ import pytest
 import rospy
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
+from evaluation.course_run.course_file import load_course
+from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, Film, fit
 from evaluation.lap import LapScorer, Sample
 from evaluation.track import build_track, load_track_file
 
@@ -21,7 +22,7 @@ def film_of(path: Path, period: float, stamps: np.ndarray) -> int:
     track_file = load_track_file(TRACK)
     drive = LapScorer(build_track(track_file))
     drive.add(Sample(0.0, 0.0, 0.0, 0.0))
-    film = Film(path, track_file, drive, period)
+    film = Film(path, load_course("course"), track_file, drive, period)
     for stamp in stamps:
         image = Image(height=9, width=16, encoding="rgb8", step=48, data=PICTURE)
         image.header.stamp = rospy.Time.from_sec(stamp)
@@ -38,3 +39,10 @@ def test_one_picture_a_period(tmp_path, period):
 
 def test_a_gap_is_filled(tmp_path):
     assert film_of(tmp_path / "run.mp4", 0.8, np.array([0.0, 0.8, 4.8, 5.6])) == 8
+
+
+@pytest.mark.parametrize("size_px, view_px", [
+    ((1920, 1080), VIEW_PX), ((640, 480), (480, 360)), ((100, 10), (640, 64))])
+def test_the_camera_keeps_its_proportions(size_px, view_px):
+    width, height = size_px
+    assert fit(np.zeros((height, width, 3), np.uint8)).shape[1::-1] == view_px

@@ -5,24 +5,25 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import CameraInfo
 
-from evaluation.course_run import names
 from evaluation.course_run.connections import Connections
+from evaluation.course_run.course_file import load_course
 from evaluation.course_run.frames import FrameCount
 from evaluation.course_run.observer import missing_connection
 from evaluation.course_run.report import frame_figures
 
+COURSE = load_course("course")
 ME, SIMULATOR, FOLLOWER = "/course_run", "/gazebo", "/follower"
 PUBLISHERS = {
-    names.CAMERA: {SIMULATOR},
-    names.CAMERA_INFO: {SIMULATOR},
-    names.COMMANDS: {FOLLOWER},
-    names.ODOMETRY: {SIMULATOR},
+    COURSE.camera: {SIMULATOR},
+    COURSE.camera_info: {SIMULATOR},
+    COURSE.commands: {FOLLOWER},
+    COURSE.odometry: {SIMULATOR},
 }
 SUBSCRIBERS = {
-    names.CAMERA: {FOLLOWER},
-    names.CAMERA_INFO: {ME},
-    names.COMMANDS: {ME, SIMULATOR},
-    names.ODOMETRY: {ME},
+    COURSE.camera: {FOLLOWER},
+    COURSE.camera_info: {ME},
+    COURSE.commands: {ME, SIMULATOR},
+    COURSE.odometry: {ME},
 }
 LINKS = {
     (publisher, topic, subscriber)
@@ -42,7 +43,7 @@ def missing(
     found = Connections(
         nodes(PUBLISHERS, publishers), nodes(SUBSCRIBERS, subscribers), frozenset(links)
     )
-    return missing_connection(found, ME)
+    return missing_connection(found, ME, COURSE)
 
 
 def test_nothing_is_missing_when_all_links_are_open():
@@ -59,11 +60,11 @@ def test_each_link_is_waited_for(link):
 @pytest.mark.parametrize(
     ("publishers", "subscribers", "words"),
     [
-        ({names.CAMERA: set()}, {}, "the camera (topic /camera/rgb/image_raw)"),
-        ({names.ODOMETRY: set()}, {}, "the odometry (topic /odom)"),
-        ({}, {names.CAMERA: {ME}}, "the follower (nobody subscribes to /camera/rgb/image_raw)"),
-        ({names.COMMANDS: {ME}}, {}, "the follower (nobody publishes /cmd_vel)"),
-        ({}, {names.COMMANDS: {ME}}, "the car's drive (nobody subscribes to /cmd_vel)"),
+        ({COURSE.camera: set()}, {}, "the camera (topic /camera/rgb/image_raw)"),
+        ({COURSE.odometry: set()}, {}, "the odometry (topic /odom)"),
+        ({}, {COURSE.camera: {ME}}, "the follower (nobody subscribes to /camera/rgb/image_raw)"),
+        ({COURSE.commands: {ME}}, {}, "the follower (nobody publishes /cmd_vel)"),
+        ({}, {COURSE.commands: {ME}}, "the car's drive (nobody subscribes to /cmd_vel)"),
     ],
 )
 def test_each_part_is_waited_for(publishers, subscribers, words):
@@ -71,7 +72,7 @@ def test_each_part_is_waited_for(publishers, subscribers, words):
 
 
 def test_a_spectator_does_not_stand_for_the_follower():
-    spectator = {names.CAMERA: {FOLLOWER, "/image_view"}}
+    spectator = {COURSE.camera: {FOLLOWER, "/image_view"}}
     assert "from /gazebo to /image_view" in missing(subscribers=spectator)
 
 

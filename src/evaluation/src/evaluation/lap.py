@@ -8,7 +8,6 @@ from enum import Enum
 
 from evaluation.track import Track
 
-OFF_COURSE = 0.25  # m beside the line: farther than this and the car has left the course
 STALL_TIME, STALL_DISTANCE = 5.0, 0.02  # s and m: less progress than this in that time is a stall
 START_TIME = 30.0  # s that a follower may take until the car moves for the first time
 MOVED = 0.005  # m from where it stood: now it drives
@@ -72,6 +71,7 @@ class LapScorer:
 
     track: Track
     wanted_laps: int = 1
+    off_course: float = 0.25  # m beside the line: farther than this and the car has left the course
     verdict: Verdict = Verdict.DRIVING
     why: str = ""  # one line on a verdict that is not CLOSED
     laps: list[Lap] = field(default_factory=list)
@@ -147,7 +147,7 @@ class LapScorer:
         if abs(self._position - self._mark[1]) > STALL_DISTANCE:
             self._mark = (sample.time, self._position)
         waited = sample.time - self._mark[0]
-        if abs(self.lateral) > OFF_COURSE:
+        if abs(self.lateral) > self.off_course:
             side = "left" if self.lateral > 0 else "right"
             beside = f"{abs(self.lateral):.2f} m to the {side} of the yellow line"
             self._end(Verdict.LEFT, f"the car left the course {where}: {beside}")

@@ -7,18 +7,18 @@ from bullet_sim_ros.mailbox import Mailbox
 class Waiting:
     """A loop in lockstep that has just taken a frame."""
 
-    def __init__(self):
+    def __init__(self, topics="/cmd_vel"):
         self.mailbox = Mailbox()
-        self.lockstep = Lockstep("/cmd_vel", 10.0, self.mailbox)
+        self.lockstep = Lockstep(topics, 10.0, self.mailbox)
         self.commands = []
 
-    def joined(self, name):
+    def joined(self, name, topic="/cmd_vel"):
         """What a plugin does with a message."""
-        self.lockstep.join(name)
+        self.lockstep.join(topic, name)
 
         def take():
             self.mailbox.leave(lambda: self.commands.append(name))
-            self.lockstep.hear(name)
+            self.lockstep.hear(topic, name)
         return take
 
     def goes_on(self):
@@ -43,6 +43,18 @@ def test_the_world_waits_until_every_plugin_has_its_command():
 def test_of_a_plugin_that_is_gone_nothing_is_awaited():
     loop = Waiting()
     front, _ = loop.joined("front"), loop.joined("rear")
-    loop.lockstep.leave("rear")
+    loop.lockstep.leave("/cmd_vel", "rear")
     front()
     assert loop.goes_on()
+
+
+def test_the_world_waits_for_a_message_on_each_of_several_topics():
+    loop = Waiting("/left, /right")
+    left, right = loop.joined("left", "/left"), loop.joined("right", "/right")
+    left()
+    assert not loop.goes_on()
+    right()
+    left()
+    assert loop.goes_on()
+    right()
+    assert not loop.goes_on()

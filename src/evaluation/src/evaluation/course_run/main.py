@@ -54,13 +54,14 @@ class CourseRun:
 
     def __init__(self, options: Options, track_file: TrackFile, progress: Progress):
         self.options, self.track_file, self.progress = options, track_file, progress
-        self.drive = LapScorer(build_track(track_file), options.laps)
+        self.drive = LapScorer(
+            build_track(track_file), options.laps, off_course=options.course.off_course)
         period = FAST_FILM_PERIOD if options.fast else FILM_PERIOD
-        self.film = Film(options.out / "run.mp4", track_file, self.drive, period)
+        self.film = Film(options.out / "run.mp4", options.course, track_file, self.drive, period)
         self._first_at = self._last_at = time.monotonic()  # s, wall: when these samples came
         self._observer: Observer | None = None
         self._counted = 0, 0  # images and commands
-        self._fingerprints = Fingerprints()
+        self._fingerprints = Fingerprints(options.course.sensors)
         self._sensor_sums: dict[str, str | None] = {}
 
     def bring_up(self, launched: Launched) -> None:
@@ -68,7 +69,8 @@ class CourseRun:
         options = self.options
         self.progress.status("starting roscore")
         launched.start_roscore()
-        self._observer = Observer(launched.master_uri, options.robot, lockstep=options.fast)
+        self._observer = Observer(
+            launched.master_uri, options.robot, options.course, lockstep=options.fast)
         arguments = ("gui:=false", f"follower:={options.follower}", *options.launch_args)
         launched.start("roslaunch", ["roslaunch", *options.launch, *arguments])
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")

@@ -21,6 +21,7 @@ from std_srvs.srv import Empty
 
 from evaluation.course_run import names
 from evaluation.course_run.connections import Connections, look_up
+from evaluation.course_run.course_file import Course
 from evaluation.course_run.frames import FrameCount
 from evaluation.lap import Sample
 
@@ -39,7 +40,8 @@ class Observer:
     The node must exist before use_sim_time is set: then it needs no /clock.
     """
 
-    def __init__(self, master_uri: str, robot: str, lockstep: bool = False):
+    def __init__(self, master_uri: str, robot: str, course: Course, lockstep: bool = False):
+        self._course = course
         os.environ["ROS_MASTER_URI"] = master_uri
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Sample]] = queue.SimpleQueue()
@@ -51,10 +53,10 @@ class Observer:
 
     def start(self) -> None:
         """Begin to look and to count."""
-        rospy.Subscriber(names.CAMERA_INFO, CameraInfo, self.frames.count_frame)
-        rospy.Subscriber(names.COMMANDS, Twist, self.frames.count_command)
+        rospy.Subscriber(self._course.camera_info, CameraInfo, self.frames.count_frame)
+        rospy.Subscriber(self._course.commands, Twist, self.frames.count_command)
         if self._lockstep:
-            rospy.Subscriber(names.ODOMETRY, Odometry, self._take_odometry)
+            rospy.Subscriber(self._course.odometry, Odometry, self._take_odometry)
         self._thread.start()
 
     def stop(self) -> None:
@@ -101,11 +103,12 @@ class Observer:
                 return
 
     def _wait_for_connections(self) -> None:
-        me = rospy.get_name()
-        topics = (names.CAMERA, names.CAMERA_INFO, names.COMMANDS, names.ODOMETRY)
+        me, course = rospy.get_name(), self._course
+        topics = (course.camera, course.camera_info, course.commands, course.odometry,
+                  *course.lockstep)
         for _ in self._ticks(SETUP_RATE_HZ):
             try:
-                missing = missing_connection(look_up(self._master_uri, me, topics), me)
+                missing = missing_connection(look_up(self._master_uri, me, topics), me, course)
             except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
                 continue
             if missing is None:
@@ -116,7 +119,7 @@ class Observer:
         self.missing = f"the beginning of simulated time (service {names.UNPAUSE})"
         for _ in self._ticks(SETUP_RATE_HZ, names.UNPAUSE, Empty):
             if self._call() is not None:
-                self.missing = f"the first pose (topic {names.ODOMETRY})"
+                self.missing = f"the first pose (topic {self._course.odometry})"
                 return
 
     def _ask_poses(self) -> None:
@@ -149,23 +152,26 @@ class Observer:
             return None
 
 
-def missing_connection(found: Connections, me: str) -> str | None:
+def missing_connection(found: Connections, me: str, course: Course) -> str | None:
     """What a run in lockstep still waits for before time may begin, in words; None: nothing.
 
     From the first image on, the follower must answer, and this node (`me`) see pose and answer.
     """
-    watching = found.subscribers[names.CAMERA] - {me}
-    driving = found.publishers[names.COMMANDS] - {me}
-    if not found.publishers[names.CAMERA]:
-        return f"the camera (topic {names.CAMERA})"
-    if not found.publishers[names.ODOMETRY]:
-        return f"the odometry (topic {names.ODOMETRY})"
+    watching = found.subscribers[course.camera] - {me}
+    driving = found.publishers[course.commands] - {me}
+    if not found.publishers[course.camera]:
+        return f"the camera (topic {course.camera})"
+    if not found.publishers[course.odometry]:
+        return f"the odometry (topic {course.odometry})"
     if not watching:
-        return f"the follower (nobody subscribes to {names.CAMERA})"
+        return f"the follower (nobody subscribes to {course.camera})"
     if not driving:
-        return f"the follower (nobody publishes {names.COMMANDS})"
-    if not found.subscribers[names.COMMANDS] - driving - {me}:
-        return f"the car's drive (nobody subscribes to {names.COMMANDS})"
+        return f"the follower (nobody publishes {course.commands})"
+    if not found.subscribers[course.commands] - driving - {me}:
+        return f"the car's drive (nobody subscribes to {course.commands})"
+    mute = [topic for topic in course.lockstep if not found.publishers[topic]]
+    if mute:
+        return f"the car's control (nobody publishes {mute[0]})"
     links = (found.missing_link(topic) for topic in found.publishers)
     return next((link for link in links if link), None)
 

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import rospkg
-
-from evaluation.course_run import names
+from evaluation.course_run.course_file import Course, find_package, load_course
 from evaluation.course_run.failure import RunError
 
-DEFAULT_FOLLOWER = "05follower_proporation.py"
-COURSE_LAUNCH = ("learning_topic", "course_follow.launch")
+USUAL_COURSE = "course"
 
 
 @dataclass(frozen=True)
 class Options:
     """What to run and where to write."""
 
+    course: Course
     laps: int
     duration: float  # s, simulated
     follower: str
@@ -38,10 +35,8 @@ class Options:
 
     @property
     def robot(self) -> str:
-        """The car's model name in the simulator, as 0course.launch spawns it."""
-        given = [arg.split(":=", 1)[1] for arg in self.launch_args if arg.startswith("model:=")]
-        kind = given[-1] if given else os.environ.get("TURTLEBOT3_MODEL") or "waffle"
-        return f"turtlebot3_{kind}"
+        """The car's model name in the simulator, as the launch file spawns it."""
+        return self.course.robot_name(self.launch_args)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -60,21 +55,24 @@ def parse_options(arguments: list[str]) -> Options:
         float,
         "seconds of simulated time, more than 0",
     )
-    launch = tuple(given.launch)
-    if launch == COURSE_LAUNCH:
-        _check_follower(given.follower)
+    course = load_course(given.course)
+    launch = tuple(given.launch or course.launch)
+    follower = given.follower or course.follower
+    if launch == course.launch:
+        _check_follower(course, follower)
     for argument in given.launch_arg:
         if ":=" not in argument:
             raise RunError(f"--launch-arg must look like name:=value, got {argument!r}")
     camera_px, seed = _camera_px(given.camera), _seed(given.seed)
     return Options(
+        course,
         laps,
         duration,
-        given.follower,
-        given.out.resolve(),
-        given.track or _own_track(),
+        follower,
+        (given.out or Path(course.out)).resolve(),
+        given.track or course.track_path(),
         launch,
-        (*_launch_args(given.fast, camera_px, seed), *given.launch_arg),
+        (*_launch_args(course, given.fast, camera_px, seed), *given.launch_arg),
         given.fast,
         camera_px,
         seed,
@@ -91,20 +89,21 @@ def _parser() -> argparse.ArgumentParser:
         description="Drive a follower round the course without a screen, score it, write a report.",
         epilog="Exit code: 0 laps closed, 1 left the course or stalled, 2 could not run.",
     )
+    parser.add_argument(
+        "--course", default=USUAL_COURSE, metavar="NAME", help="course or race, or a file (course)"
+    )
     parser.add_argument("--laps", default="1", metavar="N", help="laps to close (1)")
     parser.add_argument("--duration", metavar="S", help="simulated seconds at most (300 a lap)")
     parser.add_argument(
         "--follower",
-        default=DEFAULT_FOLLOWER,
         metavar="FILE",
-        help=f"script of learning_topic that drives ({DEFAULT_FOLLOWER})",
+        help="script of the course's package that drives (the course's own)",
     )
     parser.add_argument(
         "--out",
         type=Path,
-        default=Path("out/course"),
         metavar="DIR",
-        help="where path.png, run.mp4, report.json and log/ go (out/course)",
+        help="where path.png, run.mp4, report.json and log/ go (out/ and the course's name)",
     )
     parser.add_argument(
         "--fast",
@@ -130,12 +129,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--launch",
         nargs=2,
-        default=COURSE_LAUNCH,
         metavar=("PACKAGE", "FILE"),
         help="another launch file that brings up simulator, car and follower",
     )
     parser.add_argument(
-        "--track", type=Path, metavar="YAML", help="track file (tracks/course.yaml)"
+        "--track", type=Path, metavar="YAML", help="track file (the course's own)"
     )
     parser.add_argument("--no-video", dest="video", action="store_false", help="write no run.mp4")
     parser.add_argument(
@@ -182,11 +180,13 @@ def _seed(text: str | None) -> int | None:
     return int(text)
 
 
-def _launch_args(fast: bool, camera_px: tuple[int, int] | None, seed: int | None) -> list[str]:
+def _launch_args(
+    course: Course, fast: bool, camera_px: tuple[int, int] | None, seed: int | None
+) -> list[str]:
     """What these options are for the launch file."""
     found = []
     if fast:
-        found += ["paused:=true", "real_time_factor:=0", f"lockstep:={names.COMMANDS}"]
+        found += ["paused:=true", "real_time_factor:=0", f"lockstep:={','.join(course.lockstep)}"]
         # At five times real time the usual 100 Hz would wake every node 500 times a second.
         found.append("pub_clock_frequency:=30")
     if camera_px is not None:
@@ -196,20 +196,13 @@ def _launch_args(fast: bool, camera_px: tuple[int, int] | None, seed: int | None
     return found
 
 
-def _own_track() -> Path:
-    return Path(rospkg.RosPack().get_path("evaluation")) / "tracks" / "course.yaml"
-
-
-def _check_follower(name: str) -> None:
-    try:
-        scripts = Path(rospkg.RosPack().get_path("learning_topic")) / "scripts"
-    except rospkg.ResourceNotFound as error:
-        raise RunError("package learning_topic not found: source devel/setup.bash") from error
-    known = sorted(path.name for path in scripts.glob("*follower*.py") if _drives(path))
+def _check_follower(course: Course, name: str) -> None:
+    scripts = find_package(course.follower_package) / "scripts"
+    known = sorted(path.name for path in scripts.glob("*follow*.py") if _drives(course, path))
     if name not in known:
         listed = ", ".join(known) or "none"
         raise RunError(f"no follower {name!r} that drives (FOLLOWER=); there are: {listed}")
 
 
-def _drives(script: Path) -> bool:
-    return "cmd_vel" in script.read_text(encoding="utf-8", errors="replace")
+def _drives(course: Course, script: Path) -> bool:
+    return course.drives_by in script.read_text(encoding="utf-8", errors="replace")

@@ -12,7 +12,7 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run import names
+from evaluation.course_run.course_file import Course
 from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
 from evaluation.lap import LapScorer
 from evaluation.picture import PAPER, TEXT, CourseMap, draw_line, lap_colour, write_text
@@ -36,7 +36,9 @@ class Film:
     second that the camera sends is dropped by the publisher's queue and never copied here.
     """
 
-    def __init__(self, path: Path, track_file: TrackFile, drive: LapScorer, period: float):
+    def __init__(self, path: Path, course: Course, track_file: TrackFile, drive: LapScorer,
+                 period: float):
+        self._camera, self._band = course.camera, course.film_band
         self._path, self._drive, self._period = path, drive, period
         self._map = CourseMap(track_file, MAP_WIDTH_PX)
         self._floor, self._drawn = self._map.empty(), 0
@@ -51,7 +53,7 @@ class Film:
         """Begin to film."""
         # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
         self._subscriber = rospy.Subscriber(
-            names.CAMERA, Image, self.take, queue_size=1, buff_size=2**20
+            self._camera, Image, self.take, queue_size=1, buff_size=2**20
         )
 
     @property
@@ -78,7 +80,7 @@ class Film:
         if self._ended.is_set() or number == last:
             return
         self._last = number, began
-        frame = cv2.resize(CvBridge().imgmsg_to_cv2(message), VIEW_PX, interpolation=cv2.INTER_AREA)
+        frame = fit(CvBridge().imgmsg_to_cv2(message))
         if message.encoding == "rgb8":
             frame = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
         with self._lock:
@@ -99,10 +101,11 @@ class Film:
 
     def _page(self, frame: np.ndarray, now: float) -> np.ndarray:
         """Camera view and map side by side under a bar of figures."""
-        view, plan = mark_line(frame), self._plan()
+        view, plan = mark_line(frame, self._band), self._plan()
         height = max(view.shape[0], plan.shape[0]) + BAR_PX
         page = np.full((height + height % 2, VIEW_PX[0] + MAP_WIDTH_PX, 3), PAPER, np.uint8)
-        page[BAR_PX : BAR_PX + view.shape[0], : VIEW_PX[0]] = view
+        left = (VIEW_PX[0] - view.shape[1]) // 2
+        page[BAR_PX : BAR_PX + view.shape[0], left : left + view.shape[1]] = view
         top = BAR_PX + (height - BAR_PX - plan.shape[0]) // 2
         page[top : top + plan.shape[0], VIEW_PX[0] :] = plan
         drive = self._drive
@@ -129,13 +132,26 @@ class Film:
         return plan
 
 
-def mark_line(view: np.ndarray) -> np.ndarray:
-    """Tint what the lessons' mask keeps, and put their red dot where lesson 05 finds the line."""
+def fit(image: np.ndarray) -> np.ndarray:
+    """The image made to fit into VIEW_PX, in its own proportions."""
+    height, width = image.shape[:2]
+    scale = min(VIEW_PX[0] / width, VIEW_PX[1] / height)
+    size = max(1, round(width * scale)), max(1, round(height * scale))
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+
+
+def mark_line(view: np.ndarray, band: float) -> np.ndarray:
+    """Tint what the lessons' mask keeps, and put their red dot where lesson 05 finds the line.
+
+    That is in a band at this share of the height; 0: no dot.
+    """
     mask = cv2.inRange(cv2.cvtColor(view, cv2.COLOR_BGR2HSV), MASK_LOW, MASK_HIGH)
     marked, line = view.copy(), mask > 0
     marked[line] = 0.35 * view[line] + 0.65 * np.array(MASK_TINT)
+    if not band:
+        return marked
     height = view.shape[0]
-    top, deep = 5 * height // 6, max(1, round(20 * height / 1080))
+    top, deep = round(band * height), max(1, round(20 * height / 1080))
     cv2.rectangle(marked, (0, top), (view.shape[1] - 1, top + deep), (120, 120, 120), 1)
     moments = cv2.moments(mask[top : top + deep], binaryImage=True)
     if moments["m00"] > 0:

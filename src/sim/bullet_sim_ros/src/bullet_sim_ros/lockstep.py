@@ -14,64 +14,66 @@ LOOK = 0.1  # s, wall: how often to see whether the simulation has been told to 
 
 
 class Lockstep:
-    """Waits for one message on a topic; without a topic it never waits.
+    """Waits for one message on each of its topics; without topics it never waits.
 
-    The message is heard in the loop, behind the commands that it carries: where a plugin takes the
+    A message is heard in the loop, behind the command that it carries: where a plugin takes the
     same topic, its own subscription tells us after it has left its command in the mailbox.
     """
 
-    def __init__(self, topic: str, timeout: float, mailbox: Mailbox):
-        self.topic = rospy.resolve_name(topic) if topic else ""
+    def __init__(self, topics: str, timeout: float, mailbox: Mailbox):
+        self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
-        self._expecting = False
+        self._expected: set[str] = set()  # topics whose message is still to come
         self._next_warning = 0.0  # s, wall
-        self._plugins: list[object] = []  # that tell us, in the order in which they subscribed
-        self._subscriber: rospy.Subscriber | None = None  # where none does
+        # Of each topic the plugins that tell us, in the order in which they subscribed.
+        self._plugins: dict[str, list[object]] = {topic: [] for topic in self.topics}
+        self._subscribers: dict[str, rospy.Subscriber] = {}  # where no plugin does
 
     def listen(self) -> None:
-        """Subscribe to the topic if no plugin does: before time begins, for answers miss nobody."""
-        if self.topic and not self._plugins and self._subscriber is None:
-            self._subscriber = rospy.Subscriber(
-                self.topic, rospy.AnyMsg, lambda _msg: self.hear(), tcp_nodelay=True)
+        """Subscribe to topics that no plugin takes: before time begins, for answers miss nobody."""
+        for topic, plugins in self._plugins.items():
+            if not plugins and topic not in self._subscribers:
+                self._subscribers[topic] = rospy.Subscriber(
+                    topic, rospy.AnyMsg, lambda _msg, topic: self.hear(topic),
+                    callback_args=topic, tcp_nodelay=True)
 
     def expect(self) -> None:
         """A frame was taken for somebody: wait for the answer before the next step."""
-        self._expecting = bool(self.topic)
+        self._expected = set(self.topics)
 
-    def join(self, plugin: object) -> None:
+    def join(self, topic: str, plugin: object) -> None:
         """A plugin is about to subscribe; it will call `hear` after each message of the topic."""
-        self._plugins.append(plugin)
-        if self._subscriber is not None:  # of another message type, and there is one per topic
-            self._subscriber.unregister()
-            self._subscriber = None
+        self._plugins[topic].append(plugin)
+        if topic in self._subscribers:  # of another message type, and there is one per topic
+            self._subscribers.pop(topic).unregister()
 
-    def leave(self, plugin: object) -> None:
+    def leave(self, topic: str, plugin: object) -> None:
         """That plugin is gone."""
-        self._plugins.remove(plugin)
+        self._plugins[topic].remove(plugin)
         self.listen()
 
-    def hear(self, plugin: object = None) -> None:
+    def hear(self, topic: str, plugin: object = None) -> None:
         """From any thread: a message came, to a plugin or to our own subscriber.
 
         A robot may have two drives on one topic. rospy tells them in the order in which they
         subscribed, so with the last one all have left their commands.
         """
-        if plugin is None or self._plugins[-1:] == [plugin]:
-            self._mailbox.leave(self.cancel)
+        if plugin is None or self._plugins[topic][-1:] == [plugin]:
+            self._mailbox.leave(lambda: self._expected.discard(topic))
 
     def cancel(self) -> None:
         """Wait no longer."""
-        self._expecting = False
+        self._expected.clear()
 
     def wait(self, stopped: Callable[[], bool]) -> None:
         """Run what comes into the mailbox until the answer is there or the time is over."""
         until = time.monotonic() + self._timeout
-        while self._expecting and not stopped():
+        while self._expected and not stopped():
             left = until - time.monotonic()
             if left <= 0:
-                self._expecting = False
                 self._warn()
+                self.cancel()
                 return
             self._mailbox.run_pending(min(left, LOOK))
 
@@ -83,4 +85,9 @@ class Lockstep:
         self._next_warning = now + WARNING_PERIOD
         rospy.logwarn(
             "lockstep: no message on %s within %g s of a camera frame; going on without. Does the "
-            "follower answer every image there?", self.topic, self._timeout)
+            "follower answer every image there?", ", ".join(sorted(self._expected)), self._timeout)
+
+
+def split(topics: str) -> list[str]:
+    """Topic names as they are given, with spaces or commas between them."""
+    return topics.replace(",", " ").split()

@@ -20,6 +20,7 @@ from bullet_sim.formats import load_world
 from bullet_sim.physics.limits import check_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
+from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
@@ -118,7 +119,7 @@ def main() -> int:
         rospy.logfatal("Could not open world %s: %s", options.world, error)
         return 1
     parameters = read_node_parameters()
-    if not is_legal_name(parameters.lockstep):
+    if not all(is_legal_name(topic) for topic in split(parameters.lockstep)):
         rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
                        rospy.resolve_name(names.LOCKSTEP), parameters.lockstep)
         return 1

@@ -1,0 +1,54 @@
+"""Course files: what they must hold, and the robot's name."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from evaluation.course_run.course_file import load_course
+from evaluation.course_run.failure import RunError
+
+COURSES = Path(__file__).parent.parent / "courses"
+
+
+def changed(tmp_path, **values) -> str:
+    """A course file that differs from the line course; None takes a key out."""
+    found = yaml.safe_load((COURSES / "course.yaml").read_text(encoding="utf-8")) | values
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({k: v for k, v in found.items() if v is not None}))
+    return str(path)
+
+
+@pytest.mark.parametrize("name", ["course", "race"])
+def test_our_own_courses_are_whole(name):
+    course = load_course(name)
+    assert course.track_path().is_file()
+    assert course.camera in course.sensors
+
+
+@pytest.mark.parametrize("values, said", [
+    ({"camera": None}, "missing key 'camera'"),
+    ({"speed": 3}, "unknown key 'speed'"),
+    ({"off_course": "far"}, "off_course: must be a number, is 'far'"),
+    ({"lockstep": "/cmd_vel"}, "lockstep: must be a list of topics, is '/cmd_vel'"),
+    ({"launch": ["one"]}, "launch: must be [package, file], is ['one']"),
+])
+def test_a_mistake_names_file_and_key(tmp_path, values, said):
+    with pytest.raises(RunError) as caught:
+        load_course(changed(tmp_path, **values))
+    assert "mine.yaml" in str(caught.value) and said in str(caught.value)
+
+
+def test_an_unknown_course_lists_those_that_there_are():
+    with pytest.raises(RunError, match=r"no course .rally. .*course, race"):
+        load_course("rally")
+
+
+def test_the_robot_is_that_of_the_argument_or_of_the_environment(monkeypatch):
+    course = load_course("course")
+    monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
+    assert course.robot_name(()) == "turtlebot3_waffle"
+    monkeypatch.setenv("TURTLEBOT3_MODEL", "burger")
+    assert course.robot_name(("yaw:=1",)) == "turtlebot3_burger"
+    assert course.robot_name(("model:=waffle_pi",)) == "turtlebot3_waffle_pi"
+    assert load_course("race").robot_name(("model:=x",)) == "racecar"
