@@ -28,9 +28,9 @@ OURS = our_packages()
 
 
 def python_files() -> Iterator[Path]:
-    """Everything written in Python below src/, but for tests: these may look anywhere."""
+    """Everything written in Python below src/; tests may look anywhere, setup.py is catkin's."""
     for path in sorted(p for p in ROOT.glob("src/**/*") if p.is_file()):
-        if {"test", "__pycache__"} & set(path.relative_to(ROOT).parts):
+        if path.name == "setup.py" or {"test", "__pycache__"} & set(path.relative_to(ROOT).parts):
             continue
         if path.suffix == ".py" or (path.suffix == "" and first_line(path).endswith("python3")):
             yield path

@@ -198,6 +198,13 @@ def test_effort_accelerates_a_joint(world):
     assert model.joint("spin").velocity == pytest.approx(1e-4 / inertia * 0.1, rel=0.01)
 
 
+def test_a_small_wheel_turns_faster_than_the_engines_own_bound(world):
+    joint = world.spawn(robot()).joint("left_joint")
+    joint.drive_velocity(300.0, 5.0)
+    run(world, 0.5)
+    assert joint.velocity == pytest.approx(300.0, rel=0.01)
+
+
 def test_a_joint_that_is_held_says_so(world):
     links = (box_link("a", (0.1, 0.1, 0.1), 1.0), box_link("b", (0.1, 0.1, 0.1), 1.0))
     held = JointDescription("j", "screw", "a", "b")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from bullet_sim.description import JointDescription, LinkDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.physics.assembly import WORLD, assemble
 from bullet_sim.physics.body import STILL, Body, Twist, gravity_compensation
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 
@@ -185,6 +186,13 @@ class Model:
         if name not in self.joints:
             raise UnknownName(f"joint of model {self.name}", name, self.joints)
         return self.joints[name]
+
+    def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
+        """The joints of these names, to be read and driven together: a group for each body."""
+        for name in names:
+            self.joint(name)
+        groups = [body.joint_group(names) for body in self.bodies]
+        return [group for group in groups if group.names]
 
     def remove(self) -> None:
         """Take its bodies out of the engine."""

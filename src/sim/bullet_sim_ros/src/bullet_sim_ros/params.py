@@ -1,8 +1,9 @@
-"""The only reader of ROS parameters: the node's own, and tf_prefix for plugins."""
+"""The only reader of ROS parameters: the node's own, and what plugins look for."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import rospy
 
@@ -18,7 +19,7 @@ class NodeParameters:
     # each rospy node with sim time a good part of a core.
     pub_state_frequency: float = 100.0  # Hz for model_states and link_states; 0 or less: every step
     enable_ros_network: bool = True
-    lockstep: str = ""  # topic to wait for after each camera frame; empty: do not wait
+    lockstep: str = ""  # topics to wait for after each camera frame; empty: do not wait
     lockstep_timeout: float = 1.0  # s, wall
     profile: bool = False  # print what each stage of the work costs
 
@@ -48,11 +49,22 @@ def _number(name: str, default: float) -> float:
         return default
 
 
+def below(namespace: str) -> Any:
+    """All parameters below a namespace, or the value of a parameter; None if there is nothing."""
+    return rospy.get_param(namespace, None)
+
+
+def find_upwards(namespace: str, name: str) -> str | None:
+    """Full name of the first such parameter from a namespace upwards; absolute names stay."""
+    parts = [part for part in names.join(namespace, "").split("/") if part]
+    for depth in range(len(parts), -1, -1):
+        candidate = names.join("/" + "/".join(parts[:depth]), name)
+        if rospy.has_param(candidate):
+            return candidate
+    return None
+
+
 def tf_prefix(namespace: str) -> str:
     """`tf_prefix` as found from a plugin's namespace upwards, else empty."""
-    parts = [part for part in names.join(namespace, "tf_prefix").split("/") if part][:-1]
-    for depth in range(len(parts), -1, -1):
-        name = "/" + "/".join([*parts[:depth], "tf_prefix"])
-        if rospy.has_param(name):
-            return str(rospy.get_param(name))
-    return ""
+    name = find_upwards(namespace, "tf_prefix")
+    return str(rospy.get_param(name)) if name else ""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from bullet_sim.description import JointDescription, LinkDescription
 from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose, Vector3, normalised
 
+FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a small wheel back
 BASE = -1  # PyBullet's number of a body's base link
 
 
@@ -60,6 +63,7 @@ class Body:
 
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; Gazebo does so only where <velocity_decay> asks for it.
+        self._call(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         for link in self.tree.links:
             values = {"linearDamping": link.linear_damping,
                       "angularDamping": link.angular_damping, "jointDamping": 0.0}
@@ -161,6 +165,11 @@ class Body:
     def joint_names(self) -> list[str]:
         """Joints that can move."""
         return list(self._joint_index)
+
+    def joint_group(self, joints: Iterable[str]) -> JointGroup:
+        """Those of the joints that are this body's."""
+        mine = {joint: self._joint_index[joint] for joint in joints if joint in self._joint_index}
+        return JointGroup(self._client, self.number, mine)
 
     def remove(self) -> None:
         """Take the body out of the world."""

@@ -134,7 +134,7 @@ class Host:
         What that one failed with is raised here. In lockstep the world waits for the picture anyway
         and the job is done at once.
         """
-        if self.shared.lockstep.topic:
+        if self.shared.lockstep.topics:
             self.shared.drawing.settle()  # the renderer does one thing at a time
             job()
             return
@@ -172,18 +172,19 @@ class Host:
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
         """A subscriber; `take(message)` returns what the loop is to do, or None."""
         lockstep = self.shared.lockstep
-        answers = rospy.resolve_name(_legal(topic)) == lockstep.topic
+        resolved = rospy.resolve_name(_legal(topic))
+        answers = resolved in lockstep.topics
 
         def leave(message) -> None:
             function = take(message)
             if function is not None:
                 self.shared.mailbox.leave(function)
             if answers:
-                lockstep.hear(self)
+                lockstep.hear(resolved, self)
 
         if answers:
-            lockstep.join(self)
-            self._closers.append(lambda: lockstep.leave(self))
+            lockstep.join(resolved, self)
+            self._closers.append(lambda: lockstep.leave(resolved, self))
         subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
         self._closers.append(subscriber.unregister)
         return subscriber
@@ -196,6 +197,10 @@ class Host:
             log.warning("%s: service %s is not offered: %s", self.describe(), name, error)
             return
         self._closers.append(lambda: service.shutdown("the model was deleted"))
+
+    def on_close(self, action: Callable[[], None]) -> None:
+        """Call `action` when the plugin ends, before the topics that it has now are closed."""
+        self._closers.append(action)
 
     def close(self) -> None:
         """End all topics and services of the plugin."""

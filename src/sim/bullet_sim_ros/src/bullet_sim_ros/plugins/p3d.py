@@ -23,6 +23,7 @@ class P3dPlugin:
         p = host.parameters
         namespace = p.namespace(missing="/", empty="/")
         link = host.model.link(p.required("bodyName"))
+        topic = names.join(namespace, p.required("topicName"))
         frame = p.text("frameName", "world")
         reference = None if frame in INERTIAL else host.model.link(frame)
         offset = Pose(p.vector("xyzOffset"), quaternion_from_rpy(*p.vector("rpyOffset")))
@@ -34,7 +35,6 @@ class P3dPlugin:
         if self._noise < 0:
             raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
         self._random_name = f"{link.scoped_name}::{host.description.name}"
-        topic = names.join(namespace, p.required("topicName"))
         self._poses = host.advertise(topic, Odometry, queue_size=1)
         host.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections)
 

@@ -1,0 +1,49 @@
+"""Ackermann steering as a bicycle: one driven rear wheel, one steered front wheel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.errors import SimulationError
+
+
+@dataclass(frozen=True)
+class AckermannGeometry:
+    """Lengths in m, multipliers applied."""
+
+    wheelbase: float
+    wheel_radius: float
+    steering_multiplier: float = 1.0  # what the odometry multiplies the steering joint's angle by
+
+    def __post_init__(self):
+        for name in ("wheelbase", "wheel_radius"):
+            if not getattr(self, name) > 0.0:
+                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+
+
+class AckermannSteering(MobileBase):
+    """`turning` is the steering angle itself (rad), as upstream has it; its limits are of that."""
+
+    def __init__(self, rear_wheel: CommandHandle, front_steer: CommandHandle,
+                 geometry: AckermannGeometry, options: BaseOptions):
+        super().__init__(options)
+        self._rear_wheel, self._front_steer = rear_wheel, front_steer
+        self._geometry = geometry
+        self._travelled = 0.0
+
+    def _drive(self, forward: float, turning: float) -> None:
+        self._rear_wheel.command = forward / self._geometry.wheel_radius
+        self._front_steer.command = turning
+
+    def _moved(self) -> tuple[float, float, float]:
+        g, before = self._geometry, self._travelled
+        self._travelled = self._rear_wheel.joint.position
+        way = (self._travelled - before) * g.wheel_radius
+        steering = self._front_steer.joint.position * g.steering_multiplier
+        return way, 0.0, way * math.tan(steering) / g.wheelbase
+
+    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
+        return forward, forward * math.tan(turning) / self._geometry.wheelbase

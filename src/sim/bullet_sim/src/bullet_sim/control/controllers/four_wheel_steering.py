@@ -1,0 +1,140 @@
+"""Four wheels, each driven and each steered, with no scrub: all turn about one point."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.timed_command import TimedCommand
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.errors import SimulationError
+
+CRAWL = 1e-3  # m/s; slower than this the wheels stand, as upstream has it
+STEEPEST = math.radians(89.9)  # an axle steered further has no tangent to drive by
+
+
+@dataclass(frozen=True)
+class FourWheelGeometry:
+    """Lengths in m; the base's origin is in the middle of the four wheels."""
+
+    track: float
+    wheelbase: float
+    wheel_radius: float
+
+    def __post_init__(self):
+        for name in ("track", "wheelbase", "wheel_radius"):
+            if not getattr(self, name) > 0.0:
+                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Of the wheels from the middle: front left, front right, rear left, rear right."""
+        x, y = self.wheelbase / 2, self.track / 2
+        return (x, y), (x, -y), (-x, y), (-x, -y)
+
+
+class FourWheelSteering(MobileBase):
+    """Takes a twist, or speed and the angles of both axles; the later of the two holds.
+
+    Wheels and steering joints in the order of `FourWheelGeometry.places`.
+    """
+
+    def __init__(self, wheels: Sequence[CommandHandle], steering: Sequence[CommandHandle],
+                 geometry: FourWheelGeometry, options: BaseOptions):
+        super().__init__(options)
+        self._wheels, self._steering = tuple(wheels), tuple(steering)
+        self._geometry = geometry
+        self._axles = TimedCommand(3, options.command_timeout)
+        self._now = 0.0
+        self._last_motion = 0.0
+
+    def command_axles(self, time: float, forward: float, front: float, rear: float) -> None:
+        """Speed (m/s) and steering angles (rad) of the front and the rear axle."""
+        self._command.clear()
+        front, rear = (max(-STEEPEST, min(STEEPEST, angle)) for angle in (front, rear))
+        self._axles.give(time, forward, front, rear)
+
+    def command(self, time: float, forward: float, turning: float) -> None:
+        """Speed (m/s) and rate of yaw (rad/s)."""
+        self._axles.clear()
+        super().command(time, forward, turning)
+
+    def start(self, time: float) -> None:
+        """Stand still, wheels straight."""
+        self._axles.clear()
+        self._now = self._last_motion = time
+        super().start(time)
+
+    def update(self, time: float, period: float) -> None:
+        """One control period."""
+        self._now = time
+        super().update(time, period)
+
+    def _wanted(self, time: float) -> tuple[float, float]:
+        forward, front, rear = self._axles.at(time)
+        if self._axles.time > self._command.time:
+            return forward, self._yaw_rate(forward, math.tan(front), math.tan(rear))
+        return self._command.at(time)
+
+    def _yaw_rate(self, forward: float, front: float, rear: float) -> float:
+        """Of a speed and the tangents of both axles' angles."""
+        return forward * (front - rear) / self._geometry.wheelbase
+
+    def _drive(self, forward: float, turning: float) -> None:
+        _, front_angle, rear_angle = self._axles.at(self._now)
+        if self._axles.time > self._command.time:
+            front, rear = math.tan(front_angle), math.tan(rear_angle)
+        elif abs(forward) > CRAWL:
+            front = turning * self._geometry.wheelbase / (2 * forward)
+            rear = -front
+        else:
+            front = rear = 0.0
+        commands = wheel_commands(self._geometry, forward, front, rear)
+        for wheel, steering, (speed, angle) in zip(
+                self._wheels, self._steering, commands, strict=True):
+            wheel.command, steering.command = speed, angle
+
+    def _moved(self) -> tuple[float, float, float]:
+        elapsed, self._last_motion = self._now - self._last_motion, self._now
+        speeds = [wheel.joint.velocity * self._geometry.wheel_radius for wheel in self._wheels]
+        angles = [steering.joint.position for steering in self._steering]
+        twist = measured_twist(self._geometry, speeds, angles)
+        return tuple(rate * elapsed for rate in twist)
+
+    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
+        return forward, turning
+
+
+def wheel_commands(geometry: FourWheelGeometry, forward: float, front: float,
+                   rear: float) -> list[tuple[float, float]]:
+    """(rad/s, rad) of each wheel, for a speed (m/s) and the tangents of both axles' angles.
+
+    A body turning at w moves at (v - w y, v tan) where a wheel at (x, y) stands; the wheel points
+    there. Where the turning point is between the wheels all are turned by a right angle.
+    """
+    slope = (front - rear) / geometry.wheelbase  # rate of yaw for each m/s
+    beside = abs(slope) * geometry.track / 2 < 1.0
+    commands = []
+    for x, y in geometry.places():
+        across = front if x > 0 else rear
+        along = 1.0 - slope * y
+        angle = math.atan(across / along) if beside else math.copysign(math.pi / 2, across)
+        speed = forward * math.hypot(along, across) / geometry.wheel_radius
+        commands.append((speed if abs(forward) > CRAWL else 0.0, angle))
+    return commands
+
+
+def measured_twist(geometry: FourWheelGeometry, speeds: Sequence[float],
+                   angles: Sequence[float]) -> tuple[float, float, float]:
+    """Forward and leftward (m/s) and yaw rate (rad/s) that fit four wheels best.
+
+    Least squares over the wheels' velocity vectors; the wheels stand symmetrically about the
+    middle, so the sums separate.
+    """
+    forward = leftward = moment = arms = 0.0
+    for (x, y), speed, angle in zip(geometry.places(), speeds, angles, strict=True):
+        vx, vy = speed * math.cos(angle), speed * math.sin(angle)
+        forward, leftward = forward + vx / 4, leftward + vy / 4
+        moment, arms = moment + x * vy - y * vx, arms + x * x + y * y
+    return forward, leftward, moment / arms

@@ -1,0 +1,102 @@
+"""A gripper's one joint: goes to a position, and notices when it arrives or is held up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.pid import Pid
+
+
+@dataclass(frozen=True)
+class GripperOptions:
+    """Defaults are upstream's."""
+
+    goal_tolerance: float = 0.01  # rad or m
+    max_effort: float = 0.0  # N m or N, while no goal says otherwise
+    stall_velocity_threshold: float = 0.001  # rad/s or m/s; slower is not moving
+    stall_timeout: float = 1.0  # s
+
+
+@dataclass(frozen=True)
+class GripperState:
+    """What goal feedback and result tell."""
+
+    position: float  # rad or m
+    effort: float  # N m or N, as commanded
+    stalled: bool = False
+    reached_goal: bool = False
+
+
+# Moves the joint: wanted position, greatest effort and period (s) in; commanded effort out.
+Move = Callable[[float, float, float], float]
+
+
+def move_by_position(handle: CommandHandle) -> Move:
+    """The position is the command; who is asked for the effort says the greatest."""
+    def move(position: float, max_effort: float, period: float) -> float:
+        handle.command = position
+        return max_effort
+    return move
+
+
+def move_by_effort(handle: CommandHandle, pid: Pid) -> Move:
+    """A PID on the position, with no more than the greatest effort."""
+    def move(position: float, max_effort: float, period: float) -> float:
+        joint, bound = handle.joint, abs(max_effort)
+        effort = pid.compute(position - joint.position, period, -joint.velocity)
+        handle.command = max(-bound, min(bound, effort))
+        return handle.command
+    return move
+
+
+class Gripper:
+    """`update` each control period; it says when the goal is over."""
+
+    def __init__(self, handle: CommandHandle, move: Move, options: GripperOptions):
+        self._joint = handle.joint
+        self._move = move
+        self._options = options
+        self._moved = 0.0  # s, when it last did
+        self._pursuing = False
+        self.effort = 0.0
+        self.hold()
+
+    def start(self, time: float) -> None:
+        """Hold what is there."""
+        self._moved = time
+        self.hold()
+
+    def hold(self) -> None:
+        """Stay here; nothing is pursued any more."""
+        self._pursuing = False
+        self._position, self._max_effort = self._joint.position, self._options.max_effort
+
+    def pursue(self, time: float, position: float, max_effort: float) -> None:
+        """A goal: rad or m, and the greatest effort."""
+        self._pursuing, self._moved = True, time
+        self._position, self._max_effort = position, max_effort
+
+    def state(self, stalled: bool = False, reached_goal: bool = False) -> GripperState:
+        """As it is now."""
+        return GripperState(self._joint.position, self.effort, stalled, reached_goal)
+
+    def update(self, time: float, period: float) -> GripperState | None:
+        """One control period; how it ended, when the goal was reached or something is in the way.
+
+        The position is held on afterwards.
+        """
+        outcome = self._judge(time) if self._pursuing else None
+        self._pursuing = self._pursuing and outcome is None
+        self.effort = self._move(self._position, self._max_effort, period)
+        return outcome
+
+    def _judge(self, time: float) -> GripperState | None:
+        if abs(self._position - self._joint.position) < self._options.goal_tolerance:
+            return self.state(reached_goal=True)
+        if abs(self._joint.velocity) > self._options.stall_velocity_threshold or time < self._moved:
+            self._moved = time
+        elif time - self._moved > self._options.stall_timeout:
+            return self.state(stalled=True)
+        return None

@@ -1,0 +1,78 @@
+"""What all drives of a robot's base share: a command with an end, limits, and odometry."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
+from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
+from bullet_sim.control.controllers.timed_command import TimedCommand
+
+
+@dataclass(frozen=True)
+class BaseOptions:
+    """Defaults are upstream's."""
+
+    forward_limits: SpeedLimits = UNLIMITED  # m/s
+    turning_limits: SpeedLimits = UNLIMITED  # rad/s; of a steering angle rad
+    command_timeout: float = 0.5  # s; then the base brakes
+    velocity_window: int = 10  # control periods that the published speeds are a mean of
+    open_loop: bool = False  # odometry believes the commands instead of the wheels
+
+
+class MobileBase(ABC):
+    """Turns (forward, turning) into wheel commands each control period, and counts the way."""
+
+    def __init__(self, options: BaseOptions):
+        self._options = options
+        self._forward_limiter = SpeedLimiter(options.forward_limits)
+        self._turning_limiter = SpeedLimiter(options.turning_limits)
+        self._command = TimedCommand(2, options.command_timeout)
+        self.odometry = PlanarOdometry(options.velocity_window)
+        self.wanted = (0.0, 0.0)  # before the limits
+        self.limited = (0.0, 0.0)
+
+    def command(self, time: float, forward: float, turning: float) -> None:
+        """What to do from now (s, simulated) on; m/s, and what the drive turns by."""
+        self._command.give(time, forward, turning)
+
+    def start(self, time: float) -> None:
+        """Stand still; odometry goes on where it was."""
+        self._command.clear()
+        self._forward_limiter.restart()
+        self._turning_limiter.restart()
+        self.wanted = self.limited = (0.0, 0.0)
+        self.odometry.restart(time)
+        self._moved()
+        self.stop()
+
+    def update(self, time: float, period: float) -> None:
+        """One control period: count the way, then move on."""
+        if self._options.open_loop:
+            self.odometry.trust(time, *self._twist(*self.limited))
+        else:
+            self.odometry.move(time, *self._moved())
+        self.wanted = self._wanted(time)
+        self.limited = (self._forward_limiter.limit(self.wanted[0], period),
+                        self._turning_limiter.limit(self.wanted[1], period))
+        self._drive(*self.limited)
+
+    def stop(self) -> None:
+        """Brake at once."""
+        self._drive(0.0, 0.0)
+
+    def _wanted(self, time: float) -> tuple[float, float]:
+        return self._command.at(time)
+
+    @abstractmethod
+    def _moved(self) -> tuple[float, float, float]:
+        """Forward and leftward (m) and turn (rad) by the wheels since it was last asked."""
+
+    @abstractmethod
+    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
+        """Speed (m/s) and rate of yaw (rad/s) that such a command means."""
+
+    @abstractmethod
+    def _drive(self, forward: float, turning: float) -> None:
+        """Set the joints' commands."""

@@ -1,0 +1,76 @@
+"""A PID from the error of a joint's position or velocity to its command: effort or velocity."""
+
+from __future__ import annotations
+
+from bullet_sim.control.drives import position_error
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.limits import clamp
+from bullet_sim.control.pid import Pid
+
+
+class Servo:
+    """One joint; `target`, `error` and `output` are those of the last update."""
+
+    def __init__(self, handle: CommandHandle, pid: Pid):
+        self.handle = handle
+        self.pid = pid
+        self.target = self.error = self.output = 0.0
+
+    def start(self) -> float:
+        """Forget the past; returns the target to begin with."""
+        self.pid.reset()
+        return self.rest()
+
+    def rest(self) -> float:
+        """The target that keeps the joint as it is."""
+        raise NotImplementedError
+
+    @property
+    def process_value(self) -> float:
+        """What is to reach the target."""
+        raise NotImplementedError
+
+    def update(self, target: float, period: float) -> None:
+        """Write the command; `period` (s) since the last update."""
+        raise NotImplementedError
+
+
+class VelocityServo(Servo):
+    """Targets in rad/s or m/s."""
+
+    def rest(self) -> float:
+        """No speed."""
+        return 0.0
+
+    @property
+    def process_value(self) -> float:
+        """rad/s or m/s."""
+        return self.handle.joint.velocity
+
+    def update(self, target: float, period: float) -> None:
+        """Write the command; `period` (s) since the last update."""
+        self.target = target
+        self.error = target - self.handle.joint.velocity
+        self.output = self.handle.command = self.pid.compute(self.error, period)
+
+
+class PositionServo(Servo):
+    """Targets in rad or m, kept within the joint's limits; continuous joints turn the short way."""
+
+    def rest(self) -> float:
+        """Where the joint is."""
+        return self.handle.joint.position
+
+    @property
+    def process_value(self) -> float:
+        """rad or m."""
+        return self.handle.joint.position
+
+    def update(self, target: float, period: float) -> None:
+        """Write the command; `period` (s) since the last update."""
+        joint = self.handle.joint
+        if joint.type != "continuous":
+            target = clamp(target, joint.limits.lower, joint.limits.upper)
+        self.target = target
+        self.error = position_error(joint, target)
+        self.output = self.handle.command = self.pid.compute(self.error, period)

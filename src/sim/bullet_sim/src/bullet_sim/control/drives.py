@@ -1,0 +1,122 @@
+"""How a command becomes the effort or motion of a simulated joint: one class for each way.
+
+The ways, and when each is taken, are those of gazebo_ros_control's DefaultRobotHWSim.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bullet_sim.control.angles import shortest_angular_distance
+from bullet_sim.control.handles import CommandHandle, JointHandle
+from bullet_sim.control.limits import LIMITERS, JointLimits, clamp
+from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim.model import Joint
+
+STRONGEST = 1e6  # N m or N: where there is no limit; the engine makes NaN of much more
+ARRIVED = 1e-9  # rad or m
+
+
+class EffortDrive:
+    """The effort that was commanded, each step."""
+
+    def __init__(self, handle: CommandHandle, limits: JointLimits):
+        self.handle = handle
+        self.limiter = LIMITERS[handle.interface](handle.joint, limits)
+
+    def effort(self, period: float) -> float:
+        """N m or N, for the next step of `period` (s); the joint's handle shows it from then on."""
+        effort = self.limiter.apply(self.handle.command, period)
+        self.handle.joint.effort = effort
+        return effort
+
+    def reset(self) -> None:
+        """The joint was put somewhere else."""
+        self.limiter.reset()
+
+
+class PidDrive(EffortDrive):
+    """A position or velocity command with gains: the effort that a PID finds for the error."""
+
+    def __init__(self, handle: CommandHandle, limits: JointLimits, gains: PidGains):
+        super().__init__(handle, limits)
+        self._most = limits.effort
+        self.pid = Pid(gains)
+
+    def effort(self, period: float) -> float:
+        """N m or N, within the effort limit."""
+        target = self.limiter.apply(self.handle.command, period)
+        joint = self.handle.joint
+        if self.handle.interface == "velocity":
+            error = target - joint.velocity
+        else:
+            error = position_error(joint, target)
+        effort = clamp(self.pid.compute(error, period), -self._most, self._most)
+        joint.effort = effort
+        return effort
+
+    def reset(self) -> None:
+        """The joint was put somewhere else."""
+        super().reset()
+        self.pid.reset()
+
+
+class VelocityMotor:
+    """A velocity command without gains: a motor with the effort limit as its strength."""
+
+    def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
+        self.handle = handle
+        self.limiter = LIMITERS["velocity"](handle.joint, limits)
+        self._joint = joint
+        self._strength = limits.effort
+
+    def drive(self, period: float) -> None:
+        """Set the motor for the next step of `period` (s)."""
+        self._joint.drive_velocity(self.limiter.apply(self.handle.command, period), self._strength)
+
+    def reset(self) -> None:
+        """The joint was put somewhere else."""
+        self.limiter.reset()
+
+
+class PositionMotor(VelocityMotor):
+    """A position command without gains: at the end of the next step the joint is there.
+
+    Gazebo puts it there without asking for forces; we move it there, at the velocity limit at most,
+    with a motor that nothing can hold, so that its rate is true and what it carries feels it.
+    """
+
+    def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
+        super().__init__(handle, limits, joint)
+        self.limiter = LIMITERS["position"](handle.joint, limits)
+        self._fastest = limits.velocity
+
+    def drive(self, period: float) -> None:
+        """Set the motor for the next step of `period` (s)."""
+        target = self.limiter.apply(self.handle.command, period)
+        gap = target - self.handle.joint.position
+        rate = 0.0 if -ARRIVED < gap < ARRIVED else gap / period
+        self._joint.drive_velocity(clamp(rate, -self._fastest, self._fastest), STRONGEST)
+
+
+def position_error(joint: JointHandle, target: float) -> float:
+    """From where the joint is to the target: a continuous joint turns the shorter way round.
+
+    A revolute one has no other way than the straight one, as long as both are within its limits.
+    """
+    if joint.type == "continuous":
+        return shortest_angular_distance(joint.position, target)
+    return target - joint.position
+
+
+def make_drive(handle: CommandHandle, gains: PidGains | None,
+               joint: Joint) -> EffortDrive | VelocityMotor:
+    """The drive for a joint's interface, with or without gains."""
+    limits = handle.joint.limits
+    limits = replace(limits, effort=min(limits.effort, STRONGEST))
+    if handle.interface == "effort":
+        return EffortDrive(handle, limits)
+    if gains is not None:
+        return PidDrive(handle, limits, gains)
+    kind = PositionMotor if handle.interface == "position" else VelocityMotor
+    return kind(handle, limits, joint)

@@ -1,0 +1,119 @@
+"""A model's joints as ros_control sees them: read, and driven within their limits.
+
+The semantics are those of gazebo_ros_control's DefaultRobotHWSim: a joint has one interface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from bullet_sim.control.drives import EffortDrive, make_drive
+from bullet_sim.control.handles import CommandHandle, JointHandle
+from bullet_sim.control.limits import JointLimits
+from bullet_sim.control.pid import PidGains
+from bullet_sim.errors import SimulationError, UnknownName
+from bullet_sim.formats.urdf_transmission import Transmission
+from bullet_sim.model import Joint, Model
+
+NO_LIMITS = JointLimits()
+
+
+class RobotHardware:
+    """Handles of all joints that have a transmission, by name. Used in the loop's thread."""
+
+    def __init__(self, model: Model, transmissions: Iterable[Transmission],
+                 limits: Mapping[str, JointLimits], gains: Mapping[str, PidGains]):
+        self.model_name = model.name
+        self.joints: dict[str, JointHandle] = {}
+        self._handles: dict[str, CommandHandle] = {}
+        for transmission in transmissions:
+            name = transmission.joint
+            kind = _joint(model, name).description.type
+            self.joints[name] = JointHandle(name, kind, limits.get(name, NO_LIMITS))
+            self._handles[name] = CommandHandle(self.joints[name], transmission.interface)
+        drives = {name: make_drive(handle, gains.get(name), model.joint(name))
+                  for name, handle in self._handles.items()}
+        self._drives = list(drives.values())
+        self._motors = [drive for drive in self._drives if not isinstance(drive, EffortDrive)]
+        by_effort = [name for name, drive in drives.items() if isinstance(drive, EffortDrive)]
+        by_motor = [name for name in drives if name not in by_effort]
+        self._effort_groups = [
+            (group, [self.joints[name] for name in group.names],
+             [drives[name] for name in group.names])
+            for group in model.joint_groups(by_effort)
+        ]
+        self._motor_groups = [(group, [self.joints[name] for name in group.names])
+                              for group in model.joint_groups(by_motor)]
+        self._held: list[tuple[CommandHandle, float]] = []  # during an emergency stop
+        self.read()
+        for handle in self._handles.values():
+            handle.rest()
+
+    # --- at each step
+
+    def read(self) -> None:
+        """Refresh the state of all joints from the engine."""
+        for group, joints, _ in self._effort_groups:
+            for joint, row in zip(joints, group.states(), strict=True):
+                joint.position, joint.velocity, _, _ = row
+        for group, joints in self._motor_groups:
+            for joint, row in zip(joints, group.states(), strict=True):
+                joint.position, joint.velocity, _, joint.effort = row
+
+    def write(self, period: float) -> None:
+        """Hand the commands, within the limits, to the engine for the next step.
+
+        `period` (s) is the time since the last write.
+        """
+        for handle in self._handles.values():
+            if handle.command != handle.command:  # not a number: the engine must not see it
+                handle.rest()
+        for handle, command in self._held:
+            handle.command = command
+        for group, _, drives in self._effort_groups:
+            group.drive_efforts([drive.effort(period) for drive in drives])
+        for motor in self._motors:
+            motor.drive(period)
+
+    def stop(self, on: bool) -> None:
+        """An emergency stop: no effort, no speed, positions are held, whatever is commanded."""
+        if on and not self._held:
+            for handle in self._handles.values():
+                handle.rest()
+            self._held = [(handle, handle.command) for handle in self._handles.values()]
+        elif not on:
+            self._held = []
+
+    def reset(self) -> None:
+        """Joints were put somewhere else: forget what led there."""
+        for drive in self._drives:
+            drive.reset()
+
+    # --- for controllers
+
+    def joint_handle(self, name: str) -> JointHandle:
+        """The state of a joint; an error lists those that there are."""
+        if name not in self.joints:
+            raise UnknownName(f"joint with a transmission in model {self.model_name}", name,
+                              self.joints)
+        return self.joints[name]
+
+    def command_handle(self, interface: str, joint: str) -> CommandHandle:
+        """The handle of a joint's command; an error says what there is instead."""
+        self.joint_handle(joint)
+        handle = self._handles[joint]
+        if handle.interface == interface:
+            return handle
+        fitting = [name for name, other in self._handles.items() if other.interface == interface]
+        raise SimulationError(
+            f"joint {joint!r} takes {handle.interface} commands, not {interface} commands, as its "
+            f"transmission says; joints that take {interface} commands: "
+            f"{', '.join(fitting) or 'none'}")
+
+
+def _joint(model: Model, name: str) -> Joint:
+    if name not in model.joints:
+        raise SimulationError(
+            f'This robot has a joint named "{name}" which is not in the gazebo model. There are: '
+            f"{', '.join(model.joints) or 'none'}")
+    return model.joints[name]

@@ -1,0 +1,134 @@
+"""Limits of a joint and how commands are kept within them, after joint_limits_interface's laws."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+INFINITY = math.inf
+
+
+@dataclass(frozen=True)
+class SoftLimits:
+    """URDF's `<safety_controller>`: before the hard limits are reached, the joint slows down."""
+
+    lower: float = 0.0  # rad or m
+    upper: float = 0.0
+    k_position: float = 0.0  # speed that is allowed per rad (or m) that is left to a soft limit
+    k_velocity: float = 0.0  # effort that is allowed per speed that is left
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Infinite means no limit; zero is a limit like any other."""
+
+    lower: float = -INFINITY  # rad or m
+    upper: float = INFINITY
+    velocity: float = INFINITY  # rad/s or m/s
+    acceleration: float = INFINITY  # rad/s^2 or m/s^2; counts for velocity commands
+    effort: float = INFINITY  # N m or N
+    soft: SoftLimits | None = None
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the way is limited at all."""
+        return self.lower > -INFINITY or self.upper < INFINITY
+
+
+class JointState(Protocol):
+    """What limits look at."""
+
+    position: float
+    velocity: float
+
+
+def clamp(value: float, low: float, high: float) -> float:
+    """The nearest number in [low, high]."""
+    return low if value < low else high if value > high else value
+
+
+class Limiter:
+    """Keeps the commands of one joint within limits. `apply` is called once a step."""
+
+    def __init__(self, joint: JointState, limits: JointLimits):
+        self._joint = joint
+        self._limits = limits
+        self.reset()
+
+    def reset(self) -> None:
+        """The joint was put somewhere else, or stands still: forget the command before."""
+        self._last: float | None = None
+
+    def apply(self, command: float, period: float) -> float:
+        """The command that may be given, `period` (s) after the one before."""
+        raise NotImplementedError
+
+    def _soft_speeds(self, position: float) -> tuple[float, float]:
+        """Least and greatest speed at a position, as soft limits have it."""
+        limits, soft = self._limits, self._limits.soft
+        most = limits.velocity
+        if not limits.has_position:
+            return -most, most
+        return (clamp(-soft.k_position * (position - soft.lower), -most, most),
+                clamp(-soft.k_position * (position - soft.upper), -most, most))
+
+
+class EffortLimiter(Limiter):
+    """Effort limit; and none that leads further out of position or velocity limits."""
+
+    def apply(self, command: float, period: float) -> float:
+        """N m or N."""
+        limits, joint = self._limits, self._joint
+        if limits.soft is not None:
+            return self._soft(command)
+        low, high = -limits.effort, limits.effort
+        if joint.position < limits.lower or joint.velocity < -limits.velocity:
+            low = 0.0
+        if joint.position > limits.upper or joint.velocity > limits.velocity:
+            high = 0.0
+        return clamp(command, low, high)
+
+    def _soft(self, command: float) -> float:
+        limits, soft, rate = self._limits, self._limits.soft, self._joint.velocity
+        slowest, fastest = self._soft_speeds(self._joint.position)
+        return clamp(command,
+                     clamp(-soft.k_velocity * (rate - slowest), -limits.effort, limits.effort),
+                     clamp(-soft.k_velocity * (rate - fastest), -limits.effort, limits.effort))
+
+
+class PositionLimiter(Limiter):
+    """Position limits, and no step that would be faster than the velocity limit."""
+
+    def apply(self, command: float, period: float) -> float:
+        """rad or m."""
+        limits = self._limits
+        last = self._joint.position if self._last is None else self._last
+        if limits.soft is not None:
+            slowest, fastest = self._soft_speeds(last)
+        else:
+            slowest, fastest = -limits.velocity, limits.velocity
+        low = max(last + slowest * period, limits.lower)
+        high = min(last + fastest * period, limits.upper)
+        self._last = clamp(command, low, high)
+        return self._last
+
+
+class VelocityLimiter(Limiter):
+    """Velocity limit, and acceleration limit where there is one."""
+
+    def apply(self, command: float, period: float) -> float:
+        """rad/s or m/s."""
+        limits = self._limits
+        if limits.soft is not None:
+            low, high = self._soft_speeds(self._joint.position)
+        else:
+            low, high = -limits.velocity, limits.velocity
+        if limits.acceleration < INFINITY:
+            last, step = self._last or 0.0, limits.acceleration * period
+            low, high = max(low, last - step), min(high, last + step)
+        self._last = clamp(command, low, high)
+        return self._last
+
+
+LIMITERS = {"effort": EffortLimiter, "position": PositionLimiter, "velocity": VelocityLimiter}

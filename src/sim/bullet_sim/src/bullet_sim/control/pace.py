@@ -1,0 +1,41 @@
+"""Says when something that has a rate is due, for controllers that are told the time."""
+
+from __future__ import annotations
+
+import math
+
+from bullet_sim.errors import SimulationError
+
+ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by rounding
+
+
+class Pace:
+    """Due `rate_hz` times a simulated second, exact in the long run; 0 means at every update."""
+
+    def __init__(self, rate_hz: float):
+        if rate_hz < 0 or not math.isfinite(rate_hz):
+            raise SimulationError(f"a rate of {rate_hz} Hz is not possible; 0 means every update")
+        self._period = 1.0 / rate_hz if rate_hz else 0.0
+        self._start = self._next = -math.inf
+        self._count = 0
+
+    def due(self, time: float) -> bool:
+        """Whether it is time again (s, simulated); to be asked at each update.
+
+        The first time it is. Time that went back, or stood still for long, begins the count anew.
+        """
+        if time + ROUNDING < self._next:
+            if self._next - time <= self._period + ROUNDING:
+                return False
+            self._restart(time)
+            return True
+        if time - self._next > self._period:
+            self._restart(time)
+        else:
+            self._count += 1
+            self._next = self._start + self._count * self._period
+        return True
+
+    def _restart(self, time: float) -> None:
+        self._start, self._count = time, 1
+        self._next = time + self._period

@@ -1,0 +1,61 @@
+"""A PID controller with a clamped integral, after control_toolbox's laws."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PidGains:
+    """Gains and the bounds of the integral term, in the unit of the output."""
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_clamp_max: float = 0.0  # 0 together with i_clamp_min: the integral has no effect
+    i_clamp_min: float = 0.0
+    antiwindup: bool = False  # clamp the integral of the error itself, not only its term
+
+
+class Pid:
+    """`compute` at each update; gains may be exchanged in between."""
+
+    def __init__(self, gains: PidGains):
+        self.gains = gains
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the errors of the past."""
+        self.error = self.error_rate = self.error_integral = 0.0
+        self.output = 0.0
+        self._last_error = 0.0
+
+    def compute(self, error: float, period: float, error_rate: float | None = None) -> float:
+        """The output for an error over the last `period` (s); 0 for what is no finite number.
+
+        Without `error_rate` the difference quotient is taken, at the first call from an error of 0.
+        """
+        if period <= 0.0 or not math.isfinite(error):
+            return 0.0
+        if error_rate is None:
+            error_rate = (error - self._last_error) / period
+        if not math.isfinite(error_rate):
+            return 0.0
+        self._last_error = self.error = error
+        self.error_rate = error_rate
+        gains = self.gains
+        self.output = gains.p * error + gains.d * error_rate
+        if gains.i:
+            self.output += self._integrate(error, period, gains)
+        return self.output
+
+    def _integrate(self, error: float, period: float, gains: PidGains) -> float:
+        """The integral term."""
+        self.error_integral += error * period
+        low, high = gains.i_clamp_min, gains.i_clamp_max
+        if not gains.antiwindup:
+            return min(max(gains.i * self.error_integral, low), high)
+        bounds = sorted((low / gains.i, high / gains.i))
+        self.error_integral = min(max(self.error_integral, bounds[0]), bounds[1])
+        return gains.i * self.error_integral

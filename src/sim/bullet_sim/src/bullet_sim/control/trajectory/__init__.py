@@ -1,0 +1,1 @@
+"""Trajectories of joints: splines, how a new one joins the present one, tolerances, following."""

@@ -1,0 +1,115 @@
+"""A trajectory as somebody asks for it, checked and joined to the one that is being followed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from bullet_sim.control.angles import shortest_angular_distance
+from bullet_sim.control.trajectory.path import Path
+from bullet_sim.control.trajectory.segment import Segment, Waypoint
+from bullet_sim.errors import SimulationError
+
+
+class InvalidTrajectory(SimulationError):
+    """A trajectory that nobody could follow."""
+
+
+class InvalidJoints(InvalidTrajectory):
+    """It is for other joints."""
+
+
+@dataclass(frozen=True)
+class RequestedPoint:
+    """Values in the order of the request's joints; empty: not said."""
+
+    time: float  # s from the trajectory's start
+    positions: Sequence[float]
+    velocities: Sequence[float] = ()
+    accelerations: Sequence[float] = ()
+
+    def waypoint(self, column: int, offset: float = 0.0) -> Waypoint:
+        """One joint's part."""
+        return Waypoint(self.positions[column] + offset,
+                        self.velocities[column] if self.velocities else None,
+                        self.accelerations[column] if self.accelerations else None)
+
+
+@dataclass(frozen=True)
+class TrajectoryRequest:
+    """Joints by name, in the sender's order. Without points: hold."""
+
+    joints: Sequence[str]
+    points: Sequence[RequestedPoint]
+    start: float | None = None  # s; None: now
+
+
+def check(request: TrajectoryRequest, joints: Sequence[str], partial: bool) -> None:
+    """An error that says what is wrong; `partial`: some of the joints are enough."""
+    _check_joints(request.joints, joints, partial)
+    last = -math.inf
+    for number, point in enumerate(request.points, 1):
+        if not last < point.time < math.inf:
+            raise InvalidTrajectory(
+                f"points must be strictly increasing in time: point {number} has "
+                f"time_from_start {point.time:g} s after {last:g} s")
+        last = point.time
+        _check_values(number, point, len(request.joints))
+
+
+def _check_joints(given: Sequence[str], joints: Sequence[str], partial: bool) -> None:
+    strange = [name for name in given if name not in joints]
+    missing = [name for name in joints if name not in given]
+    if strange or len(set(given)) < len(given) or not given or (missing and not partial):
+        raise InvalidJoints(f"joints are {_listed(given)}; this controller has {_listed(joints)}"
+                            + (", and each must be there once" if not partial else ""))
+
+
+def _check_values(number: int, point: RequestedPoint, count: int) -> None:
+    for name in ("positions", "velocities", "accelerations"):
+        values = getattr(point, name)
+        if len(values) != count and (len(values) or name == "positions"):
+            raise InvalidTrajectory(f"point {number} has {len(values)} {name} for {count} joints")
+        if not all(math.isfinite(value) for value in values):
+            raise InvalidTrajectory(f"point {number} has {name} that are no finite numbers")
+
+
+def join(request: TrajectoryRequest, joints: Sequence[str], continuous: Sequence[bool],
+         paths: Sequence[Path], now: float) -> list[Path]:
+    """The paths to follow from now on (s): the present ones until the new trajectory begins.
+
+    Points that lie in the past are left out. A `continuous` joint goes the shortest way to the
+    first point and keeps counting turns from there. Joints that are not asked for go on.
+    """
+    start = now if request.start is None else request.start  # in the time of `now`
+    points = [point for point in request.points if start + point.time > now]
+    if not points:
+        late = now - start - request.points[-1].time
+        raise InvalidTrajectory(f"all {len(request.points)} points are in the past, "
+                                f"the last by {late:.3f} s")
+    columns = {name: column for column, name in enumerate(request.joints)}
+    return [
+        _joined(path, points, columns[name], turns, start, now) if name in columns else path
+        for name, path, turns in zip(joints, paths, continuous, strict=True)
+    ]
+
+
+def _joined(path: Path, points: Sequence[RequestedPoint], column: int, continuous: bool,
+            start: float, now: float) -> Path:
+    leaves = max(start, now)
+    last, last_time = path.sample(leaves), leaves
+    offset = 0.0
+    if continuous:
+        first = points[0].positions[column]
+        offset = last.position + shortest_angular_distance(last.position, first) - first
+    segments = list(path.between(now, leaves))
+    for point in points:
+        waypoint, time = point.waypoint(column, offset), start + point.time
+        segments.append(Segment(last_time, last, time, waypoint))
+        last, last_time = waypoint, time
+    return Path(segments)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) or "none"

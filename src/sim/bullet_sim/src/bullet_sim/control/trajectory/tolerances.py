@@ -1,0 +1,48 @@
+"""How far a joint may be from its trajectory, on the way and at the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bullet_sim.control.trajectory.segment import Waypoint
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Greatest errors of one joint; 0: not checked."""
+
+    position: float = 0.0  # rad or m
+    velocity: float = 0.0
+    acceleration: float = 0.0
+
+    def violation(self, error: Waypoint) -> str | None:
+        """The quantity that is out of bounds, in words; None if none is."""
+        for name in ("position", "velocity", "acceleration"):
+            bound, value = getattr(self, name), getattr(error, name)
+            if bound > 0.0 and value is not None and abs(value) > bound:
+                return f"{name} error {value:.6g}, tolerance {bound:.6g}"
+        return None
+
+    def replaced(self, position: float, velocity: float, acceleration: float) -> Tolerance:
+        """With a goal's wishes: above 0 replaces, below 0 switches off, 0 leaves as it is."""
+        return Tolerance(_chosen(position, self.position), _chosen(velocity, self.velocity),
+                         _chosen(acceleration, self.acceleration))
+
+
+@dataclass(frozen=True)
+class GoalTolerances:
+    """Of all joints by name."""
+
+    path: dict[str, Tolerance] = field(default_factory=dict)
+    goal: dict[str, Tolerance] = field(default_factory=dict)
+    time: float = 0.0  # s after the end within which the goal tolerances must be met
+
+    def replaced_time(self, time: float) -> float:
+        """A goal's wish for `time`, by the same rule."""
+        return _chosen(time, self.time)
+
+
+def _chosen(wish: float, default: float) -> float:
+    if wish > 0.0:
+        return wish
+    return 0.0 if wish < 0.0 else default

@@ -1,0 +1,22 @@
+"""actionlib's server, with its status published by the loop instead of a timer's thread."""
+
+from __future__ import annotations
+
+import actionlib
+
+
+class LoopActionServer(actionlib.ActionServer):
+    """Goals and cancels are handed on as they come; `publish_status` is called by the loop.
+
+    rospy's timer would end with an exception when the simulation's time is reset.
+    """
+
+    STATUS_RATE = 5.0  # Hz, simulated; actionlib's default
+
+    def __init__(self, name: str, spec: type, on_goal, on_cancel):
+        super().__init__(name, spec, on_goal, on_cancel, auto_start=False)
+
+    def initialize(self) -> None:
+        """Open the topics; the timer that comes with them is ended at once."""
+        super().initialize()
+        self.status_timer.shutdown()

@@ -1,0 +1,110 @@
+"""What a joint controller is given: its parameters, joints to claim, and topics closed together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import rospy
+
+from bullet_sim.control.handles import CommandHandle, JointHandle
+from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.control.pace import Pace
+from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim_ros import names
+from bullet_sim_ros.control.actions import LoopActionServer
+from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.errors import PluginError
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.plugins.host import Host
+
+
+class ControllerHost:
+    """One controller's view of robot and ROS. Made by the manager when the controller is loaded.
+
+    Parameters: `self.parameters`, all below NS/<controller>, read once.
+    Topics: relative names are below NS/<controller>; a callback `take(message)` runs in a ROS
+    thread and returns a function for the loop, or None.
+    """
+
+    def __init__(self, host: Host, name: str, manager_namespace: str, hardware: RobotHardware,
+                 robot: RobotFacts):
+        self.name = name
+        self.manager_namespace = manager_namespace  # absolute, /racecar
+        self.namespace = names.join(manager_namespace, name)  # absolute, /racecar/<controller>
+        self.parameters = ControllerParameters(self.namespace)
+        self.parameter = self.parameters.value
+        self.joints: dict[str, JointHandle] = hardware.joints
+        self.robot = robot  # the URDF's facts
+        self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed
+        self.duties: list[tuple[Pace, Callable[[], None]]] = []
+        self._hardware = hardware
+        self._host = host
+
+    def describe(self) -> str:
+        """Whose log line it is."""
+        return f"controller {self.namespace}"
+
+    def world_time(self) -> float:
+        """Simulated time, s."""
+        return self._host.world.time
+
+    # --- joints
+
+    def joint(self, name: str) -> JointHandle:
+        """The state of a joint; an error lists those that there are."""
+        return self._hardware.joint_handle(name)
+
+    def claim(self, interface: str, joint: str) -> CommandHandle:
+        """The command of a joint, for this controller alone while it runs."""
+        handle = self._hardware.command_handle(interface, joint)
+        if joint in self.claims:
+            raise PluginError(f"joint {joint!r} is named twice")
+        self.claims[joint] = handle
+        return handle
+
+    # --- ROS
+
+    def every(self, rate_hz: float, action: Callable[[], None]) -> None:
+        """Call `action` in the loop at a rate of simulated time, as long as it is loaded."""
+        self.duties.append((Pace(rate_hz), action))
+
+    def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
+        """A publisher that lives as long as the controller is loaded."""
+        return self._host.advertise(names.join(self.namespace, topic), kind, **options)
+
+    def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
+        """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        return self._host.subscribe(names.join(self.namespace, topic), kind, take, **options)
+
+    def serve(self, name: str, kind: type, handler: Callable) -> None:
+        """A service; `handler(request)` runs in a ROS thread."""
+        self._host.serve(names.join(self.namespace, name), kind, handler)
+
+    def in_loop(self, function: Callable):
+        """From a ROS thread: run `function` in the loop and give back what it returns."""
+        return self._host.shared.mailbox.call(function)
+
+    def leave(self, function: Callable[[], None]) -> None:
+        """From any thread: have `function` run in the loop, without waiting."""
+        self._host.shared.mailbox.leave(function)
+
+    def action(self, name: str, spec: type, on_goal: Callable,
+               on_cancel: Callable) -> LoopActionServer:
+        """An action server; `on_goal(goal_handle)` and `on_cancel(goal_handle)` run in the loop."""
+        server = LoopActionServer(names.join(self.namespace, name), spec,
+                                  lambda handle: self.leave(lambda: on_goal(handle)),
+                                  lambda handle: self.leave(lambda: on_cancel(handle)))
+        self.on_unload(server.stop)
+        self.every(server.STATUS_RATE, server.publish_status)
+        server.start()
+        return server
+
+    def on_unload(self, action: Callable[[], None]) -> None:
+        """Call `action` when the controller is unloaded, before its topics are closed."""
+        self._host.on_close(action)
+
+    def close(self) -> None:
+        """End all topics, services and actions."""
+        self._host.close()

@@ -1,0 +1,116 @@
+"""gripper_action_controller: one joint, driven by position or effort, behind an action."""
+
+from __future__ import annotations
+
+import logging
+
+from actionlib import ServerGoalHandle
+from control_msgs.msg import GripperCommandAction, GripperCommandFeedback, GripperCommandResult
+
+from bullet_sim.control.controllers.gripper import (
+    Gripper,
+    GripperOptions,
+    GripperState,
+    move_by_effort,
+    move_by_position,
+)
+from bullet_sim.control.pace import Pace
+from bullet_sim_ros import convert
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.goal_slot import GoalSlot
+from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.pid import open_pid
+from bullet_sim_ros.control.registry import Controller, controller
+
+log = logging.getLogger("bullet_sim.control")
+
+
+class GripperActionController(Controller):
+    """Stalled is aborted, as upstream has it; the joint goes on pressing."""
+
+    interface = ""
+
+    def __init__(self, host: ControllerHost):
+        super().__init__(host)
+        p = host.parameters
+        self._handle = host.claim(self.interface, p.text("joint"))
+        self._gripper = Gripper(self._handle, self._make_move(), _options(p))
+        self._goal = GoalSlot()
+        self._running = False
+        self._pace = Pace(p.number("action_monitor_rate", 20.0))
+        host.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
+
+    def _make_move(self):
+        return move_by_position(self._handle)
+
+    def start(self, time: float) -> None:
+        """Hold what is there."""
+        self._gripper.start(time)
+        self._running = True
+
+    def update(self, time: float, period: float) -> None:
+        """Move, and tell how far it is."""
+        outcome = self._gripper.update(time, period)
+        if outcome:
+            self._goal.finish(outcome.reached_goal, _filled(GripperCommandResult(), outcome))
+        elif self._goal.occupied and self._pace.due(time):
+            self._goal.tell(_filled(GripperCommandFeedback(), self._gripper.state()))
+
+    def stop(self, time: float) -> None:
+        """Nobody pursues the goal any more."""
+        self._running = False
+        self._gripper.hold()
+        self._goal.preempt()
+
+    def _take_goal(self, handle: ServerGoalHandle) -> None:
+        command = handle.get_goal().command
+        problem = self._problem(command.position, command.max_effort)
+        if problem:
+            log.error("%s: goal refused: %s", self.host.describe(), problem)
+            handle.set_rejected(GripperCommandResult(), problem)
+            return
+        self._goal.accept(handle)
+        self._gripper.pursue(self.host.world_time(), command.position, command.max_effort)
+
+    def _problem(self, *values: float) -> str:
+        if not self._running:
+            return "the controller is not running"
+        if not all(abs(value) <= convert.LARGEST for value in values):
+            return "position and max_effort must be finite numbers"
+        return ""
+
+    def _take_cancel(self, handle: ServerGoalHandle) -> None:
+        if self._goal.holds(handle):
+            self._gripper.hold()
+            self._goal.preempt()
+
+
+@controller("position_controllers/GripperActionController")
+class PositionGripper(GripperActionController):
+    """The position is commanded; max_effort is only reported."""
+
+    interface = "position"
+
+
+@controller("effort_controllers/GripperActionController")
+class EffortGripper(GripperActionController):
+    """A PID with `gains/<joint>` on the position, up to max_effort."""
+
+    interface = "effort"
+
+    def _make_move(self):
+        pid = open_pid(self.host, f"gains/{self._handle.joint.name}")
+        return move_by_effort(self._handle, pid)
+
+
+def _options(parameters: ControllerParameters) -> GripperOptions:
+    default = GripperOptions()
+    return GripperOptions(*(
+        abs(parameters.number(name, getattr(default, name)))
+        for name in ("goal_tolerance", "max_effort", "stall_velocity_threshold", "stall_timeout")))
+
+
+def _filled(msg, state: GripperState):
+    msg.position, msg.effort = state.position, state.effort
+    msg.stalled, msg.reached_goal = state.stalled, state.reached_goal
+    return msg

@@ -1,0 +1,52 @@
+"""Limits and gains of joints that parameters set, beside those that the URDF has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from bullet_sim.control.limits import JointLimits
+from bullet_sim.control.pid import PidGains
+from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim_ros import names
+from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.pid import read_gains
+
+GAINS = "gazebo_ros_control/pid_gains"
+LIMITS = "joint_limits"
+# what joint_limits_interface reads: kind of limit -> its fields here, and the parameters
+KINDS = {"position": (("lower", "min_position"), ("upper", "max_position")),
+         "velocity": (("velocity", "max_velocity"),),
+         "acceleration": (("acceleration", "max_acceleration"),),
+         "effort": (("effort", "max_effort"),)}
+
+
+def read_joint_limits(namespace: str, robot: RobotFacts,
+                      joints: Iterable[str]) -> dict[str, JointLimits]:
+    """Those of the URDF, overridden by `joint_limits/<joint>/...`."""
+    parameters = ControllerParameters(names.join(namespace, LIMITS))
+    return {
+        joint: _overridden(robot.limits(joint) if robot.has_joint(joint) else JointLimits(),
+                           parameters, joint)
+        for joint in joints
+    }
+
+
+def _overridden(limits: JointLimits, parameters: ControllerParameters, joint: str) -> JointLimits:
+    for kind, pairs in KINDS.items():
+        switch = f"{joint}/has_{kind}_limits"
+        if not parameters.has(switch):
+            continue
+        for key, name in pairs:
+            value = getattr(JointLimits, key)  # no limit
+            if parameters.flag(switch):
+                value = parameters.number(f"{joint}/{name}")
+            limits = replace(limits, **{key: value})
+    return limits
+
+
+def read_joint_gains(namespace: str, joints: Iterable[str]) -> dict[str, PidGains]:
+    """Gains of joints that have any: the others are driven directly."""
+    parameters = ControllerParameters(names.join(namespace, GAINS))
+    return {joint: read_gains(parameters, joint) for joint in joints
+            if parameters.has(f"{joint}/p")}

@@ -1,0 +1,209 @@
+"""Which controllers are loaded and which run: load, unload, switch, list, as controller_manager."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time as wall
+from collections.abc import Callable, Sequence
+
+from bullet_sim.control.pace import Pace
+from bullet_sim_ros.control import registry
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.switching import (
+    ABORTED,
+    RUNNING,
+    STOPPED,
+    Gone,
+    Loaded,
+    ManagerError,
+    Switch,
+    plan,
+    there_are,
+)
+from bullet_sim_ros.errors import told
+
+log = logging.getLogger("bullet_sim.control")
+
+LOOK = 0.1  # s, wall: how often to see whether the simulation has ended
+
+
+class ControllerManager:
+    """`update` and `close` belong to the loop's thread, everything else to ROS's threads."""
+
+    def __init__(self, open_host: Callable[[str], ControllerHost],
+                 stopped: Callable[[], bool] = lambda: False):
+        self._open_host = open_host
+        self._stopped = stopped
+        self._one_at_a_time = threading.Lock()  # requests
+        self._handover = threading.Lock()  # of a switch to the loop
+        self._switch: Switch | None = None
+        self._closed = False
+        self._loaded: dict[str, Loaded] = {}
+        self._running: list[Loaded] = []
+        self._duties: list[tuple[Pace, Callable[[], None]]] = []
+
+    # --- the loop
+
+    def update(self, time: float, period: float, restart: bool = False) -> None:
+        """Switch if asked to, then update what runs; `restart` all of it first if wanted."""
+        if self._switch is not None:
+            self._carry_out(time)
+        if restart:
+            for loaded in self._running:
+                self._stop(loaded, time)
+                self._start(loaded, time)
+            self._note_running()
+        for loaded in self._running:
+            try:
+                loaded.controller.update(time, period)
+            except Exception as error:  # one controller's fault must not take the others with it
+                self._abort(loaded, time, error)
+        for pace, action in self._duties:
+            if pace.due(time):
+                action()
+
+    def close(self) -> None:
+        """End all controllers and their topics; whoever waits is told."""
+        self._closed = True
+        for loaded in self._loaded.values():
+            loaded.host.close()
+        self._loaded, self._running, self._duties = {}, [], []
+
+    def _carry_out(self, time: float) -> None:
+        with self._handover:
+            switch, self._switch = self._switch, None
+        if switch is None:  # withdrawn meanwhile
+            return
+        for loaded in switch.stop:
+            self._stop(loaded, time)
+        for loaded in switch.start:
+            self._start(loaded, time)
+        self._note_running()
+        switch.done.set()
+
+    def _start(self, loaded: Loaded, time: float) -> None:
+        loaded.state = RUNNING
+        try:
+            loaded.controller.start(time)
+        except Exception as error:
+            self._abort(loaded, time, error)
+
+    def _stop(self, loaded: Loaded, time: float) -> None:
+        loaded.state = STOPPED
+        try:
+            loaded.controller.stop(time)
+        except Exception as error:
+            self._abort(loaded, time, error)
+        for handle in loaded.host.claims.values():
+            handle.rest()
+
+    def _abort(self, loaded: Loaded, time: float, error: Exception) -> None:
+        log.error("Controller '%s' failed and is stopped: %s", loaded.name, told(error))
+        loaded.state = ABORTED
+        for handle in loaded.host.claims.values():
+            handle.rest()
+        self._note_running()
+
+    def _note_running(self) -> None:
+        self._running = [loaded for loaded in self._loaded.values() if loaded.runs]
+
+    # --- requests
+
+    def list(self) -> list[Loaded]:
+        """All controllers, in the order in which they were loaded."""
+        return list(self._loaded.values())
+
+    def load(self, name: str) -> None:
+        """Make a controller, as the parameters below its name say."""
+        with self._one_at_a_time:
+            if name in self._loaded:
+                raise ManagerError(f"A controller named '{name}' was already loaded inside the "
+                                   "controller manager")
+            try:
+                host = self._open_host(name)
+            except Exception as error:  # a name that is none, or no master
+                raise ManagerError(f"Could not load controller '{name}': {told(error)}") from error
+            try:
+                loaded = self._make(name, host)
+            except Exception:
+                host.close()
+                raise
+            if self._closed:
+                host.close()
+                raise ManagerError(f"The model of controller '{name}' was deleted")
+            self._loaded = {**self._loaded, name: loaded}
+            self._note_duties()
+
+    def _make(self, name: str, host: ControllerHost) -> Loaded:
+        kind = host.parameters.value("type", None)
+        if kind is None:
+            raise ManagerError(
+                f"Could not load controller '{name}' because the type was not specified. Did you "
+                "load the controller configuration on the parameter server (namespace: "
+                f"'{host.namespace}')? Parameter {host.parameters.where('type')} is not set")
+        made = registry.find(str(kind))
+        if made is None:
+            close = registry.nearest(str(kind))
+            raise ManagerError(
+                f"Could not load controller '{name}' because controller type '{kind}' does not "
+                "exist." + (f" Did you mean '{close}'?" if close else "")
+                + " Use 'rosservice call controller_manager/list_controller_types' to get the "
+                "available types")
+        try:
+            return Loaded(name, str(kind), made(host), host)
+        except Exception as error:
+            raise ManagerError(f"Initializing controller '{name}' failed: {told(error)}") from error
+
+    def unload(self, name: str) -> None:
+        """Forget a controller that does not run."""
+        with self._one_at_a_time:
+            loaded = self._loaded.get(name)
+            if loaded is None:
+                raise ManagerError(f"Could not unload controller with name '{name}' because no "
+                                   f"controller with this name exists{there_are(self._loaded)}")
+            if loaded.runs:
+                raise ManagerError(f"Could not unload controller with name '{name}' because it is "
+                                   "still running")
+            self._loaded = {key: other for key, other in self._loaded.items() if key != name}
+            self._note_duties()
+            loaded.host.close()
+
+    def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
+               timeout: float = 0.0) -> None:
+        """Start and stop at the next update; waits for it, at most `timeout` (s, wall; 0: ever)."""
+        with self._one_at_a_time:
+            switch = plan(self._loaded, start, stop, strict)
+            if not switch.start and not switch.stop:
+                return
+            with self._handover:
+                self._switch = switch
+            self._wait(switch, timeout)
+
+    def reload(self, force: bool) -> None:
+        """As upstream's reload of libraries: with `force` everything is stopped and unloaded."""
+        names = list(self._loaded)
+        if names and not force:
+            raise ManagerError("Controller manager: Cannot reload controller libraries because "
+                               f"there are still {len(names)} controllers running")
+        self.switch([], names, strict=False)
+        for name in names:
+            self.unload(name)
+
+    def _wait(self, switch: Switch, timeout: float) -> None:
+        until = wall.monotonic() + timeout if timeout > 0 else float("inf")
+        while not switch.done.wait(min(LOOK, max(0.0, until - wall.monotonic()))):
+            late = wall.monotonic() >= until
+            if not (late or self._closed or self._stopped()):
+                continue
+            with self._handover:
+                if self._switch is not switch:  # just being done
+                    continue
+                self._switch = None
+            if late:
+                raise ManagerError(f"Could not switch controllers within {timeout:g} s: is physics "
+                                   "paused?")
+            raise Gone("Could not switch controllers: the simulation or the model is gone")
+
+    def _note_duties(self) -> None:
+        self._duties = [duty for loaded in self._loaded.values() for duty in loaded.host.duties]

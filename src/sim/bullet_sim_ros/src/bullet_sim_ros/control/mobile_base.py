@@ -1,0 +1,131 @@
+"""What the controllers of a robot's base share: cmd_vel in, odometry and tf out, parameters."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+
+from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
+from bullet_sim.control.pace import Pace
+from bullet_sim_ros import convert
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.registry import Controller
+
+log = logging.getLogger("bullet_sim.control")
+
+
+class MobileBaseController(Controller):
+    """Commands count only while the controller runs; odometry starts at zero when it is loaded."""
+
+    def __init__(self, host: ControllerHost, base: MobileBase):
+        super().__init__(host)
+        p = host.parameters
+        self.base = base
+        self.enable_odom_tf = p.flag("enable_odom_tf", True)
+        self.set_publish_rate(p.number("publish_rate", 50.0))
+        self._running = False
+        self._complained: set[str] = set()
+        self._alone = not p.flag("allow_multiple_cmd_vel_publishers", True)
+        self._base_frame = p.text("base_frame_id", "base_link")
+        self._odom_frame = p.text("odom_frame_id", "odom")
+        self._pose_covariance = _diagonal(p.numbers("pose_covariance_diagonal", 6))
+        self._twist_covariance = _diagonal(p.numbers("twist_covariance_diagonal", 6))
+        self._odometry = host.advertise("odom", Odometry, queue_size=100)
+        self._transforms = host.advertise("/tf", TFMessage, queue_size=100)
+        self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
+
+    def set_publish_rate(self, rate_hz: float) -> None:
+        """Of odometry and transform."""
+        self._pace = Pace(rate_hz)
+
+    def subscribe(self, topic: str, kind: type,
+                  give: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
+        """`give(message)` makes a command for the loop of a message; refused while stopped."""
+        def take(message) -> Callable[[], None] | None:
+            if not self._running:
+                self._complain(f"can't accept commands on {topic}: it is not running")
+                return None
+            return give(message)
+
+        return self.host.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
+
+    def start(self, time: float) -> None:
+        """Stand still and listen."""
+        self.base.start(time)
+        self._running, self._complained = True, set()
+
+    def update(self, time: float, period: float) -> None:
+        """Drive, and publish when it is time to."""
+        self.base.update(time, period)
+        if self._pace.due(time):
+            self._publish()
+
+    def stop(self, time: float) -> None:
+        """Brake."""
+        self._running, self._complained = False, set()
+        self.base.stop()
+
+    def refuse(self, what: str) -> None:
+        """A command that is no command."""
+        log.warning("%s: a command that is %s is ignored", self.host.describe(), what)
+
+    def _complain(self, what: str) -> None:
+        """Once from each start or stop on: commands come many times a second."""
+        if what not in self._complained:
+            self._complained.add(what)
+            log.error("%s: %s", self.host.describe(), what)
+
+    def _take_twist(self, msg: Twist) -> Callable[[], None] | None:
+        if not convert.is_sane(msg):
+            self.refuse(f"not finite, or beyond {convert.LARGEST:g},")
+            return None
+        senders = self._commands.get_num_connections()
+        if self._alone and senders > 1:
+            self._complain(f"{senders} publishers of cmd_vel, but allow_multiple_cmd_vel_publishers"
+                           " is false: it brakes")
+            return lambda: self.base.command(self.host.world_time(), 0.0, 0.0)
+        return lambda: self.base.command(self.host.world_time(), msg.linear.x, msg.angular.z)
+
+    def _publish(self) -> None:
+        tf_wanted = self.enable_odom_tf and self._transforms.get_num_connections()
+        if not tf_wanted and not self._odometry.get_num_connections():
+            return
+        reading = self.base.odometry.sample()
+        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame)
+        msg.pose.covariance, msg.twist.covariance = self._pose_covariance, self._twist_covariance
+        self._odometry.publish(msg)
+        if tf_wanted:
+            self._transforms.publish(TFMessage([convert.transform_to_msg(
+                reading.pose, reading.time, self._odom_frame, self._base_frame)]))
+
+
+def read_options(parameters: ControllerParameters) -> BaseOptions:
+    """What all bases have by the same names."""
+    return BaseOptions(
+        _limits(parameters, "linear/x"), _limits(parameters, "angular/z"),
+        parameters.number("cmd_vel_timeout", 0.5),
+        round(parameters.number("velocity_rolling_window_size", 10)),
+        parameters.flag("open_loop", False))
+
+
+def _limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
+    def bounds(quantity: str) -> tuple[float, float]:
+        if not parameters.flag(f"{group}/has_{quantity}_limits", False):
+            return UNBOUNDED
+        greatest = parameters.number(f"{group}/max_{quantity}", 0.0)
+        return parameters.number(f"{group}/min_{quantity}", -greatest), greatest
+
+    return SpeedLimits(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
+
+
+def _diagonal(values: list[float]) -> list[float]:
+    """A 6 by 6 matrix, row by row."""
+    return [value if row == column else 0.0
+            for row, value in enumerate(values) for column in range(6)]

@@ -1,0 +1,89 @@
+"""Reads the parameters of one controller, with errors that name what was looked for."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from bullet_sim_ros import names, params
+from bullet_sim_ros.errors import PluginError
+
+REQUIRED = object()  # a default that means: there is none
+
+
+class ControllerParameters:
+    """All parameters below a namespace, read once. Names may be paths such as `pid/p`."""
+
+    def __init__(self, namespace: str, values: Any = REQUIRED):
+        self.namespace = namespace
+        found = params.below(namespace) if values is REQUIRED else values
+        self._values = found if isinstance(found, dict) else {}
+
+    def has(self, name: str) -> bool:
+        """Whether it is set, be it a value or a group of values."""
+        return self._find(name) is not None
+
+    def value(self, name: str, default: Any = REQUIRED) -> Any:
+        """As the parameter server has it."""
+        found = self._find(name)
+        if found is not None:
+            return found
+        if default is REQUIRED:
+            above = self.namespace.rpartition("/")[0] or "/"
+            raise PluginError(f"parameter {self.where(name)} is not set; was the controller's YAML "
+                              f"file loaded there (rosparam load FILE {above})?")
+        return default
+
+    def text(self, name: str, default: Any = REQUIRED) -> str:
+        """A text."""
+        return self._checked(name, default, lambda v: isinstance(v, str) and v, "a name")
+
+    def flag(self, name: str, default: Any = REQUIRED) -> bool:
+        """true or false."""
+        return self._checked(name, default, lambda v: isinstance(v, bool), "true or false")
+
+    def number(self, name: str, default: Any = REQUIRED) -> float:
+        """A finite number."""
+        return float(self._checked(name, default, _is_number, "a number"))
+
+    def texts(self, name: str, default: Any = REQUIRED) -> list[str]:
+        """A list of names with at least one; a single name counts as one."""
+        def good(value) -> bool:
+            return bool(value) and all(isinstance(item, str) and item for item in value)
+
+        found = self.value(name, default)
+        if isinstance(found, str) and found:
+            return [found]
+        return list(self._checked(name, default, lambda v: isinstance(v, list | tuple) and good(v),
+                                  "a list of names"))
+
+    def numbers(self, name: str, count: int, default: Any = REQUIRED) -> list[float]:
+        """A list of so many finite numbers."""
+        def good(value) -> bool:
+            return isinstance(value, list | tuple) and len(value) == count and all(
+                map(_is_number, value))
+
+        found = self._checked(name, default, good, f"a list of {count} numbers")
+        return [float(item) for item in found]
+
+    def where(self, name: str) -> str:
+        """The parameter's full name."""
+        return names.join(self.namespace, name)
+
+    def _checked(self, name: str, default: Any, good, what: str) -> Any:
+        found = self.value(name, default)
+        if found is not default and not good(found):
+            raise PluginError(f"parameter {self.where(name)} is {found!r}, which is not {what}")
+        return found
+
+    def _find(self, name: str) -> Any:
+        found = self._values
+        for part in name.split("/"):
+            if not isinstance(found, dict) or part not in found:
+                return None
+            found = found[part]
+        return found
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

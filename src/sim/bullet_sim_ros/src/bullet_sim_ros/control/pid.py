@@ -1,0 +1,61 @@
+"""A PID of a controller: gains from parameters, changeable at run time, its state on a topic."""
+
+from __future__ import annotations
+
+from control_msgs.msg import PidState
+from rospy import Duration
+
+from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim_ros import convert
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.reconfigure import GainsServer
+
+
+def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:
+    """Gains below a group of parameters; only p has to be there."""
+    def number(name: str, default: float = 0.0) -> float:
+        return parameters.number(f"{group}/{name}", default)
+
+    p = parameters.number(f"{group}/p")
+    clamp = abs(number("i_clamp"))
+    return PidGains(
+        p, number("i"), number("d"),
+        i_clamp_max=abs(number("i_clamp_max", clamp)),
+        i_clamp_min=-abs(number("i_clamp_min", clamp)),
+        antiwindup=parameters.flag(f"{group}/antiwindup", False),
+    )
+
+
+def open_pid(host: ControllerHost, group: str = "pid") -> Pid:
+    """A PID with the gains of a group of parameters, which dynamic_reconfigure can change."""
+    pid = Pid(read_gains(host.parameters, group))
+
+    def change(gains: PidGains) -> None:
+        def set_gains() -> None:
+            pid.gains = gains
+        host.leave(set_gains)
+
+    server = GainsServer(host.parameters.where(group), pid.gains, change)
+    host.on_unload(server.close)
+    return pid
+
+
+class PidTopic:
+    """`<group>/state`: what the PID did in each update."""
+
+    def __init__(self, host: ControllerHost, pid: Pid, group: str = "pid"):
+        self._pid = pid
+        self._publisher = host.advertise(f"{group}/state", PidState, queue_size=1)
+
+    def publish(self, time: float, period: float) -> None:
+        """Tell whoever listens; time and period in s."""
+        if not self._publisher.get_num_connections():
+            return
+        pid, gains = self._pid, self._pid.gains
+        msg = PidState(timestep=Duration.from_sec(period), error=pid.error,
+                       error_dot=pid.error_rate, p_error=pid.error, i_error=pid.error_integral,
+                       d_error=pid.error_rate, p_term=gains.p, i_term=gains.i, d_term=gains.d,
+                       i_max=gains.i_clamp_max, i_min=gains.i_clamp_min, output=pid.output)
+        msg.header.stamp = convert.stamp(time)
+        self._publisher.publish(msg)

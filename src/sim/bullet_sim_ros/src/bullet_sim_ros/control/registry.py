@@ -1,0 +1,59 @@
+"""Joint controllers by the type that YAML files name, and what every one of them has."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.control.controller_host import ControllerHost
+
+BASE_CLASS = "controller_interface::ControllerBase"
+
+_registry: dict[str, type[Controller]] = {}
+
+
+class Controller:
+    """Made in a ROS thread when it is loaded; started, updated and stopped in the loop's thread.
+
+    `__init__` reads parameters, claims joints and opens topics, and raises an error whose message
+    says what is wrong. Time and period are in simulated seconds.
+    """
+
+    def __init__(self, host: ControllerHost):
+        self.host = host
+
+    def start(self, time: float) -> None:
+        """About to be updated; also after an emergency stop was released."""
+
+    def update(self, time: float, period: float) -> None:
+        """Read joints, write commands; `period` is the time since the last update."""
+
+    def stop(self, time: float) -> None:
+        """Not updated any more; then the manager puts every claimed command to rest."""
+
+
+def controller(*types: str) -> Callable[[type], type]:
+    """Register a class under type strings such as `effort_controllers/JointPositionController`."""
+    def register(made: type) -> type:
+        for kind in types:
+            _registry[kind] = made
+        return made
+    return register
+
+
+def find(kind: str) -> type[Controller] | None:
+    """The class of a type; None for a type that nobody registered."""
+    return _registry.get(kind)
+
+
+def types() -> list[str]:
+    """All types, sorted."""
+    return sorted(_registry)
+
+
+def nearest(kind: str) -> str | None:
+    """The registered type that a mistyped one most likely means."""
+    close = difflib.get_close_matches(kind, _registry, 1, cutoff=0.6)
+    return close[0] if close else None

@@ -1,0 +1,100 @@
+"""The six services of controller_manager."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
+from controller_manager_msgs.srv import (
+    ListControllers,
+    ListControllersResponse,
+    ListControllerTypes,
+    ListControllerTypesResponse,
+    LoadController,
+    LoadControllerResponse,
+    ReloadControllerLibraries,
+    ReloadControllerLibrariesResponse,
+    SwitchController,
+    SwitchControllerRequest,
+    SwitchControllerResponse,
+    UnloadController,
+    UnloadControllerResponse,
+)
+
+from bullet_sim_ros import names
+from bullet_sim_ros.control import registry
+from bullet_sim_ros.control.manager import ControllerManager
+from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.plugins.host import Host
+
+log = logging.getLogger("bullet_sim.control")
+
+STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
+INTERFACE_NAMES = {"effort": "hardware_interface::EffortJointInterface",
+                   "position": "hardware_interface::PositionJointInterface",
+                   "velocity": "hardware_interface::VelocityJointInterface"}
+READ_ONLY = "hardware_interface::JointStateInterface"
+
+
+def offer(host: Host, manager: ControllerManager, namespace: str) -> None:
+    """Advertise them below NAMESPACE/controller_manager."""
+    def switch(request: SwitchControllerRequest) -> None:
+        if request.strictness not in (STRICT, BEST_EFFORT):
+            log.warning("Controller Manager: To switch controllers you need to specify a "
+                        "strictness level of controller_manager_msgs::SwitchController::STRICT "
+                        "(%d) or ::BEST_EFFORT (%d). Defaulting to ::BEST_EFFORT",
+                        STRICT, BEST_EFFORT)
+        manager.switch(request.start_controllers, request.stop_controllers,
+                       request.strictness == STRICT, request.timeout)
+
+    def list_controllers(_request) -> ListControllersResponse:
+        return ListControllersResponse([state_of(loaded) for loaded in manager.list()])
+
+    def list_types(_request) -> ListControllerTypesResponse:
+        types = registry.types()
+        return ListControllerTypesResponse(types, [registry.BASE_CLASS] * len(types))
+
+    handlers = {
+        "list_controllers": (ListControllers, list_controllers),
+        "list_controller_types": (ListControllerTypes, list_types),
+        "load_controller": (LoadController, _answer(
+            lambda request: manager.load(request.name), LoadControllerResponse)),
+        "unload_controller": (UnloadController, _answer(
+            lambda request: manager.unload(request.name), UnloadControllerResponse)),
+        "switch_controller": (SwitchController, _answer(switch, SwitchControllerResponse)),
+        "reload_controller_libraries": (ReloadControllerLibraries, _answer(
+            lambda request: manager.reload(request.force_kill),
+            ReloadControllerLibrariesResponse)),
+    }
+    for name, (kind, handler) in handlers.items():
+        host.serve(names.join(namespace, f"controller_manager/{name}"), kind, handler)
+
+
+def state_of(loaded: Loaded) -> ControllerState:
+    """A controller as list_controllers tells it."""
+    claimed: dict[str, list[str]] = {}
+    for joint, handle in sorted(loaded.host.claims.items()):
+        claimed.setdefault(INTERFACE_NAMES[handle.interface], []).append(joint)
+    if not claimed:
+        claimed[READ_ONLY] = []
+    resources = [HardwareInterfaceResources(kind, joints) for kind, joints in claimed.items()]
+    return ControllerState(loaded.name, loaded.state, loaded.type, resources)
+
+
+def _answer(act: Callable, response: type) -> Callable:
+    """A handler that says ok, or why not on the terminal."""
+    def handle(request):
+        try:
+            act(request)
+        except Gone as error:  # nothing is wrong with that
+            log.info("%s", error)
+            return response(ok=False)
+        except ManagerError as error:
+            log.error("%s", error)
+            return response(ok=False)
+        return response(ok=True)
+    return handle

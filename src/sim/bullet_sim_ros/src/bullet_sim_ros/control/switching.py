@@ -1,0 +1,97 @@
+"""What a switch of controllers would do, and why it is refused: controller_manager's rules."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from bullet_sim.errors import SimulationError
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.registry import Controller
+
+INITIALIZED, RUNNING, STOPPED, ABORTED = "initialized", "running", "stopped", "aborted"
+
+
+class ManagerError(SimulationError):
+    """A request that is refused, in upstream's words."""
+
+
+class Gone(ManagerError):
+    """The simulation or the model ended while somebody waited."""
+
+
+@dataclass
+class Loaded:
+    """A controller that is loaded."""
+
+    name: str
+    type: str
+    controller: Controller
+    host: ControllerHost
+    state: str = INITIALIZED
+
+    @property
+    def runs(self) -> bool:
+        """Whether it is updated."""
+        return self.state == RUNNING
+
+
+@dataclass
+class Switch:
+    """What is to be started and stopped at the next update."""
+
+    start: list[Loaded]
+    stop: list[Loaded]
+    done: threading.Event = field(default_factory=threading.Event)
+
+
+def plan(loaded: Mapping[str, Loaded], start: Sequence[str], stop: Sequence[str],
+         strict: bool) -> Switch:
+    """Refuses what contradicts itself; what is only needless or unknown, where it is strict."""
+    stops = _known(loaded, stop, "stop", strict)
+    starts = _known(loaded, start, "start", strict)
+    for one in starts:
+        if one in stops:
+            raise ManagerError(f"Could no start or stop controller '{one.name}' because of "
+                               "conflicting switching command")
+    for one in stops:
+        if strict and not one.runs:
+            raise ManagerError(f"Could not stop controller '{one.name}' since it is not running")
+    for one in starts:
+        if strict and one.runs:
+            raise ManagerError(f"Controller '{one.name}' is already running")
+    switch = Switch([one for one in starts if not one.runs], [one for one in stops if one.runs])
+    stay = [one for one in loaded.values() if one.runs and one not in switch.stop]
+    _check_for_conflict([*stay, *switch.start])
+    return switch
+
+
+def there_are(loaded: Iterable[str]) -> str:
+    """The end of a message about a name that is not among these."""
+    return f"; there are: {', '.join(loaded) or 'none'}"
+
+
+def _known(loaded: Mapping[str, Loaded], names: Iterable[str], what: str,
+           strict: bool) -> list[Loaded]:
+    found = []
+    for name in dict.fromkeys(names):
+        if name in loaded:
+            found.append(loaded[name])
+        elif strict:
+            raise ManagerError(f"Could not {what} controller with name '{name}' because no "
+                               f"controller with this name exists{there_are(loaded)}")
+    return found
+
+
+def _check_for_conflict(together: Iterable[Loaded]) -> None:
+    """No joint may be commanded by two controllers, through whatever interface."""
+    holder: dict[str, Loaded] = {}
+    for loaded in together:
+        for joint in loaded.host.claims:
+            other = holder.setdefault(joint, loaded)
+            if other is not loaded:
+                raise ManagerError(
+                    "Could not switch controllers, due to resource conflict: joint "
+                    f"'{joint}' is claimed by '{other.name}' ({other.state}) and by "
+                    f"'{loaded.name}' ({loaded.state})")

@@ -1,0 +1,77 @@
+"""Between trajectory messages and the core's trajectories: pure functions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from control_msgs.msg import FollowJointTrajectoryGoal, JointTolerance
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from bullet_sim.control.trajectory.follower import TrajectoryFollower
+from bullet_sim.control.trajectory.request import (
+    InvalidTrajectory,
+    RequestedPoint,
+    TrajectoryRequest,
+)
+from bullet_sim.control.trajectory.segment import Waypoint
+from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance
+from bullet_sim_ros import convert
+from bullet_sim_ros.control.parameters import ControllerParameters
+
+
+def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:
+    """A header stamp of 0 means now."""
+    points = [RequestedPoint(point.time_from_start.to_sec(), point.positions, point.velocities,
+                             point.accelerations) for point in msg.points]
+    start = None if msg.header.stamp.is_zero() else msg.header.stamp.to_sec()
+    return TrajectoryRequest(msg.joint_names, points, start)
+
+
+def read_tolerances(parameters: ControllerParameters, joints: Sequence[str]) -> GoalTolerances:
+    """The `constraints`."""
+    def number(name: str, default: float = 0.0) -> float:
+        return parameters.number(f"constraints/{name}", default)
+
+    standing = number("stopped_velocity_tolerance", 0.01)
+    return GoalTolerances(
+        {name: Tolerance(number(f"{name}/trajectory")) for name in joints},
+        {name: Tolerance(number(f"{name}/goal"), standing) for name in joints},
+        number("goal_time"))
+
+
+def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) -> GoalTolerances:
+    """The controller's, as far as the goal does not say otherwise."""
+    return GoalTolerances(_replaced(default.path, goal.path_tolerance),
+                          _replaced(default.goal, goal.goal_tolerance),
+                          default.replaced_time(goal.goal_time_tolerance.to_sec()))
+
+
+def _replaced(default: dict[str, Tolerance],
+              wishes: Sequence[JointTolerance]) -> dict[str, Tolerance]:
+    result = dict(default)
+    for wish in wishes:
+        if wish.name not in result:
+            raise InvalidTrajectory(f"a tolerance is for joint {wish.name!r}; this controller has "
+                                    f"{', '.join(result)}")
+        result[wish.name] = result[wish.name].replaced(wish.position, wish.velocity,
+                                                       wish.acceleration)
+    return result
+
+
+def fill_state(msg, follower: TrajectoryFollower, time: float):
+    """header, joint_names, desired, actual and error of a state or a feedback."""
+    msg.header.stamp = convert.stamp(time)
+    msg.joint_names = follower.names
+    msg.desired = _point(follower.desired)
+    msg.actual = _point(follower.actual)
+    msg.error = _point(follower.error)
+    return msg
+
+
+def _point(waypoints: Sequence[Waypoint]) -> JointTrajectoryPoint:
+    """Accelerations are left out where nobody knows them."""
+    known = all(waypoint.acceleration is not None for waypoint in waypoints)
+    return JointTrajectoryPoint(
+        positions=[waypoint.position for waypoint in waypoints],
+        velocities=[waypoint.velocity for waypoint in waypoints],
+        accelerations=[waypoint.acceleration for waypoint in waypoints] if known else [])

@@ -1,0 +1,60 @@
+"""Waits for the parameter with a robot's URDF while the simulation goes on."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import rospy
+
+from bullet_sim_ros import params
+from bullet_sim_ros.errors import PluginError, told
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.plugins.host import Host
+
+log = logging.getLogger("bullet_sim.control")
+
+POLL = 0.1  # s, wall
+
+
+def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None]) -> None:
+    """Call `use(text)` in the loop: at once if the parameter is there, else as soon as it is.
+
+    Upstream waits here and holds up the whole world; a spawn service would not answer meanwhile.
+    """
+    closed = threading.Event()
+    host.on_close(closed.set)
+    found = params.find_upwards(namespace, name)
+    rospy.loginfo("gazebo_ros_control plugin is waiting for model URDF in parameter [%s] on the "
+                  "ROS param server.", found or name)
+    if found:
+        use(_text(found))
+        return
+
+    def look() -> None:
+        """In the loop, once the parameter is there."""
+        if closed.is_set():
+            return
+        try:
+            use(_text(params.find_upwards(namespace, name)))
+        except Exception as error:  # nobody else would see it
+            log.error("%s is not loaded: %s", host.describe(), told(error))
+            host.close()
+
+    def poll() -> None:
+        while not closed.wait(POLL) and not rospy.is_shutdown():
+            if params.find_upwards(namespace, name):
+                host.shared.mailbox.leave(look)
+                return
+
+    threading.Thread(target=poll, name="urdf", daemon=True).start()
+
+
+def _text(parameter: str) -> str:
+    value = params.below(parameter)
+    if not isinstance(value, str) or not value.strip():
+        raise PluginError(f"parameter {parameter} is empty or no text, so it cannot be a URDF")
+    return value

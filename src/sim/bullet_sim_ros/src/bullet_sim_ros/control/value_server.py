@@ -1,0 +1,57 @@
+"""dynamic_reconfigure for some values with ranges, without a generated configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from dynamic_reconfigure.server import Server
+
+KINDS = {float: "double", bool: "bool", int: "int", str: "str"}
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value as it is now, and what it may become."""
+
+    now: float | bool
+    least: float | bool
+    greatest: float | bool
+    description: str
+
+
+class ValueServer(Server):
+    """`change(values)` is called in a ROS thread, at once and whenever somebody changes one."""
+
+    def __init__(self, namespace: str, values: Mapping[str, Value],
+                 change: Callable[[dict[str, float | bool]], None]):
+        def changed(config, _level):
+            change({name: config[name] for name in values})
+            return config
+
+        super().__init__(_Type(values), changed, namespace)
+
+    def _copy_from_parameter_server(self) -> None:
+        """They were read already; here a whole number would turn into another type."""
+
+    def close(self) -> None:
+        """End topics and service."""
+        self.set_service.shutdown("the controller was unloaded")
+        self.descr_topic.unregister()
+        self.update_topic.unregister()
+
+
+class _Type:
+    """What dynamic_reconfigure's generator would have written."""
+
+    def __init__(self, values: Mapping[str, Value]):
+        self.defaults = {name: value.now for name, value in values.items()}
+        self.min = {name: value.least for name, value in values.items()}
+        self.max = {name: value.greatest for name, value in values.items()}
+        self.level = dict.fromkeys(values, 1)
+        self.config_description = {
+            "name": "Default", "type": "", "state": True, "id": 0, "parent": 0, "groups": [],
+            "parameters": [
+                {"name": name, "type": KINDS[type(value.now)], "default": value.now,
+                 "min": value.least, "max": value.greatest, "level": 1, "edit_method": "",
+                 "description": value.description} for name, value in values.items()]}

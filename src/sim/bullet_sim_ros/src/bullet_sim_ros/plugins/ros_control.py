@@ -1,0 +1,125 @@
+"""libgazebo_ros_control.so: a model's joints behind ros_control, with a controller manager."""
+
+from __future__ import annotations
+
+import logging
+import math
+
+import rospy
+from std_msgs.msg import Bool
+
+from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.errors import SimulationError
+from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim.formats.urdf_transmission import read_transmissions
+from bullet_sim.formats.xml_values import parse_xml
+from bullet_sim_ros import names
+from bullet_sim_ros.control import controllers, services  # noqa: F401  (controllers register)
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
+from bullet_sim_ros.control.manager import ControllerManager
+from bullet_sim_ros.control.urdf_parameter import with_urdf
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.control")
+
+SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim")
+ROUNDING = 1e-9  # of a step
+
+
+@plugin("libgazebo_ros_control.so")
+class RosControlPlugin:
+    """Waits for the robot's URDF; from then on it reads, updates and writes at each step."""
+
+    def __init__(self, host: Host):
+        rospy.loginfo("Loading gazebo_ros_control plugin")
+        p = host.parameters
+        self._host = host
+        self._namespace = names.join(p.namespace(missing=host.model.name, empty="/"), "")
+        simulation_type = p.text("robotSimType", SIMULATION_TYPES[0])
+        if simulation_type not in SIMULATION_TYPES:
+            log.warning("%s: <robotSimType> is %r; only %s is known here, and used",
+                        host.describe(), simulation_type, SIMULATION_TYPES[0])
+        self._control_period = p.number("controlPeriod", 0.0)  # s; 0: every step
+        self._emergency = self._restart = False
+        self._emergency_topic = p.text("eStopTopic")
+        self._set_period()
+        self._check_period()
+        rospy.loginfo("Starting gazebo_ros_control plugin in namespace: %s", self._namespace)
+        with_urdf(host, self._namespace, p.text("robotParam", "robot_description"), self._begin)
+
+    def _set_period(self) -> None:
+        """Count the control period in steps, from now."""
+        self._timestep = self._host.world.timestep
+        self._steps = max(1, math.ceil(self._control_period / self._timestep - ROUNDING))
+        self._updated = self._host.world.tick
+
+    def _check_period(self) -> None:
+        wanted, step = self._control_period, self._timestep
+        if not wanted or abs(wanted - step) < ROUNDING * step:
+            return
+        say, how = (log.error, "faster") if wanted < step else (log.warning, "slower")
+        say("%s: Desired controller update period (%g s) is %s than the gazebo simulation period "
+            "(%g s).", self._host.describe(), wanted, how, step)
+
+    def _begin(self, urdf: str) -> None:
+        try:
+            self._hardware, robot = self._open_hardware(urdf)
+        except SimulationError as error:
+            log.critical("%s: Could not initialize robot simulation interface: %s",
+                         self._host.describe(), error)
+            return
+        host, namespace = self._host, self._namespace
+
+        def open_host(name: str) -> ControllerHost:
+            own = Host(host.shared, host.model, host.description)
+            return ControllerHost(own, name, namespace, self._hardware, robot)
+
+        self._manager = ControllerManager(open_host, rospy.is_shutdown)
+        host.on_close(self._manager.close)
+        services.offer(host, self._manager, namespace)
+        if self._emergency_topic:
+            topic = names.join(names.join(host.model.name, ""), self._emergency_topic)
+            host.subscribe(topic, Bool, lambda msg: lambda: self._stop(msg.data), queue_size=1)
+        host.on_reset(self._reset)
+        self._set_period()
+        host.each_step(self._step)
+        rospy.loginfo("Loaded gazebo_ros_control.")
+
+    def _open_hardware(self, urdf: str) -> tuple[RobotHardware, RobotFacts]:
+        element = parse_xml(urdf, "the URDF parameter")
+        robot = RobotFacts(element)
+        transmissions = read_transmissions(element)
+        if not transmissions:
+            log.warning("%s: the URDF has no usable <transmission>, so there is no joint to "
+                        "control", self._host.describe())
+        joints = [transmission.joint for transmission in transmissions]
+        hardware = RobotHardware(self._host.model, transmissions,
+                                 read_joint_limits(self._namespace, robot, joints),
+                                 read_joint_gains(self._namespace, joints))
+        return hardware, robot
+
+    # --- in the loop
+
+    def _step(self) -> None:
+        world = self._host.world
+        if world.timestep != self._timestep:
+            self._set_period()
+        elapsed = world.tick - self._updated
+        if elapsed >= self._steps:
+            self._updated = world.tick
+            self._hardware.read()
+            self._manager.update(world.time, elapsed * self._timestep, self._restart)
+            self._restart = False
+        self._hardware.write(self._timestep)
+
+    def _stop(self, on: bool) -> None:
+        """Emergency stop; when it is released, running controllers start anew."""
+        self._restart = self._restart or (self._emergency and not on)
+        self._emergency = on
+        self._hardware.stop(on)
+
+    def _reset(self) -> None:
+        self._updated = self._host.world.tick
+        self._hardware.reset()
