@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""Paints the racetrack and its start line: `make_racetrack.py [MODELS]`; same input, same bytes.
+
+Reads tracks/racetrack.yaml (m, world frame) and writes the textures of models/racetrack and
+models/smartcar_plane. The road's colours follow from the distance to its centre line alone.
+"""
+
+import math
+import struct
+import sys
+import zlib
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+PACKAGE = Path(__file__).resolve().parent.parent
+TRACK = PACKAGE / "tracks" / "racetrack.yaml"
+PX_PER_M = 256
+EDGE_LINE = 0.03  # m, width of the road's edge lines
+VERGE = 0.03  # m of asphalt outside of them
+MOWN = 0.5  # m, width of the lawn's stripes: something to see the speed by
+PLATE_CHECKS, CHECK_PX = (6, 16), 12  # squares along and across the road; a square's side
+
+LAWNS = ((62, 104, 58), (70, 114, 64))  # RGB
+ASPHALT, YELLOW, WHITE, BLACK = (52, 53, 56), (250, 205, 20), (235, 235, 235), (20, 20, 20)
+
+
+def round_corners(corners):
+    """Pieces (x, y, heading, length, curvature) of the polygon with rounded corners."""
+    points = np.array([(corner["x"], corner["y"]) for corner in corners])
+    ways = np.roll(points, -1, axis=0) - points
+    headings = np.arctan2(ways[:, 1], ways[:, 0])
+    turns = (headings - np.roll(headings, 1) + math.pi) % (2 * math.pi) - math.pi
+    radii = np.array([corner["radius"] for corner in corners])
+    cuts = radii * np.tan(np.abs(turns) / 2)
+    pieces = []
+    for i, way in enumerate(ways):
+        arriving, leaving = headings[i - 1], headings[i]
+        x, y = points[i] - cuts[i] * np.array((math.cos(arriving), math.sin(arriving)))
+        curvature = math.copysign(1 / radii[i], turns[i])
+        pieces.append((x, y, arriving, abs(turns[i]) * radii[i], curvature))
+        straight = math.hypot(*way) - cuts[i] - cuts[(i + 1) % len(cuts)]
+        if straight < 0:
+            raise ValueError(f"corners[{i}]: its bend and the next overlap by {-straight:.3f} m")
+        x, y = points[i] + cuts[i] * np.array((math.cos(leaving), math.sin(leaving)))
+        pieces.append((x, y, leaving, straight, 0.0))
+    return pieces
+
+
+def distance_to_piece(piece, x, y):
+    """Distance (m) of points from a straight, or from an arc where they are abreast of it."""
+    x0, y0, heading, length, curvature = piece
+    ahead = math.cos(heading) * (x - x0) + math.sin(heading) * (y - y0)
+    left = -math.sin(heading) * (x - x0) + math.cos(heading) * (y - y0)
+    if curvature == 0:
+        return np.where((ahead >= 0) & (ahead <= length), np.abs(left), np.inf)
+    radius, side = 1 / abs(curvature), math.copysign(1, curvature)
+    angle = np.arctan2(ahead, radius - side * left) % (2 * math.pi)
+    off = np.abs(np.hypot(ahead, radius - side * left) - radius)
+    return np.where(angle <= length / radius, off, np.inf)
+
+
+def distance_to_line(pieces, x, y):
+    """Distance (m) of points from the closed line; rounded, so that no last digit shows."""
+    nearest = np.min([distance_to_piece(piece, x, y) for piece in pieces], axis=0)
+    # Rounding can leave a hair between two pieces: there the joints themselves count.
+    joints = np.min([np.hypot(x - piece[0], y - piece[1]) for piece in pieces], axis=0)
+    return np.round(np.minimum(nearest, joints), 7)
+
+
+def paint(image, cover, colour):
+    """Lay a colour over the image, with a cover of 0 to 1 for each pixel."""
+    whole = np.floor(np.clip(cover, 0, 1) * 255 + 0.5)[..., None]
+    mixed = (image * (255 - whole) + np.array(colour, float) * whole) / 255
+    image[:] = np.floor(mixed + 0.5).astype(np.uint8)
+
+
+def draw_track(track):
+    """The plane's picture, RGB: up is +y, right is +x."""
+    corners = np.array([(corner["x"], corner["y"]) for corner in track["corners"]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle = np.round((low + high) / 2, 6)
+    half_x, half_y = track["size"] / 2, round((high - low)[1] / 2, 6) + 0.8
+    x = middle[0] - half_x + (np.arange(round(2 * half_x * PX_PER_M)) + 0.5) / PX_PER_M
+    y = middle[1] + half_y - (np.arange(round(2 * half_y * PX_PER_M)) + 0.5) / PX_PER_M
+    image = np.empty((len(y), len(x), 3), np.uint8)
+    image[:] = np.where(np.floor(x / MOWN)[:, None] % 2 == 0, *np.array(LAWNS, np.uint8)[:, None])
+    pieces = round_corners(track["corners"])
+    for rows in np.array_split(np.arange(len(y)), 16):
+        distance = distance_to_line(pieces, x[None, :], y[rows][:, None])
+        part = image[rows]
+        half = track["lane_width"] + EDGE_LINE / 2 + VERGE
+        paint(part, (half - distance) * PX_PER_M + 0.5, ASPHALT)
+        from_edge = np.abs(distance - track["lane_width"])
+        paint(part, (EDGE_LINE / 2 - from_edge) * PX_PER_M + 0.5, WHITE)
+        paint(part, (track["line_width"] / 2 - distance) * PX_PER_M + 0.5, YELLOW)
+        image[rows] = part
+    return image
+
+
+def draw_start_line(track):
+    """A chequered plate, RGB, with the road's yellow line going on across it."""
+    along, across = PLATE_CHECKS
+    row, column = np.indices((across * CHECK_PX, along * CHECK_PX))
+    dark = (row // CHECK_PX + column // CHECK_PX) % 2 == 0
+    image = np.where(dark[..., None], BLACK, WHITE).astype(np.uint8)
+    from_middle = np.abs(row + 0.5 - across * CHECK_PX / 2)
+    paint(image, track["line_width"] / 2 * PX_PER_M - from_middle + 0.5, YELLOW)
+    return image
+
+
+def encode_png(image):
+    """An RGB picture as PNG: written here, because image libraries differ in their bytes."""
+    height, width, _ = image.shape
+    above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
+    rows = np.full((height, 1 + width * 3), 2, np.uint8)  # 2: each byte minus the one above
+    rows[:, 1:] = (image - above).reshape(height, width * 3)
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks)
+
+
+def all_textures():
+    """Path below models/ -> bytes."""
+    track = yaml.safe_load(TRACK.read_text(encoding="utf-8"))
+    return {f"{name}/materials/textures/{name}.png": encode_png(draw(track))
+            for name, draw in (("racetrack", draw_track), ("smartcar_plane", draw_start_line))}
+
+
+def main():
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PACKAGE / "models"
+    for place, data in all_textures().items():
+        (folder / place).parent.mkdir(parents=True, exist_ok=True)
+        (folder / place).write_bytes(data)
+        print(f"{folder / place}: {len(data)} bytes")
+
+
+if __name__ == "__main__":
+    main()

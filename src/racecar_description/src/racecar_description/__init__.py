@@ -1,0 +1,1 @@
+"""The racecar's tools: its tracks."""

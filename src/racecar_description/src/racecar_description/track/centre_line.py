@@ -1,0 +1,127 @@
+"""A closed centre line of straights and arcs: a polygon whose corners are rounded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from racecar_description.track.errors import TrackError
+
+STRAIGHT = 1e-9  # rad and m: less is no bend, and no piece
+SPACING = 0.02  # m, between the points that stand for the line in pictures and checks
+
+
+@dataclass(frozen=True)
+class Corner:
+    """One corner of the polygon that the line follows, rounded by an arc of this radius."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A straight (curvature 0) or an arc (1/radius, positive to the left) from a pose onwards."""
+
+    x: float
+    y: float
+    heading: float
+    length: float
+    curvature: float
+
+    def pose(self, s: float) -> tuple[float, float, float]:
+        """x, y and heading after s metres of this piece."""
+        turned = self.heading + self.curvature * s
+        if self.curvature == 0.0:
+            return self.x + s * math.cos(turned), self.y + s * math.sin(turned), turned
+        x = self.x + (math.sin(turned) - math.sin(self.heading)) / self.curvature
+        y = self.y - (math.cos(turned) - math.cos(self.heading)) / self.curvature
+        return x, y, turned
+
+
+class CentreLine:
+    """The closed line through rounded corners, driven in their order; s (m) wraps at `length`."""
+
+    def __init__(self, corners: Sequence[Corner]):
+        self.corners = tuple(corners)
+        self.pieces = _pieces(self.corners)
+        ends = np.cumsum([piece.length for piece in self.pieces])
+        self.length = float(ends[-1])
+        self._begins = np.concatenate(([0.0], ends[:-1]))
+
+    def pose(self, s: float) -> tuple[float, float, float]:
+        """x, y (m) and heading (rad) at s."""
+        s %= self.length
+        i = int(np.searchsorted(self._begins, s, side="right")) - 1
+        return self.pieces[i].pose(s - self._begins[i])
+
+    def points(self, spacing: float = SPACING) -> np.ndarray:
+        """(n, 2) points all along the line, evenly spaced, the first at s = 0."""
+        count = max(8, math.ceil(self.length / spacing))
+        return np.array([self.pose(i * self.length / count)[:2] for i in range(count)])
+
+    def nearest(self, x: float, y: float) -> float:
+        """s of the point of the line that is closest to x, y."""
+        points = self.points()
+        step = self.length / len(points)
+        best = step * int(np.argmin(np.hypot(*(points - (x, y)).T)))
+        low, high = best - step, best + step
+        for _ in range(60):  # a ternary search: the distance has one valley between neighbours
+            third = (high - low) / 3
+            if self._distance(low + third, x, y) < self._distance(high - third, x, y):
+                high -= third
+            else:
+                low += third
+        return (low + high) / 2 % self.length
+
+    def tightest(self) -> tuple[float, float, float]:
+        """Radius (m) of the sharpest bend, and its x, y."""
+        bends = [piece for piece in self.pieces if piece.curvature]
+        sharpest = max(bends, key=lambda piece: abs(piece.curvature))
+        x, y, _ = sharpest.pose(sharpest.length / 2)
+        return 1.0 / abs(sharpest.curvature), x, y
+
+    def reversed(self) -> CentreLine:
+        """The same line driven the other way round."""
+        return CentreLine(self.corners[::-1])
+
+    def moved(self, dx: float, dy: float) -> CentreLine:
+        """The line shifted; coordinates are kept to a nanometre."""
+        shifted = [Corner(round(c.x + dx, 9), round(c.y + dy, 9), c.radius) for c in self.corners]
+        return CentreLine(shifted)
+
+    def _distance(self, s: float, x: float, y: float) -> float:
+        px, py, _ = self.pose(s)
+        return math.hypot(px - x, py - y)
+
+
+def _pieces(corners: tuple[Corner, ...]) -> tuple[Piece, ...]:
+    """An arc for each corner and the straight after it, without those of no length."""
+    x, y, radius = np.array([(c.x, c.y, c.radius) for c in corners], float).T
+    edge_x, edge_y = np.roll(x, -1) - x, np.roll(y, -1) - y
+    edges, leaving = np.hypot(edge_x, edge_y), np.arctan2(edge_y, edge_x)
+    arriving = np.roll(leaving, 1)
+    turns = (leaving - arriving + math.pi) % (2 * math.pi) - math.pi
+    cuts = radius * np.tan(np.abs(turns) / 2)
+    pieces = []
+    for i in range(len(corners)):
+        j = (i + 1) % len(corners)
+        straight = edges[i] - cuts[i] - cuts[j]
+        if straight < -STRAIGHT or edges[i] < STRAIGHT:
+            overlap = f"the bends overlap by {-straight:.3f} m; make a radius smaller"
+            raise TrackError(f"corners[{i}] and [{j}]: {overlap}")
+        if abs(turns[i]) > STRAIGHT:
+            begin_x = x[i] - cuts[i] * math.cos(arriving[i])
+            begin_y = y[i] - cuts[i] * math.sin(arriving[i])
+            curvature = math.copysign(1.0 / radius[i], turns[i])
+            length = abs(turns[i]) * radius[i]
+            pieces.append(Piece(begin_x, begin_y, arriving[i], length, curvature))
+        if straight > STRAIGHT:
+            begin_x = x[i] + cuts[i] * math.cos(leaving[i])
+            begin_y = y[i] + cuts[i] * math.sin(leaving[i])
+            pieces.append(Piece(begin_x, begin_y, leaving[i], straight, 0.0))
+    return tuple(pieces)

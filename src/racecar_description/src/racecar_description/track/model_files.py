@@ -1,0 +1,226 @@
+"""The files of a course: model, world, map, track file, preview; relative path -> bytes."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+
+import cv2
+import numpy as np
+
+from racecar_description.track.course import Course
+from racecar_description.track.painting import paint_course, texture_scale
+from racecar_description.track.preview import draw_preview
+from racecar_description.track.track_file import track_text
+from racecar_description.track.walls import (
+    HEIGHT,
+    MAP_CELL,
+    THICKNESS,
+    Box,
+    grid_map,
+    trace_walls,
+    wall_boxes,
+)
+
+WRITTEN_BY = "Written by make_track of the package racecar_description"
+
+MODEL_CONFIG = """<?xml version="1.0"?>
+<model>
+  <name>{name}</name>
+  <version>1.0</version>
+  <sdf version="1.4">model.sdf</sdf>
+  <description>
+    A lawn with a closed road: yellow centre line, white edge lines.
+    {written_by} from {source}.
+  </description>
+</model>
+"""
+
+MODEL_SDF = """<?xml version="1.0"?>
+<sdf version="1.4">
+  <model name="{name}">
+    <static>true</static>
+    <link name="{name}_link">
+      <collision name="{name}_collision">
+        <geometry>
+          <plane>
+            <normal>0 0 1</normal>
+            <size>{width:g} {height:g}</size>
+          </plane>
+        </geometry>
+        <surface>
+          <friction>
+            <ode>
+              <mu>100</mu>
+              <mu2>50</mu2>
+            </ode>
+          </friction>
+        </surface>
+      </collision>
+      <visual name="{name}_visual">
+        <cast_shadows>false</cast_shadows>
+        <geometry>
+          <plane>
+            <normal>0 0 1</normal>
+            <size>{width:g} {height:g}</size>
+          </plane>
+        </geometry>
+        <material>
+          <script>
+            <uri>model://{name}/materials/scripts</uri>
+            <uri>model://{name}/materials/textures</uri>
+            <name>{name}</name>
+          </script>
+        </material>
+      </visual>
+    </link>
+  </model>
+</sdf>
+"""
+
+MATERIAL = """material {name}
+{{
+  technique
+  {{
+    pass
+    {{
+      texture_unit
+      {{
+        texture {name}.png
+      }}
+    }}
+  }}
+}}
+"""
+
+WORLD = """<?xml version="1.0"?>
+<!-- {written_by} from {source}. A lap begins at {start}. -->
+<sdf version="1.4">
+  <world name="default">
+    <scene>
+      <ambient>0.4 0.4 0.4 1</ambient>
+      <background>0.62 0.75 0.88 1</background>
+      <shadows>true</shadows>
+    </scene>
+    <include>
+      <uri>model://sun</uri>
+    </include>
+    <include>
+      <uri>model://ground_plane</uri>
+    </include>
+    <include>
+      <uri>model://{name}</uri>
+      <pose>{x:g} {y:g} 0 0 0 0</pose>
+    </include>
+{walls}    <physics type="ode">
+      <max_step_size>0.001</max_step_size>
+      <real_time_factor>1</real_time_factor>
+      <real_time_update_rate>1000</real_time_update_rate>
+      <ode>
+        <solver>
+          <type>quick</type>
+          <iters>150</iters>
+          <sor>1.4</sor>
+        </solver>
+        <constraints>
+          <cfm>0.00001</cfm>
+          <erp>0.2</erp>
+          <contact_max_correcting_vel>2000</contact_max_correcting_vel>
+          <contact_surface_layer>0.01</contact_surface_layer>
+        </constraints>
+      </ode>
+    </physics>
+  </world>
+</sdf>
+"""
+
+WALLS = """    <model name="walls">
+      <static>true</static>
+      <link name="link">
+{boxes}      </link>
+    </model>
+"""
+
+BOX = """        <collision name="collision_{number}">
+          <pose>{pose}</pose>
+          <geometry><box><size>{size}</size></box></geometry>
+        </collision>
+        <visual name="visual_{number}">
+          <pose>{pose}</pose>
+          <geometry><box><size>{size}</size></box></geometry>
+          <material>
+            <ambient>0.55 0.56 0.6 1</ambient>
+            <diffuse>0.55 0.56 0.6 1</diffuse>
+          </material>
+        </visual>
+"""
+
+MAP_YAML = """image: {name}.pgm
+resolution: {cell:g}
+origin: [{x:g}, {y:g}, 0.0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
+
+
+def model_folder(name: str) -> PurePosixPath:
+    """Where a course's model lies."""
+    return PurePosixPath("models") / name
+
+
+def world_path(name: str) -> PurePosixPath:
+    """Where a course's world lies."""
+    return PurePosixPath("worlds") / f"{name}.world"
+
+
+def preview_path(name: str) -> PurePosixPath:
+    """Where a course's preview lies."""
+    return PurePosixPath("tracks") / f"{name}.png"
+
+
+def course_files(course: Course) -> dict[PurePosixPath, bytes]:
+    """All files; the same course gives the same bytes."""
+    name, plane, model = course.name, course.plane, model_folder(course.name)
+    polygons = trace_walls(course) if course.walls else []
+    grid = grid_map(course, polygons)
+    texture = paint_course(course, texture_scale(course))
+    words = {"name": name, "source": _in_comment(course.source), "written_by": WRITTEN_BY}
+    texts = {
+        model / "model.config": MODEL_CONFIG.format(**words),
+        model / "model.sdf": MODEL_SDF.format(name=name, width=plane.width, height=plane.height),
+        model / f"materials/scripts/{name}.material": MATERIAL.format(name=name),
+        world_path(name): _world_text(course, wall_boxes(polygons), words),
+        PurePosixPath("maps") / f"{name}.yaml": MAP_YAML.format(
+            name=name, cell=MAP_CELL, x=grid.x, y=grid.y
+        ),
+        PurePosixPath("tracks") / f"{name}.yaml": track_text(course.track_file(), words["source"]),
+    }
+    pictures = {
+        model / f"materials/textures/{name}.png": _encode(".png", texture[..., ::-1]),
+        PurePosixPath("maps") / f"{name}.pgm": _encode(".pgm", grid.image),
+        preview_path(name): _encode(".png", draw_preview(course, texture, polygons)),
+    }
+    return {path: text.encode() for path, text in texts.items()} | pictures
+
+
+def _world_text(course: Course, boxes: list[Box], words: dict[str, str]) -> str:
+    x, y, heading = course.start
+    start = f"x {x:.3f} m, y {y:.3f} m, yaw {heading:.4f} rad"
+    walls = WALLS.format(boxes="".join(map(_box_text, range(len(boxes)), boxes))) if boxes else ""
+    return WORLD.format(**words, x=course.plane.x, y=course.plane.y, walls=walls, start=start)
+
+
+def _box_text(number: int, box: Box) -> str:
+    pose = f"{box.x:g} {box.y:g} {HEIGHT / 2:g} 0 0 {box.heading:g}"
+    size = f"{box.length:g} {THICKNESS:g} {HEIGHT:g}"
+    return BOX.format(number=number, pose=pose, size=size)
+
+
+def _in_comment(source: str) -> str:
+    """A file's name may hold what XML and YAML comments may not."""
+    plain = "".join(letter if letter.isprintable() else "?" for letter in source)
+    return plain.replace("--", "").replace("<", "").replace(">", "").replace("&", "").strip()
+
+
+def _encode(kind: str, image: np.ndarray) -> bytes:
+    return cv2.imencode(kind, np.ascontiguousarray(image))[1].tobytes()

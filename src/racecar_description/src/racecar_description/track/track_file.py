@@ -1,0 +1,126 @@
+"""The centre line as a YAML file, with the keys of the line course's tracks/course.yaml."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import yaml
+
+from racecar_description.track.centre_line import CentreLine, Corner
+from racecar_description.track.errors import TrackError
+
+
+@dataclass(frozen=True)
+class TrackFile:
+    """A track's YAML, key by key; m in the world frame, driven in the order of the corners."""
+
+    name: str
+    size: float  # the longer side of the painted plane
+    model_yaw: float  # rad, how the world file turns that plane; those written here are not turned
+    line_width: float  # of the centre line
+    lane_width: float  # from the middle of the centre line to the middle of an edge line
+    start: tuple[float, float]  # where laps begin, on the centre line
+    corners: tuple[Corner, ...]  # of the centre line
+
+
+def load_track_file(path: Path) -> TrackFile:
+    """Read and check a track file; each mistake is one TrackError that names file and key."""
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "no text file"
+        raise TrackError(f"{path}: {reason}") from error
+    except yaml.YAMLError as error:
+        raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    try:
+        return _track_file(values)
+    except TrackError as error:
+        raise TrackError(f"{path}: {error}") from error
+
+
+def _track_file(values: object) -> TrackFile:
+    _check_keys("", values, TrackFile)
+    corners = values["corners"]
+    if not isinstance(corners, list) or len(corners) < 3:
+        raise TrackError("corners: at least three are needed, as a list")
+    start = values["start"]
+    if not isinstance(start, list) or len(start) != 2:
+        raise TrackError(f"start: must be [x, y], is {start!r}")
+    track = TrackFile(
+        name=str(values["name"]),
+        size=_number("size", values["size"], positive=True),
+        model_yaw=_number("model_yaw", values["model_yaw"]),
+        line_width=_number("line_width", values["line_width"], positive=True),
+        lane_width=_number("lane_width", values["lane_width"], positive=True),
+        start=(_number("start[0]", start[0]), _number("start[1]", start[1])),
+        corners=tuple(_corner(f"corners[{i}]", item) for i, item in enumerate(corners)),
+    )
+    _check_start(track)
+    return track
+
+
+def _check_start(track: TrackFile) -> None:
+    line = CentreLine(track.corners)
+    x, y, _ = line.pose(line.nearest(*track.start))
+    beside = math.hypot(x - track.start[0], y - track.start[1])
+    if beside > 1e-6:
+        raise TrackError(
+            f"start: {beside:.3f} m beside the line; its nearest point is [{x:.9f}, {y:.9f}]"
+        )
+
+
+def _corner(place: str, values: object) -> Corner:
+    _check_keys(place, values, Corner)
+    return Corner(
+        x=_number(f"{place}.x", values["x"]),
+        y=_number(f"{place}.y", values["y"]),
+        radius=_number(f"{place}.radius", values["radius"], positive=True),
+    )
+
+
+def _check_keys(place: str, values: object, schema: type) -> None:
+    expected = [field.name for field in fields(schema)]
+    where = f"{place}: " if place else ""
+    if not isinstance(values, dict):
+        raise TrackError(f"{where}must have the keys {', '.join(expected)}")
+    for key in values:
+        if key not in expected:
+            raise TrackError(f"{where}unknown key {key!r}; there are: {', '.join(expected)}")
+    for key in expected:
+        if key not in values:
+            raise TrackError(f"{where}key {key!r} is missing")
+
+
+def _number(place: str, value: object, positive: bool = False) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise TrackError(f"{place}: must be a number, is {value!r}")
+    if positive and value <= 0:
+        raise TrackError(f"{place}: must be more than 0, is {value!r}")
+    return float(value)
+
+
+def track_text(track: TrackFile, source: str) -> str:
+    """The file's text; `load_track_file` gives the same numbers back. `source`: what made it."""
+    lines = [
+        f"# The centre line of a race track, made by make_track from {source}.",
+        "# A polygon whose corners are rounded by arcs, driven in the order of the corners.",
+        f"name: {track.name}",
+        f"size: {_text(track.size)}  # m, the longer side of the painted plane",
+        f"model_yaw: {_text(track.model_yaw)}  # rad, how the world turns that plane",
+        f"line_width: {_text(track.line_width)}  # m, of the centre line",
+        f"lane_width: {_text(track.lane_width)}  # m, middle of the centre line to that of an edge",
+        f"start: [{', '.join(map(_text, track.start))}]  # m, where a lap begins and ends",
+        "corners:  # m",
+    ]
+    for corner in track.corners:
+        x, y, radius = map(_text, (corner.x, corner.y, corner.radius))
+        lines.append(f"  - {{x: {x}, y: {y}, radius: {radius}}}")
+    return "\n".join(lines) + "\n"
+
+
+def _text(value: float) -> str:
+    """All digits, without an exponent: YAML 1.1 reads 1e-05 as a word."""
+    text = repr(float(value))
+    return f"{value:.15f}" if "e" in text else text
