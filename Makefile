@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course test bench setup build lint clean
+.PHONY: help course race drive test bench setup build lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -8,6 +8,15 @@ course: ## drive the line course and report [LAPS=1] [DURATION=s] [FOLLOWER=06fo
 	@scripts/course.sh $(if $(LAPS),--laps "$(LAPS)") $(if $(DURATION),--duration "$(DURATION)") \
 	  $(if $(FOLLOWER),--follower "$(FOLLOWER)") $(if $(filter-out 0 no false,$(FAST)),--fast) \
 	  $(if $(CAMERA),--camera "$(CAMERA)") $(if $(SEED),--seed "$(SEED)")
+
+race: ## drive the racetrack by camera and report [LAPS= DURATION= FAST= CAMERA= SEED= FOLLOWER=lane_follow_p.py]
+	@scripts/course.sh --course race $(if $(LAPS),--laps "$(LAPS)") \
+	  $(if $(DURATION),--duration "$(DURATION)") $(if $(FOLLOWER),--follower "$(FOLLOWER)") \
+	  $(if $(filter-out 0 no false,$(FAST)),--fast) $(if $(CAMERA),--camera "$(CAMERA)") \
+	  $(if $(SEED),--seed "$(SEED)")
+
+drive: ## drive the racecar with the WASD keys, in a window or in this terminal
+	@scripts/drive.sh
 
 test: ## run every check and test [JOBS=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# The racecar and its keyboard: a window where there is a screen, else this terminal.
+failure_code=2
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+"$root/scripts/setup.sh" || exit 2
+enter_workspace
+if [ -n "${DISPLAY:-}" ]; then
+  exec roslaunch racecar_description car_control.launch "$@"
+fi
+if ! [ -t 0 ]; then
+  echo "drive: there is no screen (DISPLAY) and no terminal to take keys from; type it in a terminal" >&2
+  exit 2
+fi
+mkdir -p "$root/out"
+roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@" \
+  > "$root/out/drive.log" 2>&1 < /dev/null &
+launched=$!
+trap 'kill -INT "$launched" 2> /dev/null; wait "$launched"' EXIT
+trap 'exit 130' INT TERM HUP
+echo "The car starts; what the nodes say is in out/drive.log."
+rosrun car_control keyboard_control.py --terminal
