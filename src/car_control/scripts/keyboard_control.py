@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Drives the car with the keys W, A, S and D, in a window or (--terminal) in a plain terminal."""
+
+import argparse
+import importlib
+import sys
+import time
+from dataclasses import dataclass
+
+import rospy
+from car_control.key_terminal import run_terminal
+from car_control.keys import Pace, command
+from car_control.master_watch import MasterWatch
+from car_control.node import Ending, read_settings
+from car_control.settings import bounded
+from geometry_msgs.msg import Twist
+
+FLUSH_TIME = 0.2  # s: rospy sends from threads of its own, which end with the process
+IN_TERMINAL = "rosrun car_control keyboard_control.py --terminal"
+
+
+@dataclass(frozen=True)
+class KeySettings:
+    """The node key_control's settings."""
+
+    speed: float = bounded(0, 20, "m/s while W or S is held")
+    max_steering_angle: float = bounded(0, 1.2, "rad while A or D is held")
+
+
+class KeyControl:
+    """Publishes what the keys say. The keys come from run(turn) of a window or a terminal."""
+
+    def __init__(self, settings):
+        self.settings, self.pace = settings, Pace()
+        self.publisher = rospy.Publisher("motor_output", Twist, queue_size=10)
+        self.master = MasterWatch(rospy.get_name())
+        self.ending = Ending()
+
+    def turn(self, keys):
+        """Publish if it is time to; a line that says what is driven, or None at the end."""
+        if self.ending.asked.is_set() or self.master.gone:
+            return None
+        speed, angle = command(keys, self.settings.speed, self.settings.max_steering_angle)
+        if self.pace.due((speed, angle), time.monotonic()):
+            self.publish(speed, angle)
+        return f"{speed:+.2f} m/s  {angle:+.2f} rad" if keys else "standing"
+
+    def publish(self, speed, angle):
+        message = Twist()
+        message.linear.x, message.angular.z = speed, angle
+        self.publisher.publish(message)
+
+    def stop(self):
+        """Leave the car standing, if it was this node that drove it."""
+        if self.pace.sent != (0.0, 0.0):
+            self.publish(0.0, 0.0)
+            time.sleep(FLUSH_TIME)
+        self.ending.done()
+
+
+def open_keys(in_terminal):
+    """run(turn) of the terminal or of a new window; ends with one line where there is none."""
+    if in_terminal:
+        if not sys.stdin.isatty():
+            sys.exit(f"keyboard_control: no terminal to read keys from; type: {IN_TERMINAL}")
+        return lambda turn: run_terminal(sys.stdin.fileno(), turn)
+    try:
+        key_window = importlib.import_module("car_control.key_window")  # imports Tk
+    except ImportError as error:
+        sys.exit(f"keyboard_control: {error}; type: sudo apt-get install python3-tk")
+    try:
+        return key_window.KeyWindow().run
+    except key_window.NoScreen as error:
+        sys.exit(f"keyboard_control: no screen to open a window on ({error}); type: {IN_TERMINAL}")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="keyboard_control.py", description=__doc__)
+    parser.add_argument("--terminal", action="store_true", help="keys from this terminal")
+    run = open_keys(parser.parse_args(rospy.myargv()[1:]).terminal)
+    rospy.init_node("key_control", disable_signals=True)
+    control = KeyControl(read_settings(KeySettings, "car_control.yaml", "key_control"))
+    try:
+        run(control.turn)
+    finally:
+        control.stop()
+    if control.master.gone:
+        sys.exit(f"keyboard_control: the ROS master at {control.master.uri} has ended")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:  # while the node was still looking for its master
+        sys.exit(130)

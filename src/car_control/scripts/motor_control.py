@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Turns Twist or AckermannDriveStamped into commands for the car's six joint controllers.
+
+Two things make the car stop: no command for ~timeout, and the end of the node that sent them.
+"""
+
+import math
+import threading
+import time
+
+import rospy
+from ackermann_msgs.msg import AckermannDriveStamped
+from car_control.motor import Drive, Motor, MotorSettings, controller_commands
+from car_control.node import Ending, read_settings
+from car_control.reconfigure import serve_settings
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Bool, Float64
+
+WAKE = 0.02  # s, wall: how soon the end of a sender is seen, whatever the clock does
+STILL_CLOCK = 0.1  # s, wall, between repeated commands while simulated time stands
+FLUSH_TIME = 0.1  # s, wall: rospy sends from threads of its own, which end with the process
+
+
+class MotorControl:
+    """Sends each command at once, and repeats the last one at rate_hz."""
+
+    def __init__(self, settings):
+        self.motor = Motor(settings)
+        self.lock = threading.Lock()  # callbacks come on threads of their own
+        self.sent = Drive(0.0, 0.0)
+        self.next_time = self.sent_wall = -math.inf  # s, of ROS's clock and of the wall's
+        self.source = None  # the topic of the last command
+        self.publishers = {
+            name: rospy.Publisher(f"{settings.namespace}/{name}/command", Float64, queue_size=10)
+            for name in controller_commands(settings, self.sent)
+        }
+        callbacks = {
+            "motor_output": (Twist, self.take_twist),
+            "ackermann_cmd": (AckermannDriveStamped, self.take_ackermann),
+            "estop": (Bool, self.take_stop),
+        }
+        self.subscribers = {
+            topic: rospy.Subscriber(topic, kind, callback, queue_size=1, tcp_nodelay=True)
+            for topic, (kind, callback) in callbacks.items()
+        }
+
+    def take_twist(self, msg):
+        self.take("motor_output", Drive(msg.linear.x, msg.angular.z))
+
+    def take_ackermann(self, msg):
+        self.take("ackermann_cmd", Drive(msg.drive.speed, msg.drive.steering_angle))
+
+    def take(self, topic, command):
+        with self.lock:
+            try:
+                self.motor.take(command, rospy.get_time())
+            except ValueError as error:
+                rospy.logwarn_throttle(2, f"refused a command on {topic}: {error}")
+                return
+            self.source = topic
+            self.send(self.motor.drive(rospy.get_time()))
+
+    def take_stop(self, msg):
+        with self.lock:
+            if msg.data != self.motor.emergency:
+                rospy.logwarn("emergency stop" if msg.data else "emergency stop is over")
+            self.motor.emergency = msg.data
+            if msg.data:
+                self.motor.forget()  # nothing from before goes on afterwards
+            self.send(self.motor.drive(rospy.get_time()))
+
+    def change(self, settings):
+        with self.lock:
+            self.motor.settings = settings
+
+    def send(self, drive):
+        """Publish to all six; the lock is held."""
+        self.sent, self.sent_wall = drive, time.monotonic()
+        for name, value in controller_commands(self.motor.settings, drive).items():
+            self.publishers[name].publish(value)
+
+    def repeat(self):
+        """Send what is due now; a stop is always due."""
+        with self.lock:
+            if self.source and self.subscribers[self.source].get_num_connections() == 0:
+                self.motor.forget()  # whoever drove has ended, or was killed
+            now = rospy.get_time()
+            drive = self.motor.drive(now)
+            if self.is_due(now) or (drive.speed == 0 and self.sent.speed != 0):
+                self.send(drive)
+
+    def is_due(self, now):
+        rate = self.motor.settings.rate_hz
+        if rate == 0:
+            return False
+        if now < self.next_time - 1 / rate:  # the clock was set back
+            self.next_time = now
+        if now >= self.next_time:
+            self.next_time = max(self.next_time + 1 / rate, now)
+            return True
+        return time.monotonic() - self.sent_wall >= STILL_CLOCK
+
+    def spin(self, ending):
+        clock = rospy.rostime.get_rostime_cond()  # told of each new simulated time
+        while not ending.asked.is_set():
+            with clock:
+                clock.wait(min(WAKE, max(self.next_time - rospy.get_time(), 0.001)))
+            self.repeat()
+
+    def stop(self):
+        """The last commands: stand. Those who send no longer reach us."""
+        for subscriber in self.subscribers.values():
+            subscriber.unregister()
+        with self.lock:
+            self.motor.forget()
+            self.send(self.motor.drive(rospy.get_time()))
+        time.sleep(FLUSH_TIME)
+
+
+def main():
+    rospy.init_node("motor_control", anonymous=True, disable_signals=True)
+    ending = Ending()
+    control = MotorControl(read_settings(MotorSettings, "car_control.yaml", "motor_control"))
+    serve_settings(control.motor.settings, control.change)
+    control.spin(ending)
+    control.stop()
+    ending.done()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Shows the car's camera in a window.  在窗口里显示小车的相机图像。"""
+
+import threading
+
+import cv2
+import cv_bridge
+import rospy
+from sensor_msgs.msg import Image
+
+WINDOW = "SHOW"
+QUIT_KEYS = (ord("q"), 27)  # 27: Esc
+KEY_WAIT_MS = 5
+NO_IMAGE_TIME = 5.0  # s, wall
+
+
+class Camera:
+    """Keeps the newest image for the main thread: windows belong to the thread that made them."""
+
+    def __init__(self):
+        self.bridge = cv_bridge.CvBridge()
+        self.msg = None
+        self.arrived = threading.Event()
+        self.image_sub = rospy.Subscriber(
+            "/camera/image_raw", Image, self.image_callback, queue_size=1, buff_size=2**24
+        )
+
+    def image_callback(self, msg):
+        self.msg = msg
+        self.arrived.set()
+
+    def next_image(self):
+        """The newest image as BGR, or None after a moment without a new one."""
+        if not self.arrived.wait(KEY_WAIT_MS / 1000):
+            return None
+        self.arrived.clear()
+        return self.bridge.imgmsg_to_cv2(self.msg, desired_encoding="bgr8")
+
+
+def is_closed():
+    """Whether the person closed the window with the mouse.  窗口是否已被关闭。"""
+    return cv2.getWindowProperty(WINDOW, cv2.WND_PROP_VISIBLE) < 1
+
+
+def warn_without_images(camera):
+    if camera.msg is None:
+        rospy.logwarn(
+            "no images on %s: is the car's simulation running?  还没有收到图像",
+            camera.image_sub.resolved_name,
+        )
+
+
+def main():
+    rospy.init_node("camera", anonymous=True)
+    camera = Camera()
+    warning = threading.Timer(NO_IMAGE_TIME, warn_without_images, [camera])
+    warning.daemon = True
+    warning.start()
+    cv2.namedWindow(WINDOW, cv2.WINDOW_NORMAL)
+    while not rospy.is_shutdown():
+        image = camera.next_image()
+        if image is not None:
+            cv2.imshow(WINDOW, image)
+        if cv2.waitKey(1) & 0xFF in QUIT_KEYS or is_closed():
+            break
+    cv2.destroyAllWindows()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+"""Driving keys typed in a plain terminal, which knows nothing of a key's release."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import termios
+import time
+import tty
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+
+from car_control.keys import DRIVING_KEYS, QUIT_KEY, STOP_KEY, TerminalKeys
+
+TEXT = (
+    "Hold W or S to drive, A or D beside it to steer; space stops at once. Press Q to quit.\n"
+    "A terminal does not say when a key is let go: the car stops up to 0.7 s later."
+)
+PERIOD = 0.02  # s
+ESCAPE = re.compile(r"\x1b(?:[\[O][0-9;]*(.)?)?")  # an arrow's letter, or another key's sequence
+ARROWS = {"A": "w", "B": "s", "C": "d", "D": "a"}
+
+
+@contextmanager
+def single_keys(terminal: int) -> Iterator[None]:
+    """Each key at once and unseen; whatever happens, the terminal is as before afterwards."""
+    before = termios.tcgetattr(terminal)
+    try:
+        tty.setcbreak(terminal)
+        yield
+    finally:
+        with suppress(termios.error):  # the terminal may be closed: nothing is to be put back
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+
+
+def keys_in(text: str) -> str:
+    """The keys that these characters stand for: lower case, arrows as WASD, no other sequences."""
+    return ESCAPE.sub(lambda found: ARROWS.get(found[1] or "", ""), text).lower()
+
+
+def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) -> None:
+    """Give the keys held to `turn` again and again, and show what it returns in one line.
+
+    Ends with Q, with the terminal, or when `turn` returns None.
+    """
+    keys, shown = TerminalKeys(), ""
+    print(TEXT, flush=True)
+    with single_keys(terminal):
+        while True:
+            text = _typed(terminal)
+            for key in keys_in(text or ""):
+                if key in DRIVING_KEYS:
+                    keys.press(key, time.monotonic())
+                elif key == STOP_KEY:
+                    keys.release_all()
+            status = turn(keys.held(time.monotonic()))
+            if status is None or text is None or QUIT_KEY in text.lower():
+                break
+            if status != shown:
+                shown = status
+                print(f"\r{status:40}", end="", flush=True)
+    print()
+
+
+def _typed(terminal: int) -> str | None:
+    """What was typed until now, "" after PERIOD without a key, None if the terminal is gone."""
+    try:
+        if not select.select([terminal], [], [], PERIOD)[0]:
+            return ""
+        return os.read(terminal, 1024).decode(errors="ignore") or None
+    except OSError:
+        return None

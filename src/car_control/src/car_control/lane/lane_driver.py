@@ -1,0 +1,130 @@
+"""Steering and speed from the points of a line: PID on the error ahead, slower before bends."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from car_control.driving.pid import Pid, PidGains
+from car_control.driving.speed_profile import SpeedLimits, speed_profile
+from car_control.lane.bend_memory import BendMemory
+from car_control.lane.bends import Bend, bends_along
+from car_control.lane.lane_settings import LaneSettings
+
+SPACING = 0.2  # m between the places whose bends are looked at
+WINDOW = 0.6  # m of line that one bend is fitted to
+SPEED_TIME = 0.1  # s in which the wheels follow a new speed, about
+LONGEST_PERIOD = 0.2  # s: after a longer pause what was known is old
+BLINK = 0.3  # s without a line in which the car goes on as it was
+
+WAITING, FOLLOWING, SEARCHING, STOPPED = "waiting", "following", "searching", "stopped"
+
+
+@dataclass(frozen=True)
+class LaneCommand:
+    """m/s, rad, and which of the four states the driver is in."""
+
+    speed: float
+    steering_angle: float
+    state: str
+
+
+class LaneDriver:
+    """Call `drive` once for each image; times are those of the images, in s."""
+
+    def __init__(self, settings: LaneSettings):
+        self.settings = settings  # may be changed at any time
+        self.memory, self.pid = BendMemory(), Pid(PidGains(0.0))
+        self.state = WAITING
+        self.error = 0.0  # m beside the line ahead of the car; positive: the line is to the left
+        self.lateral = 0.0  # m to the left, where the line came into sight last
+        self._last = LaneCommand(0.0, 0.0, WAITING)
+        self._last_time: float | None = None
+        self._seen_time = 0.0
+        self._speed = 0.0  # m/s, about what the wheels do
+
+    def drive(self, time: float, seen: np.ndarray) -> LaneCommand:
+        """What to do when these points of the line (n, 2) are seen at this time."""
+        period = self._period(time)
+        self._speed += (self._last.speed - self._speed) * (1 - math.exp(-period / SPEED_TIME))
+        self.memory.drive(self._speed * period)
+        bends = bends_along(seen, SPACING, WINDOW)
+        if bends:
+            self._last = self._follow(bends, period)
+            self._seen_time = time
+        else:
+            self._last = self._without_line(time)
+        self.state = self._last.state
+        return self._last
+
+    def halt(self) -> None:
+        """The car stands, for whatever reason: what was known is old."""
+        self.memory.forget()
+        self.pid.reset()
+        self._last = LaneCommand(0.0, 0.0, self.state)
+        self._last_time, self._speed = None, 0.0
+
+    def _period(self, time: float) -> float:
+        """Seconds since the last image; 0 after a pause or when the clock was set back."""
+        if self._last_time is None or not 0 <= time - self._last_time <= LONGEST_PERIOD:
+            self.halt()
+            self._seen_time = self._last_time = time
+        period, self._last_time = time - self._last_time, time
+        return period
+
+    def _follow(self, bends: list[Bend], period: float) -> LaneCommand:
+        settings, near = self.settings, bends[0]
+        self.lateral = near.y
+        self.memory.see(near.x, near.curvature)
+        self.error = self._error(near)
+        limit = settings.max_steering_angle
+        self.pid.gains = PidGains(
+            settings.kp, settings.ki, settings.kd, limit, settings.derivative_time
+        )
+        # The line's own bend where the car will be when the wheels have turned.
+        bend = float(self.memory.curvature(self._speed * settings.latency))
+        angle = math.atan(settings.wheelbase * bend) + self.pid.compute(self.error, period)
+        speed = self._planned_speed(bends, period)
+        return LaneCommand(speed, max(-limit, min(limit, angle)), FOLLOWING)
+
+    def _error(self, near: Bend) -> float:
+        """m between the line where it comes into sight and where it would be seen from on it."""
+        shape = self.memory.shape(near.x)
+        y, heading = (np.interp(near.x, shape[:, 0], shape[:, k]) for k in (1, 2))
+        return float((near.y - y) * math.cos(heading))
+
+    def _planned_speed(self, bends: list[Bend], period: float) -> float:
+        settings = self.settings
+        if settings.max_speed == 0:
+            return 0.0
+        limits = SpeedLimits(
+            settings.max_speed, settings.lateral_acceleration, settings.acceleration,
+            settings.braking,
+        )  # fmt: skip
+        before = np.arange(0.0, bends[0].x, SPACING)
+        curvature = np.append(self.memory.curvature(before), [bend.curvature for bend in bends])
+        speed = speed_profile(curvature, np.full(len(curvature) - 1, SPACING), limits)[0]
+        # Nothing is known beyond the last place: be slow enough there to search.
+        sight = SPACING * (len(curvature) - 1)
+        speed = min(speed, math.sqrt(settings.search_speed**2 + 2 * settings.braking * sight))
+        speed /= 1 + abs(self.error) / settings.error_slowdown
+        faster = self._last.speed + settings.acceleration * period
+        return max(min(speed, faster), min(settings.search_speed, settings.max_speed))
+
+    def _without_line(self, time: float) -> LaneCommand:
+        """Go on for a moment; then turn slowly to where the line was; stop if it does not come."""
+        settings, lost = self.settings, time - self._seen_time
+        if self.state in (WAITING, STOPPED):
+            return LaneCommand(0.0, 0.0, self.state)
+        slow = min(settings.search_speed, settings.max_speed)
+        if self.state == FOLLOWING and lost < BLINK:
+            speed = max(slow, self._last.speed / 2)
+            return LaneCommand(speed, self._last.steering_angle, FOLLOWING)
+        self.memory.forget()
+        self.pid.reset()
+        if lost > settings.search_time:
+            return LaneCommand(0.0, 0.0, STOPPED)
+        angle = math.copysign(settings.max_steering_angle, self.lateral)
+        return LaneCommand(slow, angle, SEARCHING)

@@ -1,0 +1,119 @@
+"""Where the yellow line is in an image, and where that is on the ground.
+
+Ground points are (x forward, y left) in m from the middle of the rear axle. Yellow is the smaller
+of red and green minus blue: white, grey, green and blue have little of it in any light.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from car_control.lane.lane_settings import LaneSettings
+
+ROWS = 24  # that are looked at, closer together near the car
+BAND = 3  # rows averaged into one, against noise
+WIDEST = 4.0  # times the line's width: what a row may cut out of a line that runs across
+FIRST_GATE = 0.6  # m from the expected place, for the first point
+GATE, GATE_SLOPE = 0.06, 0.6  # m, and m per m of way, from where the points so far lead
+
+
+@dataclass(frozen=True)
+class Line:
+    """Points of the line, the nearest first."""
+
+    ground: np.ndarray  # (n, 2) m
+    pixels: np.ndarray  # (n, 2) column, row
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The image rows that are looked at, the nearest first."""
+
+    row: np.ndarray  # (n,) px
+    x: np.ndarray  # (n,) m ahead of the rear axle
+    px_per_m: np.ndarray  # (n,) across
+    middle: float  # px, column straight ahead of the camera
+
+
+def find_line(image: np.ndarray, settings: LaneSettings, expected: float = 0.0) -> Line:
+    """The line in a BGR image (h, w, 3) uint8 of any size; no points if there is none.
+
+    expected: m to the left, about where the line's nearest point should be.
+    """
+    rows = plan_rows(image.shape[0], image.shape[1], settings)
+    yellow = _yellowness(image, rows.row)
+    pieces = _bright_pieces(yellow, rows.px_per_m * settings.line_width, settings.line_contrast)
+    points: list[tuple[float, float]] = []
+    pixels: list[tuple[float, float]] = []
+    for i, columns in enumerate(pieces):
+        if not columns:
+            continue
+        lateral = settings.camera_left + (rows.middle - np.array(columns)) / rows.px_per_m[i]
+        guess, gate = _guess(points, float(rows.x[i]), expected)
+        best = int(np.argmin(np.abs(lateral - guess)))
+        if abs(lateral[best] - guess) <= gate:
+            points.append((float(rows.x[i]), float(lateral[best])))
+            pixels.append((columns[best], float(rows.row[i])))
+    return Line(np.array(points).reshape(-1, 2), np.array(pixels).reshape(-1, 2))
+
+
+@lru_cache(maxsize=8)
+def plan_rows(height_px: int, width_px: int, settings: LaneSettings) -> Rows:
+    """Rows from the bottom of the image to `sight`, evenly spread over the distance's logarithm."""
+    focal_px = width_px / 2 / math.tan(settings.camera_hfov / 2)
+    c, s = math.cos(settings.camera_pitch), math.sin(settings.camera_pitch)
+    height = settings.camera_height
+    up = -(height_px / 2 - 1 - BAND // 2) / focal_px  # of the lowest row's direction
+    down = s - up * c
+    if down <= 0:
+        # The camera looks at the sky.
+        return Rows(np.zeros(0, int), np.zeros(0), np.zeros(0), width_px / 2)
+    nearest = height * (c + up * s) / down
+    distance = np.geomspace(max(nearest, 0.02), max(settings.sight, 1.1 * nearest), ROWS)
+    up = (distance * s - height * c) / (height * s + distance * c)
+    row = np.rint(height_px / 2 - focal_px * up).astype(int)
+    row = np.unique(np.clip(row, BAND // 2, height_px - 1 - BAND // 2))
+    up = (height_px / 2 - row - 0.5) / focal_px
+    depth = height / (s - up * c)  # m along the camera's axis
+    x = settings.camera_forward + depth * (c + up * s)
+    return Rows(row[::-1], x[::-1], (focal_px / depth)[::-1], width_px / 2)
+
+
+def _yellowness(image: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(rows, w) float: how much yellower than grey, averaged over BAND rows."""
+    bands = image[rows[:, None] + np.arange(BAND) - BAND // 2].astype(np.int16)
+    blue, green, red = bands[..., 0], bands[..., 1], bands[..., 2]
+    return (np.minimum(red, green) - blue).mean(axis=1)
+
+
+def _bright_pieces(yellow: np.ndarray, width_px: np.ndarray, contrast: float) -> list[list[float]]:
+    """For each row the middles (column) of the pieces about as wide as the line."""
+    pieces = []
+    columns = np.arange(yellow.shape[1])
+    for values, width in zip(yellow, width_px):
+        size = max(1, round(width / 2))
+        smooth = np.convolve(values, np.full(size, 1 / size), mode="same")
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], smooth > contrast, [0]])))
+        found = []
+        for begin, end in zip(edges[::2], edges[1::2]):
+            weights = np.maximum(values[begin:end], 0)
+            total = weights.sum()
+            if total > 0 and width / 3 <= end - begin <= WIDEST * width + size:
+                found.append(float((weights * columns[begin:end]).sum() / total) + 0.5)
+        pieces.append(found)
+    return pieces
+
+
+def _guess(points: list[tuple[float, float]], x: float, expected: float) -> tuple[float, float]:
+    """Where (m to the left) the line should be at x, and how far from there it may be."""
+    if not points:
+        return expected, FIRST_GATE
+    (x1, y1), (x0, y0) = points[-1], points[max(-3, -len(points))]
+    slope = (y1 - y0) / (x1 - x0) if len(points) > 1 else 0.0
+    way = x - x1
+    gate = GATE + GATE_SLOPE * way * (1 if len(points) > 1 else 2)
+    return y1 + slope * way, gate

@@ -1,0 +1,53 @@
+"""What every node here does alike: read its settings, and leave the car standing when it ends."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from pathlib import Path
+
+import rospkg
+import rospy
+
+from car_control.settings import Settings, SettingsError, load_settings
+
+
+def read_settings(kind: type[Settings], file_name: str, section: str | None = None) -> Settings:
+    """Settings from config/FILE_NAME of this package, or from the file in the parameter ~config.
+
+    The node's other parameters override single keys. Ends the program with one line if they do
+    not fit.
+    """
+    given = rospy.get_param("~", {})
+    folder = Path(rospkg.RosPack().get_path("car_control"), "config")
+    try:
+        return load_settings(kind, given.pop("config", folder / file_name), section, given)
+    except SettingsError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(1)
+
+
+class Ending:
+    """Ctrl-C, a closed terminal, `rosnode kill`: in each case there is time for a last message.
+
+    Start the node with disable_signals=True and make this right after. A signal only sets
+    `asked`; the main thread sees it, sends what is to be sent, and calls `done`.
+    """
+
+    def __init__(self) -> None:
+        self.asked = threading.Event()
+        self._done = threading.Event()
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, lambda *_: self.asked.set())
+        rospy.on_shutdown(self._shut_down)
+
+    def done(self) -> None:
+        """The last message is out: ROS may close the connections."""
+        self._done.set()
+        rospy.signal_shutdown("ended")
+
+    def _shut_down(self) -> None:
+        """Runs on ROS's thread when the master asks; the connections live until it returns."""
+        self.asked.set()
+        self._done.wait(2.0)  # s

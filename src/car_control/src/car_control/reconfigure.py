@@ -1,0 +1,83 @@
+"""A node's settings changed while it runs, over dynamic_reconfigure, without a .cfg file.
+
+Type `rosrun dynamic_reconfigure dynparam list` to see the nodes that can, and
+`rosrun dynamic_reconfigure dynparam set NODE KEY VALUE` to change a number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import Field, replace
+from types import SimpleNamespace
+from typing import TypeVar
+
+import rospy
+from dynamic_reconfigure.server import Server
+
+from car_control.settings import SettingsError, changeable, checked
+
+Settings = TypeVar("Settings")
+
+
+def serve_settings(settings: Settings, apply: Callable[[Settings], None]) -> Server:
+    """Offer every number and switch; `apply` gets the settings now and after each change.
+
+    `apply` runs on ROS's threads. A value that does not fit is a warning, and stays as it was.
+    """
+    current = settings
+
+    def change(config: dict, _level: int) -> dict:
+        nonlocal current
+        try:
+            wanted = {
+                entry.name: checked(entry, config[entry.name], "dynamic_reconfigure")
+                for entry in changeable(type(settings))
+            }
+            current = replace(current, **wanted)
+        except (SettingsError, ValueError) as error:
+            rospy.logwarn("%s", error)
+        apply(current)
+        for entry in changeable(type(settings)):
+            config[entry.name] = getattr(current, entry.name)
+        return config
+
+    # The server reads its first values from the node's parameters: they may be whole numbers
+    # there, or not there at all.
+    for entry in changeable(type(settings)):
+        rospy.set_param(f"~{entry.name}", getattr(settings, entry.name))
+    return Server(describe(settings), change)
+
+
+def describe(settings: object) -> SimpleNamespace:
+    """What a class generated from a .cfg file would hold for these settings."""
+    parameters = [_parameter(entry) for entry in changeable(type(settings))]
+    return SimpleNamespace(
+        defaults={p["name"]: getattr(settings, p["name"]) for p in parameters},
+        min={p["name"]: p["min"] for p in parameters},
+        max={p["name"]: p["max"] for p in parameters},
+        level={p["name"]: p["level"] for p in parameters},
+        type={p["name"]: p["type"] for p in parameters},
+        all_level=0,
+        config_description={
+            "name": "Default",
+            "type": "",
+            "state": True,
+            "id": 0,
+            "parent": 0,
+            "parameters": parameters,
+            "groups": [],
+        },
+    )
+
+
+def _parameter(entry: Field) -> dict:
+    number = "low" in entry.metadata
+    return {
+        "name": entry.name,
+        "type": "double" if number else "bool",
+        "level": 0,
+        "description": entry.metadata["meaning"],
+        "edit_method": "",
+        "min": entry.metadata["low"] if number else False,
+        "max": entry.metadata["high"] if number else True,
+    }

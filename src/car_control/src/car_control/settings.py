@@ -1,0 +1,100 @@
+"""A node's settings: a dataclass filled from a YAML file and from what ROS parameters override.
+
+The YAML file has every default, once; the dataclass has types, bounds and meanings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import Field, field, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+
+Settings = TypeVar("Settings")
+
+
+class SettingsError(Exception):
+    """One line that names file (or parameters), key, and what is wrong."""
+
+
+def bounded(low: float, high: float, meaning: str) -> Any:
+    """A dataclass field of type float within these bounds; the meaning says its unit."""
+    return field(metadata={"low": float(low), "high": float(high), "meaning": meaning})
+
+
+def explained(meaning: str) -> Any:
+    """A dataclass field of type bool or str."""
+    return field(metadata={"meaning": meaning})
+
+
+def load_settings(
+    kind: type[Settings],
+    path: str | Path,
+    section: str | None = None,
+    given: Mapping[str, object] | None = None,
+) -> Settings:
+    """An instance of the dataclass `kind` (types float, bool, str) from a file's table.
+
+    section: the key of the table in the file, None for the whole file. Keys in `given`, the node's
+    own ROS parameters, win. Whatever is wrong is one SettingsError.
+    """
+    place = f"{path}: {section}" if section else str(path)
+    values = _read_table(Path(path), section, place)
+    known = {entry.name: entry for entry in fields(kind)}
+    result: dict[str, object] = {}
+    for where, table in ((place, values), ("the node's parameters", given or {})):
+        for key, value in table.items():
+            if key not in known:
+                raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+            result[key] = checked(known[key], value, where)
+    for key in known:
+        if key not in values:
+            raise SettingsError(f"{place}: missing key '{key}'")
+    try:
+        return kind(**result)
+    except ValueError as error:  # the dataclass's own check of how its values fit together
+        raise SettingsError(f"{place} and the node's parameters: {error}") from error
+
+
+def checked(entry: Field, value: object, where: str) -> object:
+    """The value as this field has it; SettingsError if it cannot."""
+    kind = _type_name(entry)
+    if kind != "float":
+        if type(value).__name__ != kind:
+            wanted = {"bool": "true or false", "str": "a text"}[kind]
+            raise SettingsError(f"{where}: '{entry.name}' must be {wanted}, not {value!r}")
+        return value
+    low, high = entry.metadata["low"], entry.metadata["high"]
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not (number and math.isfinite(value) and low <= value <= high):
+        raise SettingsError(
+            f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {value!r}"
+        )
+    return float(value)
+
+
+def changeable(kind: type) -> list[Field]:
+    """Those fields that can change while a node runs: numbers and switches."""
+    return [entry for entry in fields(kind) if _type_name(entry) in ("float", "bool")]
+
+
+def _type_name(entry: Field) -> str:
+    """float, bool or str: annotations are texts here, since annotations are not evaluated."""
+    return entry.type if isinstance(entry.type, str) else entry.type.__name__
+
+
+def _read_table(path: Path, section: str | None, place: str) -> dict:
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from error
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    if section is not None:
+        values = values.get(section) if isinstance(values, dict) else None
+    if not isinstance(values, dict):
+        raise SettingsError(f"{place}: not a table of 'key: value' lines")
+    return values

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""keyboard_control.py --terminal, typed at through a pseudo-terminal."""
+
+import fcntl
+import os
+import pty
+import signal
+import subprocess
+import sys
+import termios
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from fake_controllers import LIMIT, wait_until
+from keyboard import NODE, Sent, end_node, start_node
+
+STANDING = (0.0, 0.0)
+
+
+def take_terminal():
+    """Makes stdin the terminal of the new session, so that a typed Ctrl-C interrupts it."""
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+class KeyboardTerminal(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sent = Sent()
+
+    def setUp(self):
+        self.keyboard, self.terminal = pty.openpty()
+        self.before = termios.tcgetattr(self.terminal)
+        self.node = start_node(
+            "--terminal", stdin=self.terminal, stdout=self.terminal, stderr=subprocess.PIPE,
+            text=True, preexec_fn=take_terminal,
+        )  # fmt: skip
+        self.shown = ""
+        threading.Thread(target=self.read, daemon=True).start()
+        wait_until(self.sent.subscriber.get_num_connections, "the node's publisher")
+        wait_until(lambda: "standing" in self.shown, "keys being read")
+        self.sent.forget()
+
+    def tearDown(self):
+        end_node(self.node)
+        self.node.stderr.close()
+        connected = self.sent.subscriber.get_num_connections
+        wait_until(lambda: not connected(), "the end of the node's publisher")
+        os.close(self.terminal)  # ends the reading thread, which closes the other side
+
+    def read(self):
+        try:
+            while text := os.read(self.keyboard, 4096):
+                self.shown += text.decode(errors="replace")
+        except OSError:
+            pass
+        os.close(self.keyboard)
+
+    def type(self, keys):
+        os.write(self.keyboard, keys.encode())
+
+    def type_repeatedly(self, key, seconds):
+        """As a terminal whose key is held: again and again, 25 times a second."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.type(key)
+            time.sleep(0.04)
+
+    def assert_ended(self):
+        self.assertEqual(self.node.wait(LIMIT), 0)
+        self.assertEqual(termios.tcgetattr(self.terminal), self.before)
+        self.assertEqual(self.node.stderr.read(), "")
+
+    def test_a_held_key_drives_and_the_end_of_its_characters_stops(self):
+        self.type_repeatedly("w", 1.5)
+        self.assertEqual(set(self.sent.commands), {(2.0, 0.0)})
+        self.assertGreater(len(self.sent.commands), 8)
+        self.sent.wait_for(STANDING)
+        self.sent.wait_for_silence()
+        wait_until(lambda: "+2.00 m/s" in self.shown, "the speed shown")
+
+    def test_a_second_key_steers_beside_the_first(self):
+        self.type("w")
+        self.sent.wait_for((2.0, 0.0))
+        self.type_repeatedly("a", 1.0)
+        self.assertEqual(self.sent.commands[-1], (2.0, 0.34))
+        self.sent.wait_for(STANDING)
+
+    def test_arrows_drive_and_space_stops(self):
+        self.type("\x1b[B")
+        self.sent.wait_for((-2.0, 0.0))
+        self.type("\x1b[C")
+        self.sent.wait_for((-2.0, -0.34))
+        self.type(" ")
+        self.sent.wait_for(STANDING)
+
+    def test_q_restores_the_terminal(self):
+        self.type("w")
+        self.sent.wait_for((2.0, 0.0))
+        self.type("q")
+        self.assert_ended()
+        self.sent.wait_for(STANDING)
+
+    def test_ctrl_c_stops_and_restores_the_terminal(self):
+        self.type("w")
+        self.sent.wait_for((2.0, 0.0))
+        self.type("\x03")
+        self.assert_ended()
+        self.sent.wait_for(STANDING)
+
+    def test_a_closed_terminal_stops_the_car(self):
+        self.type("w")
+        self.sent.wait_for((2.0, 0.0))
+        os.killpg(self.node.pid, signal.SIGHUP)
+        self.assertEqual(self.node.wait(LIMIT), 0)
+        self.sent.wait_for(STANDING)
+
+    def test_without_a_terminal_one_line(self):
+        done = subprocess.run([*NODE, "--terminal"], stdin=subprocess.DEVNULL, text=True,
+                              capture_output=True, timeout=LIMIT, check=False)  # fmt: skip
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn("no terminal to read keys from", done.stderr)
+
+
+if __name__ == "__main__":
+    rospy.init_node("keyboard_terminal_test")
+    rostest.rosrun("car_control", "keyboard_terminal", KeyboardTerminal, sys.argv)

@@ -1,0 +1,86 @@
+"""When the car drives, when it stands, and within what limits."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from car_control.motor import Drive, Motor, MotorSettings, controller_commands
+from car_control.settings import load_settings
+
+CONFIG = Path(__file__).parents[1] / "config" / "car_control.yaml"
+SETTINGS = load_settings(MotorSettings, CONFIG, "motor_control")
+
+
+def driving(speed=2.0, angle=0.1, at=10.0, **changes):
+    motor = Motor(replace(SETTINGS, **changes))
+    motor.take(Drive(speed, angle), at)
+    return motor
+
+
+def test_a_command_stands_until_its_time_is_out():
+    motor = driving()
+    assert motor.drive(10.0) == motor.drive(10.5) == Drive(2.0, 0.1)
+    assert motor.drive(10.51) == Drive(0.0, 0.1)
+
+
+def test_nothing_is_driven_before_the_first_command():
+    assert Motor(SETTINGS).drive(0.0) == Drive(0.0, 0.0)
+
+
+def test_a_stop_is_for_good_even_if_the_clock_is_set_back():
+    motor = driving()
+    assert motor.drive(9.0).speed == 0.0
+    assert motor.drive(10.2).speed == 0.0
+
+
+def test_an_emergency_stop_stands_above_all_commands():
+    motor = driving()
+    motor.emergency = True
+    motor.take(Drive(1.0, 0.0), 10.1)
+    assert motor.drive(10.1).speed == 0.0
+    motor.emergency = False
+    assert motor.drive(10.2) == Drive(1.0, 0.0)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_as_if_it_had_not_come(bad):
+    motor = driving()
+    for command in (Drive(bad, 0.0), Drive(1.0, bad)):
+        with pytest.raises(ValueError, match="must be finite"):
+            motor.take(command, 10.4)
+    assert motor.drive(10.4) == Drive(2.0, 0.1)
+    assert motor.drive(10.6).speed == 0.0
+
+
+def test_speed_and_angle_are_limited_both_ways():
+    assert driving(99.0, 9.0).drive(10.0) == Drive(5.0, 0.34)
+    assert driving(-99.0, -9.0).drive(10.0) == Drive(-5.0, -0.34)
+
+
+def test_speeding_up_takes_time_and_slowing_down_none():
+    motor = Motor(replace(SETTINGS, max_acceleration=2.0))
+    motor.drive(10.0)
+    motor.take(Drive(1.0, 0.0), 10.0)
+    assert motor.drive(10.1).speed == pytest.approx(0.2)
+    assert motor.drive(10.3).speed == pytest.approx(0.6)
+    motor.take(Drive(0.5, 0.0), 10.3)
+    assert motor.drive(10.3).speed == 0.5
+    motor.take(Drive(-1.0, 0.0), 10.4)
+    assert motor.drive(10.4).speed == pytest.approx(-0.2)  # from standing, not from 0.5 m/s
+
+
+def test_the_tutorials_law_is_the_pages():
+    commands = controller_commands(replace(SETTINGS, ackermann=False), Drive(2.0, -0.3))
+    assert list(commands.values()) == [16.0] * 4 + [-0.3] * 2
+    assert [name.split("_")[:2] for name in commands][:2] == [["left", "rear"], ["right", "rear"]]
+
+
+def test_a_straight_drive_turns_all_wheels_alike():
+    commands = controller_commands(SETTINGS, Drive(2.0, 0.0))
+    assert list(commands.values()) == [40.0] * 4 + [0.0] * 2
+
+
+def test_a_car_that_cannot_steer_so_far_is_refused():
+    with pytest.raises(ValueError, match=r"'max_steering_angle' must be less than 1\.047 rad"):
+        replace(SETTINGS, wheelbase=0.2, max_steering_angle=1.1, front_track=0.23094)
