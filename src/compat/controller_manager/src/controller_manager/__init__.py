@@ -1,0 +1,1 @@
+"""Upstream's tools around ros_control's controller manager, over its services."""

@@ -1,0 +1,62 @@
+"""The lines that name the cause of a failure."""
+
+from controller_manager import client, diagnosis
+from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
+
+
+def listed(*rows):
+    """Controllers from (name, state, joint)."""
+    return [ControllerState(name, state, "t/T", [HardwareInterfaceResources("i", [joint])])
+            for name, state, joint in rows]
+
+
+def test_no_yaml_file_was_loaded():
+    line = diagnosis.not_configured("left", "/racecar", ["/use_sim_time", "/racecar/type"])
+    assert line == ("parameter /racecar/left/type is not set, nor is any controller's in /racecar: "
+                    'load the YAML file, <rosparam command="load" file="..." ns="/racecar"/>')
+
+
+def test_loaded_into_another_namespace():
+    line = diagnosis.not_configured("left", "/racecar", ["/left/type", "/racecar/right/type"])
+    assert "parameter /racecar/left/type is not set, but /left/type is: " in line
+
+
+def test_a_mistyped_name():
+    parameters = ["/left_wheel/type", "/arm/type", "/left_wheel/pid/type"]
+    line = diagnosis.not_configured("left_whel", "/", parameters)
+    assert line == ("parameter /left_whel/type is not set; in / there are: arm, left_wheel. "
+                    "Did you mean left_wheel?")
+
+
+def test_a_namespace_instead_of_a_controller():
+    line = diagnosis.not_configured("racecar", "/", ["/racecar/left/type", "/racecar/right/type"])
+    assert line == ("racecar is a namespace with the controllers left, right: "
+                    "spawn these with --namespace=/racecar")
+
+
+def test_unknown_type():
+    types = ["effort_controllers/JointPositionController", "diff_drive_controller/DiffDrive"]
+    assert diagnosis.unknown_type("effort_controllers/JointPosController", types) == (
+        "there is no controller type effort_controllers/JointPosController. "
+        "Did you mean effort_controllers/JointPositionController?")
+    assert diagnosis.unknown_type("x", types).endswith("list-types` shows those there are")
+
+
+def test_switches():
+    controllers = listed(("a", "running", "elbow"), ("b", "initialized", "elbow"),
+                         ("c", "stopped", "wrist"))
+    for start, stop, cause in (
+            (["d"], [], "not loaded: d (loaded: a, b, c)"),
+            (["a"], [], "running already: a"),
+            ([], ["b"], "not running: b"),
+            (["b"], [], "joint elbow is claimed by a and b"),
+            (["b"], ["a"], diagnosis.SEE_LOG),
+            (["c"], [], diagnosis.SEE_LOG)):
+        assert diagnosis.switch_failure(controllers, start, stop) == cause
+
+
+def test_no_manager():
+    service = "/car/controller_manager/load_controller"
+    assert "A controller manager answers in: /arm, /racecar " in client.absence(
+        service, ["/arm", "/racecar"])
+    assert "no controller manager in any namespace" in client.absence(service, [])
