@@ -143,7 +143,7 @@ class KeyboardAlone(unittest.TestCase):
     """What happens where something is missing."""
 
     def test_without_a_screen_one_line_says_what_to_type(self):
-        for display in (None, ":77"):
+        for display in (None, ":7654"):
             environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
             if display:
                 environment["DISPLAY"] = display

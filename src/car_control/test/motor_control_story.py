@@ -88,7 +88,7 @@ class MotorControlStory(unittest.TestCase):
 
     def test_it_stops_when_commands_end_though_the_sender_lives(self):
         self.twists.message = twist(1.0, 0.2)
-        wait_until(lambda: not self.car.stand(), "driving")
+        self.car.wait_for(*on_a_circle(1.0, LENGTH / math.tan(0.2)), "1 m/s and 0.2 rad")
         self.twists.message = None
         last = time.monotonic()
         self.car.told.clear()

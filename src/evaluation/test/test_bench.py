@@ -4,6 +4,7 @@ import importlib
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -222,6 +223,9 @@ def test_processes_have_the_names_that_ros_gave_them(line, name):
 
 def test_a_child_is_found_with_its_memory():
     with subprocess.Popen(["sleep", "60"]) as child:
+        name = Path(f"/proc/{child.pid}/comm")
+        while name.read_text() != "sleep\n":  # until then it is a copy of this process
+            time.sleep(0.01)
         (found,) = [process for process in cpu.processes() if process.pid == child.pid]
         child.kill()
     assert found.memory > 0

@@ -1,9 +1,8 @@
 """The car as data: links, joints, transmissions, sensors, gains, meshes."""
 
-import importlib
+import importlib.util
 import math
 import subprocess
-import sys
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -37,9 +36,11 @@ def robot():
 
 @pytest.fixture(scope="module")
 def generator():
-    sys.path.insert(0, str(PACKAGE / "scripts"))
-    yield importlib.import_module("make_meshes")
-    sys.path.remove(str(PACKAGE / "scripts"))
+    script = PACKAGE / "scripts" / "make_meshes.py"  # another package has one of that name
+    spec = importlib.util.spec_from_file_location("make_racecar_meshes", script)
+    found = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(found)
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -144,6 +145,18 @@ def test_the_camera(car):
 def test_a_wrong_camera_size_is_an_error(size):
     with pytest.raises(FormatError, match="camera_width is"):
         expand(URDF, {"camera_width": size})
+
+
+def test_camera_noise_is_as_asked(robot):
+    assert robot.find(".//camera/noise") is None
+    noise = ElementTree.fromstring(expand(URDF, {"camera_noise": "0.02"})).find(".//camera/noise")
+    assert [each.text for each in noise] == ["gaussian", "0.0", "0.02"]
+
+
+@pytest.mark.parametrize("noise", ["-0.01", "much", "nan", "2"])
+def test_a_wrong_camera_noise_is_an_error(noise):
+    with pytest.raises(FormatError, match="camera_noise is"):
+        expand(URDF, {"camera_noise": noise})
 
 
 def test_the_optical_frame_looks_where_the_camera_looks(car):
