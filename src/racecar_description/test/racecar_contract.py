@@ -85,8 +85,8 @@ class Racecar(unittest.TestCase):
         self.assertAlmostEqual(last.angle_min, -0.75 * math.pi, places=4)
         self.assertAlmostEqual(rate_hz(scans), 20.0, delta=0.5)
         ahead, right = np.median(last.ranges[266:275]), np.median(last.ranges[88:93])
-        self.assertAlmostEqual(ahead, 6.0 - (START[0] + 0.355), delta=0.03)
-        self.assertAlmostEqual(right, START[1] + 4.0, delta=0.03)
+        self.assertAlmostEqual(ahead, 7.0 - (START[0] + 0.355), delta=0.03)
+        self.assertAlmostEqual(right, START[1] + 0.8, delta=0.03)
 
     def test_the_imu(self):
         readings = collect("/imu", Imu, 20)

@@ -129,9 +129,11 @@ class Spawner:
         rospy.loginfo("Stopping all controllers...")
         running = [state.name for state in self._manager.controllers()
                    if state.name in self._mine and state.state == "running"]
+        began = time.monotonic()
         if running and not self._manager.switch(stop=running, timeout=STOP_TIMEOUT):
-            rospy.logwarn(f"Could not stop {', '.join(running)} within {STOP_TIMEOUT:.0f} s: "
-                          "is the world paused?")
+            waited = time.monotonic() - began
+            why = "is the world paused?" if waited > 0.9 * STOP_TIMEOUT else "the world is ending"
+            rospy.logwarn(f"Could not stop {', '.join(running)} within {waited:.0f} s: {why}")
 
     def _unload(self) -> None:
         rospy.loginfo("Unloading all loaded controllers...")

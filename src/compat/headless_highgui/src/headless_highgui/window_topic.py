@@ -2,6 +2,7 @@
 
 import logging
 import sys
+import threading
 
 from headless_highgui.pixels import to_msg
 
@@ -21,6 +22,8 @@ class WindowTopic:
         self.label = label
         self.image = None  # the last one shown, not copied
         self.publisher = None
+        # rospy serialises for all and for a new subscriber into one buffer, the latter unlocked.
+        self._sending = threading.Lock()
 
     def show(self, image):
         self.image = image
@@ -31,7 +34,8 @@ class WindowTopic:
             self._open(rospy)
         if self.publisher.get_num_connections() > 0:
             try:
-                self.publisher.publish(to_msg(image, rospy.Time.now()))
+                with self._sending:
+                    self.publisher.publish(to_msg(image, rospy.Time.now()))
             except rospy.ROSException:
                 log.debug("the node closed %s while it was published", self.label)
 
@@ -43,7 +47,8 @@ class WindowTopic:
     def peer_subscribe(self, _topic_name, _publish, publish_to_new):
         """rospy calls this for each new subscriber: it sees the last picture at once."""
         if self.image is not None:
-            publish_to_new(to_msg(self.image, running_rospy().Time.now()))
+            with self._sending:
+                publish_to_new(to_msg(self.image, running_rospy().Time.now()))
 
     def peer_unsubscribe(self, _topic_name, _remaining):
         """Part of what rospy asks of a listener; nothing to do."""
