@@ -1,0 +1,1 @@
+"""turtlesim under upstream's names: messages, services, node; its rules are in turtlesim.pond."""

@@ -1,0 +1,60 @@
+"""The window TurtleSim, 500 by 500 pixels (Tk)."""
+
+from __future__ import annotations
+
+import tkinter
+
+import numpy as np
+
+from turtlesim.pond.canvas import SIDE_PX
+
+
+class NoScreen(Exception):
+    """There is no screen to open a window on; the message says why."""
+
+
+class Window:
+    """Opens the window; NoScreen if that is not possible. Its thread is the one that made it."""
+
+    wanted = True
+
+    def __init__(self) -> None:
+        try:
+            self._root = tkinter.Tk(className="turtlesim")
+        except tkinter.TclError as error:
+            raise NoScreen(str(error)) from error
+        self.closed = False
+        self._root.title("TurtleSim")
+        self._root.resizable(False, False)
+        self._root.protocol("WM_DELETE_WINDOW", self._close)
+        self._root.bind("<Destroy>", lambda _event: self._close())
+        self._image = tkinter.PhotoImage(master=self._root, width=SIDE_PX, height=SIDE_PX)
+        tkinter.Label(self._root, image=self._image, borderwidth=0, highlightthickness=0).pack()
+        self._shown = np.zeros((SIDE_PX, SIDE_PX, 3), np.uint8)
+
+    def show(self, picture: np.ndarray) -> None:
+        """(500, 500, 3) uint8 RGB. Also does what the window has to do, so show it often."""
+        if picture is not self._shown:
+            self._show_changes(picture)
+            self._shown = picture
+        self._root.update()
+
+    def _show_changes(self, picture: np.ndarray) -> None:
+        """Only what has changed: Tk takes long for a whole picture."""
+        rows = _extent((picture != self._shown).reshape(SIDE_PX, -1).any(axis=1))
+        columns = _extent((picture[rows] != self._shown[rows]).any(axis=(0, 2)))
+        self._image.put(_ppm(picture[rows, columns]), to=(columns.start, rows.start))
+
+    def _close(self) -> None:
+        self.closed = True
+
+
+def _extent(changed: np.ndarray) -> slice:
+    """From the first to the last that is true; the first alone if none is."""
+    places = np.flatnonzero(changed)
+    return slice(int(places[0]), int(places[-1]) + 1) if places.size else slice(0, 1)
+
+
+def _ppm(picture: np.ndarray) -> bytes:
+    height, width = picture.shape[:2]
+    return b"P6 %d %d 255\n" % (width, height) + picture.tobytes()
