@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race drive test bench setup build lint clean
+.PHONY: help course race race-trials drive test bench setup build lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -14,6 +14,9 @@ race: ## drive the racetrack by camera and report [LAPS= DURATION= FAST= CAMERA=
 	  $(if $(DURATION),--duration "$(DURATION)") $(if $(FOLLOWER),--follower "$(FOLLOWER)") \
 	  $(if $(filter-out 0 no false,$(FAST)),--fast) $(if $(CAMERA),--camera "$(CAMERA)") \
 	  $(if $(SEED),--seed "$(SEED)")
+
+race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRACKS=10]
+	@scripts/race_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(TRACKS),--tracks "$(TRACKS)")
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh

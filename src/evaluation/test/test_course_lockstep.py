@@ -127,3 +127,21 @@ def test_images_without_a_command_were_dropped(log, dropped):
 def test_one_image_at_least_was_dropped_where_the_simulator_says_so():
     assert frame_figures(10, 12, ["lockstep: no message on /cmd_vel"])["frames_dropped"] == 1
     assert frame_figures(10, 12, None)["frames_dropped"] == 0
+
+
+def test_each_controller_of_the_racecar_is_waited_for():
+    """Loaded one after the other; a command to one that is not there yet would be lost."""
+    race = load_course("race")
+    topics = (race.camera, race.camera_info, race.commands, race.odometry, *race.lockstep)
+    publishers = {topic: frozenset({SIMULATOR}) for topic in topics}
+    publishers |= {race.commands: frozenset({FOLLOWER})}
+    publishers |= {topic: frozenset({"/motor_control"}) for topic in race.lockstep}
+    subscribers = {topic: frozenset({ME}) for topic in topics}
+    subscribers |= {race.camera: frozenset({FOLLOWER}), race.commands: frozenset({"/motor_control"})}
+    links = frozenset((publisher, topic, subscriber) for topic in topics
+                      for publisher in publishers[topic] for subscriber in subscribers[topic])
+    subscribers |= {topic: frozenset({SIMULATOR}) for topic in race.lockstep[:-1]}
+    subscribers |= {race.lockstep[-1]: frozenset()}
+    found = Connections(publishers, subscribers, links)
+    said = missing_connection(found, ME, race)
+    assert said == f"the car's control (nobody subscribes to {race.lockstep[-1]})"

@@ -172,6 +172,9 @@ def missing_connection(found: Connections, me: str, course: Course) -> str | Non
     mute = [topic for topic in course.lockstep if not found.publishers[topic]]
     if mute:
         return f"the car's control (nobody publishes {mute[0]})"
+    deaf = [topic for topic in course.lockstep if not found.subscribers[topic] - {me}]
+    if deaf:
+        return f"the car's control (nobody subscribes to {deaf[0]})"
     links = (found.missing_link(topic) for topic in found.publishers)
     return next((link for link in links if link), None)
 

@@ -1,0 +1,12 @@
+#!/usr/bin/env python3
+"""Drives many laps, each disturbed in its own way, and compares followers (--help)."""
+
+import signal
+import sys
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
+
+from evaluation.race_trials.main import main  # noqa: E402
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

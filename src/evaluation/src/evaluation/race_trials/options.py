@@ -1,0 +1,74 @@
+"""The command line of race_trials, checked: a mistake is one line that says what to type."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from evaluation.course_run.failure import RunError
+
+FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
+MOST = 100_000_000  # a larger seed is none for course_run
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to drive and where to write."""
+
+    seeds: range  # of laps on the racetrack
+    tracks: range  # of random tracks; each also seeds the one lap there
+    followers: tuple[str, ...]  # the first is the one that must pass
+    out: Path
+    resume: bool  # drive only what report.json in `out` has not
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:
+        raise RunError(f"{message} (see: rosrun evaluation race_trials.py --help)")
+
+
+def parse_options(arguments: list[str]) -> Options:
+    """Options from the command line, or RunError."""
+    given = _parser().parse_args(arguments)
+    first_seed = _whole("--first-seed", given.first_seed)
+    first_track = _whole("--first-track", given.first_track)
+    seeds = range(first_seed, first_seed + _whole("--seeds", given.seeds))
+    tracks = range(first_track, first_track + _whole("--tracks", given.tracks))
+    if not seeds and not tracks:
+        raise RunError("--seeds 0 --tracks 0: nothing to drive")
+    followers = tuple(dict.fromkeys(given.followers))
+    return Options(seeds, tracks, followers, given.out.resolve(), given.resume)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="race_trials.py",
+        description="Drive many laps, each with a start, camera noise and light of its own; compare"
+        " followers.",
+        epilog="Exit code: 0 all laps of the first follower closed within the limits, 1 some not,"
+        " 2 could not run.",
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("--seeds", default="20", metavar="N", help="laps on the racetrack (20)")
+    add("--first-seed", default="0", metavar="N", help="seed of the first of them (0)")
+    add("--tracks", default="10", metavar="N", help="random tracks, a lap on each (10)")
+    add("--first-track", default="101", metavar="N", help="seed of the first of them (101)")
+    add(
+        "--followers", nargs="+", default=FOLLOWERS, metavar="FILE",
+        help=f"scripts of car_control; the first must pass ({' '.join(FOLLOWERS)})",
+    )  # fmt: skip
+    add(
+        "--out", type=Path, default=Path("out/race_trials"), metavar="DIR",
+        help="where report.json, trials.png and the laps go (out/race_trials)",
+    )  # fmt: skip
+    add("--resume", action="store_true", help="go on where the run that wrote there ended")
+    return parser
+
+
+def _whole(name: str, text: str) -> int:
+    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) > MOST:
+        raise RunError(f"{name} must be a whole number, 0 or more; got {text!r}")
+    return int(text)

@@ -1,0 +1,203 @@
+"""One lap of the race trials: its disturbance, its light, and the run of the course it becomes."""
+
+import json
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import rospkg
+
+from bullet_sim.description import (
+    CameraDescription,
+    LinkDescription,
+    ModelDescription,
+    SensorDescription,
+)
+from bullet_sim.formats import Resources, load_world
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.renderer import open_renderer
+from bullet_sim.sensors.camera import Camera
+from bullet_sim.world import World
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.options import parse_options
+from evaluation.race_trials import drive as drive_module
+from evaluation.race_trials.disturbance import CAMERA_NOISE, LIGHT, Disturbance, draw
+from evaluation.race_trials.light import write_lit_world
+from evaluation.race_trials.venue import racetrack, random_track
+from evaluation.track import load_track
+
+CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
+PACKAGES = rospkg.RosPack()
+
+
+# --- what is drawn
+
+
+def test_a_seed_is_always_the_same_disturbance():
+    assert draw(3) == draw(3)
+    assert draw(3) != draw(4)
+
+
+def test_disturbances_fill_their_bounds():
+    found = [draw(seed) for seed in range(400)]
+    bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": CAMERA_NOISE,
+              "light": LIGHT, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
+    for name, (low, high) in bounds.items():
+        values = [getattr(each, name) for each in found]
+        tenth = (high - low) / 10
+        assert low <= min(values) < low + tenth and high - tenth < max(values) <= high
+
+
+def test_the_start_is_beside_and_along_the_line():
+    track = load_track(racetrack().track)
+    x, y, yaw = replace(CALM, sideways=0.1, along=-0.2, turn=0.15).start(track)
+    found = track.nearest(x, y)
+    assert found.lateral == pytest.approx(0.1)
+    assert found.s == pytest.approx(track.length - 0.2)
+    assert yaw == pytest.approx(track.pose(-0.2)[2] + 0.15)
+
+
+# --- light
+
+
+def write_lit(folder: Path, factor: float) -> Path:
+    venue = racetrack()
+    sun = Resources.from_environment().resolve("model://sun")
+    return write_lit_world(venue.world, venue.models, sun, factor, folder)
+
+
+def test_a_dimmer_world_differs_in_nothing_but_its_light(tmp_path):
+    root = ElementTree.parse(write_lit(tmp_path, 0.5)).getroot().find("world")
+    assert [element.text for element in root.findall("scene/ambient")] == ["0.2 0.2 0.2 1"]
+    (sun,) = root.findall("light")
+    assert sun.findtext("diffuse") == "0.4 0.4 0.4 1"
+    uris = [element.text for element in root.findall("include/uri")]
+    assert uris == ["model://ground_plane", "model://racetrack", "model://smartcar_plane"]
+    before = ElementTree.parse(racetrack().world).getroot().find("world")
+    assert len(root) == len(before)
+    assert not (tmp_path / "models").exists()
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    opened = open_renderer("egl")
+    yield opened
+    opened.close()
+
+
+def seen(world_file: Path, renderer) -> np.ndarray:
+    """The road, as a camera above the start line that looks down on it sees it (h, w, 3)."""
+    package = PACKAGES.get_path("racecar_description")
+    models = [world_file.parent / "models", Path(package) / "models"]
+    resources = Resources.from_environment(
+        extra_model_paths=models, extra_resource_paths=[package], find_package=PACKAGES.get_path
+    )
+    pinhole = CameraDescription(width=64, height=48, horizontal_fov=1.0, near=0.1, far=10.0)
+    eye = SensorDescription("eye", "camera", cameras=(pinhole,))
+    body = ModelDescription("body", static=True, links=(LinkDescription("link"),))
+    world = World(load_world(world_file, resources))
+    try:
+        above = Pose.from_xyz_rpy((1.0, 0.0, 1.0), (0.0, math.pi / 2, 0.0))
+        model = world.spawn(body, above, "body")
+        return Camera(world, model.link("link"), eye, renderer).sample().rgb.astype(float)
+    finally:
+        world.close()
+
+
+@pytest.mark.parametrize("factor", [0.7, 1.0, 1.15, 1.3])
+def test_the_camera_sees_the_light(tmp_path, renderer, factor):
+    usual = seen(racetrack().world, renderer)
+    found = seen(write_lit(tmp_path / "lit", factor), renderer)
+    # Of what is not white. The usual light is 5 % above what a surface shows.
+    dark = usual < 180
+    assert dark.mean() > 0.5
+    assert found[dark].mean() / usual[dark].mean() == pytest.approx(factor, abs=0.05)
+
+
+def test_no_world_is_a_clear_error(tmp_path):
+    with pytest.raises(RunError, match="no world in which the light"):
+        write_lit_world(tmp_path / "none.world", tmp_path, tmp_path, 1.0, tmp_path / "out")
+
+
+# --- one lap
+
+
+def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
+    words = drive_module.course_command(racetrack(), 5, draw(5), Path("/w.world"))[3:]
+    found = parse_options(words)
+    assert (found.fast, found.video, found.seed, found.camera_px) == (True, False, 5, None)
+    assert found.track == racetrack().track
+    package, file = found.launch
+    launch = ElementTree.parse(Path(PACKAGES.get_path(package)) / "launch" / file).getroot()
+    known = {element.get("name") for element in launch.findall("arg")}
+    given = dict(argument.split(":=") for argument in found.launch_args)
+    assert set(given) <= known
+    assert given["world_name"] == "/w.world"
+    assert float(given["camera_noise"]) == pytest.approx(draw(5).camera_noise, abs=1e-6)
+
+
+def test_the_launch_file_hands_the_noise_to_the_camera():
+    command = ["roslaunch", "--dump-params", "racecar_description", "race.launch",
+               "camera_noise:=0.0123"]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert "<stddev>0.0123</stddev>" in done.stdout
+
+
+def stand_in(monkeypatch, code: int, report: dict | None = None, says: str = "") -> None:
+    """A course_run that writes this report, says this, and ends so."""
+    text = "import json, pathlib, sys; out = pathlib.Path(sys.argv[sys.argv.index('--out') + 1]);"
+    if report is not None:
+        text += f"(out / 'report.json').write_text(json.dumps({report!r}));"
+    command = [sys.executable, "-c", f"{text} print({says!r}); sys.exit({code})"]
+    monkeypatch.setattr(drive_module, "course_command", lambda *_: command)
+
+
+REPORT = {
+    "follower": "lane_follow.py", "outcome": "closed", "why": None, "distance_m": 37.0,
+    "simulated_s": 20.0, "rms_lateral_m": 0.02, "max_lateral_m": 0.2,
+    "frames_dropped": 0,
+    "laps": [{"time_s": 18.0, "distance_m": 36.0, "rms_lateral_m": 0.01, "max_lateral_m": 0.1}],
+}  # fmt: skip
+
+
+def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
+    stand_in(monkeypatch, 0, REPORT)
+    found = drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+    assert (found.outcome, found.time, found.mean_speed) == ("closed", 18.0, 2.0)
+    assert found.rms_lateral == 0.02  # of the whole drive
+    assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4))
+
+
+def test_a_lap_that_was_not_closed_is_a_lap_too(tmp_path, monkeypatch):
+    left = REPORT | {"laps": [], "outcome": "left the course", "why": "at x=1"}
+    stand_in(monkeypatch, 1, left)
+    found = drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+    assert (found.closed, found.within_limits, found.time) == (False, False, None)
+    assert found.mean_speed == pytest.approx(37 / 20)
+
+
+def test_a_lap_that_could_not_be_driven_is_an_error_that_says_which_and_why(tmp_path, monkeypatch):
+    stand_in(monkeypatch, 2, says="before\ncourse_run: no follower 'x.py'")
+    with pytest.raises(RunError, match=r"x\.py on racetrack, seed 4: course_run: no fol") as raised:
+        drive_module.drive(racetrack(), 4, draw(4), "x.py", tmp_path)
+    assert raised.value.details == "before"
+
+
+def test_an_old_report_is_no_result(tmp_path, monkeypatch):
+    folder = tmp_path / "racetrack-4" / "lane_follow"
+    folder.mkdir(parents=True)
+    (folder / "report.json").write_text(json.dumps(REPORT))
+    stand_in(monkeypatch, 0)
+    with pytest.raises(RunError):
+        drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+
+
+def test_a_random_track_is_one_to_drive_on(tmp_path):
+    venue = random_track(101, tmp_path)
+    assert load_track(venue.track).length > 10
+    assert venue.world.is_file() and (venue.models / "random_101" / "model.sdf").is_file()
