@@ -137,7 +137,8 @@ def test_each_controller_of_the_racecar_is_waited_for():
     publishers |= {race.commands: frozenset({FOLLOWER})}
     publishers |= {topic: frozenset({"/motor_control"}) for topic in race.lockstep}
     subscribers = {topic: frozenset({ME}) for topic in topics}
-    subscribers |= {race.camera: frozenset({FOLLOWER}), race.commands: frozenset({"/motor_control"})}
+    subscribers[race.camera] = frozenset({FOLLOWER})
+    subscribers[race.commands] = frozenset({"/motor_control"})
     links = frozenset((publisher, topic, subscriber) for topic in topics
                       for publisher in publishers[topic] for subscriber in subscribers[topic])
     subscribers |= {topic: frozenset({SIMULATOR}) for topic in race.lockstep[:-1]}
