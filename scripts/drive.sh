@@ -15,7 +15,15 @@ mkdir -p "$root/out"
 roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@" \
   > "$root/out/drive.log" 2>&1 < /dev/null &
 launched=$!
-trap 'kill -INT "$launched" 2> /dev/null; wait "$launched"' EXIT
+trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
 trap 'exit 130' INT TERM HUP
 echo "The car starts; what the nodes say is in out/drive.log."
+until rosservice list > /dev/null 2>&1; do
+  if ! kill -0 "$launched" 2> /dev/null; then
+    tail -n 5 "$root/out/drive.log" >&2
+    echo "drive: the car did not start; all of it is in out/drive.log" >&2
+    exit 2
+  fi
+  sleep 0.2
+done
 rosrun car_control keyboard_control.py --terminal

@@ -29,7 +29,9 @@ def test_our_own_courses_are_whole(name):
 @pytest.mark.parametrize("values, said", [
     ({"camera": None}, "missing key 'camera'"),
     ({"speed": 3}, "unknown key 'speed'"),
-    ({"off_course": "far"}, "off_course: must be a number, is 'far'"),
+    ({"off_course": "far"}, "off_course: must be a number, 0 or more, is 'far'"),
+    ({"off_course": float("nan")}, "off_course: must be a number"),
+    ({"off_course": True}, "off_course: must be a number"),
     ({"lockstep": "/cmd_vel"}, "lockstep: must be a list of topics, is '/cmd_vel'"),
     ({"launch": ["one"]}, "launch: must be [package, file], is ['one']"),
 ])
@@ -37,6 +39,20 @@ def test_a_mistake_names_file_and_key(tmp_path, values, said):
     with pytest.raises(RunError) as caught:
         load_course(changed(tmp_path, **values))
     assert "mine.yaml" in str(caught.value) and said in str(caught.value)
+
+
+def test_a_file_that_is_no_text_or_not_there(tmp_path):
+    (tmp_path / "binary.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(RunError, match="no text file"):
+        load_course(str(tmp_path / "binary.yaml"))
+    with pytest.raises(RunError, match="No such file"):
+        load_course(str(tmp_path / "none.yaml"))
+
+
+def test_the_controllers_are_those_of_the_lockstep_topics():
+    assert load_course("course").controller_names() == set()
+    names = load_course("race").controller_names()
+    assert len(names) == 6 and "left_rear_wheel_velocity_controller" in names
 
 
 def test_an_unknown_course_lists_those_that_there_are():

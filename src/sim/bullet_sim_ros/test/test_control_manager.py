@@ -1,6 +1,7 @@
 """The manager's rules, without a master: states, switching, conflicts, faults, waiting."""
 
 import threading
+import time
 
 import pytest
 
@@ -201,6 +202,20 @@ def test_without_updates_a_switch_waits_and_is_withdrawn_after_its_time_out():
         bench.manager.switch(["wheel"], [], True, 0.05)
     bench.manager.update(1.0, 0.001)
     assert bench.states() == {"wheel": "initialized"}
+
+
+def test_what_a_paused_world_has_still_to_start_is_waiting():
+    bench = Bench("wheel")
+    asked = threading.Thread(target=bench.manager.switch, args=(["wheel"], [], True))
+    asked.start()
+    (wheel,) = bench.manager.list()
+    end = time.monotonic() + 5.0
+    while bench.manager.state_of(wheel) != "waiting" and time.monotonic() < end:
+        time.sleep(0.001)
+    assert bench.manager.state_of(wheel) == "waiting"
+    bench.manager.update(0.0, 0.001)
+    asked.join(5.0)
+    assert bench.manager.state_of(wheel) == "running"
 
 
 def test_a_switch_waits_no_longer_than_the_simulation_lives():

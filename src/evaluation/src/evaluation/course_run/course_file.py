@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from dataclasses import dataclass, fields
@@ -30,6 +31,7 @@ class Course:
     camera_info: str
     commands: str  # geometry_msgs/Twist, one for each image
     odometry: str  # nav_msgs/Odometry, true poses
+    controllers: str  # namespace of the controller manager that takes the lockstep topics, or ""
     lockstep: tuple[str, ...]  # topics that the world waits for after each image
     sensors: tuple[str, ...]  # topics that go into the fingerprint
     film_band: float  # share of the image's height where the film marks the line; 0: nowhere
@@ -45,6 +47,12 @@ class Course:
 
         return re.sub(r"\{(\w+):(\w+)\}", fill, self.robot)
 
+    def controller_names(self) -> set[str]:
+        """Those that must have been started before time begins."""
+        within = f"{self.controllers}/"
+        return {topic.removeprefix(within).partition("/")[0] for topic in self.lockstep
+                if self.controllers and topic.startswith(within)}
+
     def track_path(self) -> Path:
         """Where the track file is."""
         package, _, rest = self.track.removeprefix("package://").partition("/")
@@ -58,7 +66,11 @@ def load_course(name: str) -> Course:
     path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError as error:
+        raise RunError(f"{path}: no text file") from error
     except OSError as error:
+        if name.endswith(".yaml"):
+            raise RunError(f"{path}: {error.strerror}") from error
         known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
         raise RunError(f"no course {name!r} (--course); there are: {known}") from error
     except yaml.YAMLError as error:
@@ -83,7 +95,7 @@ def _checked(path: Path, values: object) -> Course:
         raise RunError(f"{path}: {kind} key {wrong[0]!r}; there are: {', '.join(expected)}")
     for key, kind in expected.items():
         if kind == "float":
-            fits = isinstance(values[key], int | float)
+            fits = type(values[key]) in (int, float) and 0 <= values[key] < math.inf
         elif kind == "str":
             fits = isinstance(values[key], str)
         else:
@@ -94,5 +106,5 @@ def _checked(path: Path, values: object) -> Course:
                      for key, value in values.items()})
 
 
-_WANTED = {"float": "a number", "str": "a text", "tuple[str, ...]": "a list of topics",
+_WANTED = {"float": "a number, 0 or more", "str": "a text", "tuple[str, ...]": "a list of topics",
            "tuple[str, str]": "[package, file]"}

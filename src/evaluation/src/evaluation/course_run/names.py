@@ -2,3 +2,4 @@
 
 WORLD, POSE = "/gazebo/get_world_properties", "/gazebo/get_model_state"
 UNPAUSE = "/gazebo/unpause_physics"
+LIST_CONTROLLERS = "controller_manager/list_controllers"  # below its namespace

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 
 import rosgraph
 import rospy
+from controller_manager_msgs.srv import ListControllers
 from gazebo_msgs.srv import GetModelState, GetWorldProperties
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
@@ -88,6 +89,8 @@ class Observer:
     def _watch(self) -> None:
         self._wait_for_car()
         if self._lockstep:
+            if self._course.controllers:
+                self._wait_for_controllers()
             self._wait_for_connections()
             self._begin()
         else:
@@ -101,6 +104,20 @@ class Observer:
             self.missing = f"the car (model {self._robot})"
             if self._robot in reply.model_names:
                 return
+
+    def _wait_for_controllers(self) -> None:
+        """Until they run, or will with the first step: a paused world starts nothing."""
+        service = f"{self._course.controllers}/{names.LIST_CONTROLLERS}"
+        self.missing = f"the car's controllers (service {service})"
+        for _ in self._ticks(SETUP_RATE_HZ, service, ListControllers):
+            reply = self._call()
+            if reply is None:
+                continue
+            started = {c.name for c in reply.controller if c.state in ("running", "waiting")}
+            missing = sorted(self._course.controller_names() - started)
+            if not missing:
+                return
+            self.missing = f"controller {missing[0]} (spawned and started)"
 
     def _wait_for_connections(self) -> None:
         me, course = rospy.get_name(), self._course

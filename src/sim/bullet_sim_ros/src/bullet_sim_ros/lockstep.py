@@ -47,6 +47,8 @@ class Lockstep:
         self._plugins[topic].append(plugin)
         if topic in self._subscribers:  # of another message type, and there is one per topic
             self._subscribers.pop(topic).unregister()
+            # An answer on its way may reach neither: it must not be waited for.
+            self._mailbox.leave(lambda: self._expected.discard(topic))
 
     def leave(self, topic: str, plugin: object) -> None:
         """That plugin is gone."""

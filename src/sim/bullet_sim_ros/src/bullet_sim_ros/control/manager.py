@@ -14,6 +14,7 @@ from bullet_sim_ros.control.switching import (
     ABORTED,
     RUNNING,
     STOPPED,
+    WAITING,
     Gone,
     Loaded,
     ManagerError,
@@ -113,6 +114,11 @@ class ControllerManager:
     def list(self) -> list[Loaded]:
         """All controllers, in the order in which they were loaded."""
         return list(self._loaded.values())
+
+    def state_of(self, loaded: Loaded) -> str:
+        """As upstream names it; what a paused world has still to start is waiting."""
+        switch = self._switch
+        return WAITING if switch is not None and loaded in switch.start else loaded.state
 
     def load(self, name: str) -> None:
         """Make a controller, as the parameters below its name say."""

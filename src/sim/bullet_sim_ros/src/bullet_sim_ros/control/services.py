@@ -52,7 +52,8 @@ def offer(host: Host, manager: ControllerManager, namespace: str) -> None:
                        request.strictness == STRICT, request.timeout)
 
     def list_controllers(_request) -> ListControllersResponse:
-        return ListControllersResponse([state_of(loaded) for loaded in manager.list()])
+        return ListControllersResponse([
+            state_of(loaded, manager.state_of(loaded)) for loaded in manager.list()])
 
     def list_types(_request) -> ListControllerTypesResponse:
         types = registry.types()
@@ -74,7 +75,7 @@ def offer(host: Host, manager: ControllerManager, namespace: str) -> None:
         host.serve(names.join(namespace, f"controller_manager/{name}"), kind, handler)
 
 
-def state_of(loaded: Loaded) -> ControllerState:
+def state_of(loaded: Loaded, state: str) -> ControllerState:
     """A controller as list_controllers tells it."""
     claimed: dict[str, list[str]] = {}
     for joint, handle in sorted(loaded.host.claims.items()):
@@ -82,7 +83,7 @@ def state_of(loaded: Loaded) -> ControllerState:
     if not claimed:
         claimed[READ_ONLY] = []
     resources = [HardwareInterfaceResources(kind, joints) for kind, joints in claimed.items()]
-    return ControllerState(loaded.name, loaded.state, loaded.type, resources)
+    return ControllerState(loaded.name, state, loaded.type, resources)
 
 
 def _answer(act: Callable, response: type) -> Callable:

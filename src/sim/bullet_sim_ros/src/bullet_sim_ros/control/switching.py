@@ -11,6 +11,7 @@ from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.registry import Controller
 
 INITIALIZED, RUNNING, STOPPED, ABORTED = "initialized", "running", "stopped", "aborted"
+WAITING = "waiting"  # to be started by the next update
 
 
 class ManagerError(SimulationError):
