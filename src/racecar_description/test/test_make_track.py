@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import cv2
@@ -201,7 +202,7 @@ def test_mistakes_are_one_line(make_track, words, message):
 
 
 @pytest.mark.parametrize("words, message", [
-    (("--size", "12"), "such as 12x8"), (("--size", "0x8"), "must be metres"),
+    (("--size", "12"), "such as 12x8"), (("--size", "0x8"), "above 0, up to 100"),
     (("--width", "0.1"), "too narrow"), (("--road", "blu"), "use '#rrggbb' or one of"),
     (("--start", "1"), "two numbers"), (("--random", "x"), "whole number")])  # fmt: skip
 def test_mistyped_options_say_what_is_meant(make_track, capsys, words, message):
@@ -209,6 +210,58 @@ def test_mistyped_options_say_what_is_meant(make_track, capsys, words, message):
         make_track("a.png", *words)
     assert ended.value.code == 2
     assert message in capsys.readouterr().err
+
+
+TAKEN = ("racecar", "sun", "ground_plane", "walls", "smartcar_plane")
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_names_of_other_models_in_the_world_are_refused(make_track, tmp_path, name):
+    cv2.imwrite(f"{name}.png", drawn.bean())
+    for words in ((f"{name}.png",), ("--random", 1, "--name", name)):
+        code, output, error = make_track(*words)
+        assert (code, output, error.count("\n")) == (1, "", 1)
+        assert f"'{name}'" in error and ", ".join(TAKEN) in error and "--name" in error
+    assert not (tmp_path / "package").exists()
+    assert make_track(f"{name}.png", "--name", f"{name}_2")[0] == 0
+
+
+@pytest.mark.parametrize("file", ["a-<-b.png", "a-&->-b.png", "a---b.png"])
+def test_any_file_name_leaves_a_world_that_can_be_read(make_track, tmp_path, file):
+    cv2.imwrite(file, drawn.bean())
+    assert make_track(file, "--name", "odd")[0] == 0
+    for made in ("worlds/odd.world", "models/odd/model.config"):
+        text = (tmp_path / "package" / made).read_text()
+        ElementTree.fromstring(text)
+        assert "from a-b.png." in text
+
+
+def test_a_start_far_from_the_road_is_refused(make_track, tmp_path):
+    """A road's width beside the road's edge is the limit, whatever the course is made from."""
+    cv2.imwrite("bean.png", drawn.bean())
+    for source in (("bean.png",), (RACETRACK,), ("--random", 1)):
+        words = (*source, "--name", "made")
+        code, output, error = make_track(*words, "--start", "99,99")
+        assert (code, output, error.count("\n")) == (1, "", 1)
+        assert "--start 99,99 is " in error and " m from the road" in error
+        assert not (tmp_path / "package").exists()
+        nearest = error.split("--start ")[2].split()[0]
+        assert make_track(*words, "--start", nearest, "--out", tmp_path / "else")[0] == 0
+
+
+@pytest.mark.parametrize("widths, code", [(1.4, 0), (1.6, 1)])
+def test_a_start_near_the_road_is_moved_to_its_middle(make_track, tmp_path, widths, code):
+    track = load_track_file(RACETRACK)
+    x, y, heading = CentreLine(track.corners).pose(0.0)
+    beside = widths * road_width(track.lane_width)
+    outside = max((1, -1), key=lambda side: np.hypot(
+        x - side * np.sin(heading), y + side * np.cos(heading)))  # fmt: skip
+    start = (x - outside * beside * np.sin(heading), y + outside * beside * np.cos(heading))
+    words = (RACETRACK, "--name", "made", "--start", f"{start[0]:.6f},{start[1]:.6f}")
+    assert make_track(*words)[0] == code
+    if code == 0:
+        made = load_track_file(tmp_path / "package/tracks/made.yaml")
+        assert made.start == pytest.approx((x, y), abs=1e-3)
 
 
 def test_what_others_made_is_not_overwritten(make_track, tmp_path):
@@ -237,3 +290,18 @@ def test_the_script_runs(tmp_path):
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "worlds/random_2.world").is_file()
+
+
+@pytest.mark.parametrize("words", [("--random", "2"), ("--help",)])
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_leaves_early_is_no_error(tmp_path, words, unbuffered):
+    """As before `| head`: the course is made, and nothing is said about the closed pipe."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    script = PACKAGE / "scripts" / "make_track"
+    done = subprocess.run(
+        [sys.executable, script, *words, "--out", tmp_path], stdout=writing,
+        stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": unbuffered})  # fmt: skip
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert (tmp_path / "worlds/random_2.world").is_file() == ("--random" in words)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import re
 import shlex
 import sys
@@ -17,6 +18,7 @@ from racecar_description.track.errors import DrawingError, TrackError
 from racecar_description.track.from_drawing import from_drawing
 from racecar_description.track.from_numbers import from_seed, from_track_file
 from racecar_description.track.model_files import (
+    TAKEN_NAMES,
     WRITTEN_BY,
     course_files,
     model_folder,
@@ -60,11 +62,25 @@ def parser() -> argparse.ArgumentParser:
 
 def main(words: list[str], package: Path) -> int:
     """Runs the command; `package` is the folder of racecar_description. Returns the exit code."""
+    try:
+        try:
+            return _make(words, package)
+        finally:  # also after --help, which ends in SystemExit
+            sys.stdout.flush()
+    except BrokenPipeError:  # the reader has gone, as `head` does: the files are written by then
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at exit
+        return 0
+
+
+def _make(words: list[str], package: Path) -> int:
     options = parser().parse_args(_signed_values(words))
     name = options.name or "track"
     out = options.out or package
     try:
         name = _name(options)
+        if name in TAKEN_NAMES:
+            taken = ", ".join(TAKEN_NAMES)
+            raise TrackError(f"{name!r} cannot be a track: the world takes {taken}; use --name")
         _check_free(out, name)
         course, remarks = _course(options, name)
         files = course_files(course)
@@ -178,7 +194,7 @@ def _signed_values(words: list[str]) -> list[str]:
 def _length(text: str) -> float:
     value = float(text) if re.fullmatch(r"[0-9.]+", text) and text.count(".") < 2 else math.nan
     if not 0 < value <= LARGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} must be metres, from 0 to {LARGEST:g}")
+        raise argparse.ArgumentTypeError(f"{text!r} must be metres, above 0, up to {LARGEST:g}")
     return value
 
 

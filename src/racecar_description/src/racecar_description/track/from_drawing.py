@@ -24,6 +24,7 @@ from racecar_description.track.wishes import (
     DEFAULT_SIZE,
     RoadTouches,
     Wishes,
+    check_start,
     clear_lane,
     plane_round,
 )
@@ -50,6 +51,7 @@ def from_drawing(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
         x, y = (np.array(error.place) + origin) / scale - 0.5
         mark = Mark(x, shape_px[0] - 1 - y, "touches")
         raise DrawingError(f"{path}: {error}", picture, [mark]) from error
+    check_start(wishes, (float(origin[0]), float(origin[1])), lane)
     sides = np.array(shape_px[::-1]) * scale
     course = Course(
         name=wishes.name,

@@ -23,6 +23,7 @@ from racecar_description.track.wishes import (
     DEFAULT_SIZE,
     RoadTouches,
     Wishes,
+    check_start,
     clear_lane,
     plane_round,
 )
@@ -39,13 +40,15 @@ def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
         lane = clear_lane(line, lane, wishes, remarks)
     except RoadTouches as error:
         raise TrackError(f"{path}: {error}") from error
+    start_s = line.nearest(*(wishes.start or track.start))
+    check_start(wishes, line.pose(start_s)[:2], lane)
     points = line.points()
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     course = Course(
         name=wishes.name,
         source=path.name,
         line=line,
-        start_s=line.nearest(*(wishes.start or track.start)),
+        start_s=start_s,
         line_width=track.line_width,
         lane_width=lane,
         plane=plane_round(line, lane, np.array(wishes.size or (0.0, 0.0)), middle),
@@ -62,6 +65,7 @@ def from_seed(seed: int, wishes: Wishes) -> tuple[Course, list[str]]:
     if wishes.backwards:
         line = line.reversed()
     x, y = _start(line) if wishes.start is None else line.pose(line.nearest(*wishes.start))[:2]
+    check_start(wishes, (x, y), lane)
     line = line.moved(-x, -y)
     course = Course(
         name=wishes.name,

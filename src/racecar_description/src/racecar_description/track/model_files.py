@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import PurePosixPath
 
 import cv2
@@ -21,6 +22,8 @@ from racecar_description.track.walls import (
     wall_boxes,
 )
 
+# Models that stand in a world beside the course's, and the older course of this package.
+TAKEN_NAMES = ("racecar", "sun", "ground_plane", "walls", "smartcar_plane")
 WRITTEN_BY = "Written by make_track of the package racecar_description"
 
 MODEL_CONFIG = """<?xml version="1.0"?>
@@ -219,7 +222,8 @@ def _box_text(number: int, box: Box) -> str:
 def _in_comment(source: str) -> str:
     """A file's name may hold what XML and YAML comments may not."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in source)
-    return plain.replace("--", "").replace("<", "").replace(">", "").replace("&", "").strip()
+    # Dashes last: what stood between two of them may have gone.
+    return re.sub("-{2,}", "-", re.sub("[<>&]", "", plain)).strip()
 
 
 def _encode(kind: str, image: np.ndarray) -> bytes:

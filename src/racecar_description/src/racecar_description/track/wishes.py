@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,20 @@ def clear_lane(line: CentreLine, lane: float, wishes: Wishes, remarks: list[str]
         advice = "make --size larger, or leave more room between its stretches"
     where = f"x={place[0]:.2f}, y={place[1]:.2f} m"
     raise RoadTouches(f"a road {width:.2f} m wide touches itself at {where}; {advice}", place)
+
+
+def check_start(wishes: Wishes, nearest: tuple[float, float], lane: float) -> None:
+    """TrackError if the wished start is more than a road's width beside the road.
+
+    `nearest` is the point of the line (x, y in m, the drawing's frame) that is nearest to it.
+    """
+    if wishes.start is None:
+        return
+    width = road_width(lane)
+    beside = math.dist(wishes.start, nearest) - width / 2
+    if beside > width:
+        asked, there = (",".join(f"{value:.6g}" for value in at) for at in (wishes.start, nearest))
+        raise TrackError(f"--start {asked} is {beside:.2f} m from the road; try --start {there}")
 
 
 def plane_round(line: CentreLine, lane: float, sides: np.ndarray, middle: np.ndarray) -> Plane:
