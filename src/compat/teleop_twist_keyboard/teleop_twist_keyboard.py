@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""Reads keys from the terminal and publishes cmd_vel, with upstream's keys, text and parameters."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import termios
+import time
+import tty
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+
+import rospy
+from geometry_msgs.msg import Twist, TwistStamped
+
+CTRL_C = "\x03"
+LOOK_UP = 0.1  # s, how often the end of ROS is looked for while no key comes
+FLUSH_TIME = 0.2  # s, rospy sends from threads of its own that end with the process
+SPEED_KEYS_PER_HELP = 15
+HELP = """
+Reading from the keyboard and publishing to Twist!
+---------------------------
+Moving around:
+   u    i    o
+   j    k    l
+   m    ,    .
+
+For holonomic mode (strafing), hold down the shift key:
+---------------------------
+   U    I    O
+   J    K    L
+   M    <    >
+
+t : up (+z)
+b : down (-z)
+
+anything else : stop
+
+q/z : increase/decrease max speeds by 10%
+w/x : increase/decrease only linear speed by 10%
+e/c : increase/decrease only angular speed by 10%
+
+CTRL-C to quit
+"""
+STANDING = (0, 0, 0, 0)
+MOVES = {  # key -> signs of forward, left, up, turning left
+    "i": (1, 0, 0, 0), "o": (1, 0, 0, -1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1),
+    "u": (1, 0, 0, 1), ",": (-1, 0, 0, 0), ".": (-1, 0, 0, 1), "m": (-1, 0, 0, -1),
+    "O": (1, -1, 0, 0), "I": (1, 0, 0, 0), "J": (0, 1, 0, 0), "L": (0, -1, 0, 0),
+    "U": (1, 1, 0, 0), "<": (-1, 0, 0, 0), ">": (-1, -1, 0, 0), "M": (-1, 1, 0, 0),
+    "t": (0, 0, 1, 0), "b": (0, 0, -1, 0),
+}
+FACTORS = {  # key -> what it multiplies speed and turn by
+    "q": (1.1, 1.1), "z": (0.9, 0.9), "w": (1.1, 1), "x": (0.9, 1), "e": (1, 1.1), "c": (1, 0.9),
+}
+
+
+@dataclass
+class Drive:
+    """What the keys have asked for so far."""
+
+    speed: float  # m/s
+    turn: float  # rad/s
+    speed_limit: float  # m/s
+    turn_limit: float  # rad/s
+    move: tuple[int, int, int, int] = STANDING
+    speed_keys: int = 0
+
+    def press(self, key: str) -> list[str]:
+        """What the terminal is to show after this key; one that means nothing stops."""
+        if key not in FACTORS:
+            self.move = MOVES.get(key, STANDING)
+            return []
+        faster, sharper = FACTORS[key]
+        self.speed = min(self.speed * faster, self.speed_limit)
+        self.turn = min(self.turn * sharper, self.turn_limit)
+        shown = []
+        if self.speed == self.speed_limit:
+            shown.append("Linear speed limit reached!")
+        if self.turn == self.turn_limit:
+            shown.append("Angular speed limit reached!")
+        shown.append(self.state())
+        self.speed_keys += 1
+        return [*shown, HELP] if self.speed_keys % SPEED_KEYS_PER_HELP == 0 else shown
+
+    def state(self) -> str:
+        return f"currently:\tspeed {self.speed:g}\tturn {self.turn:g} "
+
+
+class CommandTopic:
+    """cmd_vel, as Twist or TwistStamped."""
+
+    def __init__(self) -> None:
+        self._stamped = rospy.get_param("~stamped", False)
+        self._frame = rospy.get_param("~frame_id", "")
+        kind = TwistStamped if self._stamped else Twist
+        self._publisher = rospy.Publisher("cmd_vel", kind, queue_size=1)
+
+    def wait_for_subscriber(self) -> None:
+        seconds = 0.0
+        while not rospy.is_shutdown() and not self._publisher.get_num_connections():
+            if seconds and seconds % 2 == 0:
+                say(f"Waiting for subscriber to connect to {self._publisher.name}")
+            time.sleep(0.5)
+            seconds += 0.5
+
+    def send(self, drive: Drive) -> None:
+        twist = Twist()
+        forward, left, up, turning = drive.move
+        twist.linear.x = forward * drive.speed
+        twist.linear.y = left * drive.speed
+        twist.linear.z = up * drive.speed
+        twist.angular.z = turning * drive.turn
+        message = twist
+        if self._stamped:
+            message = TwistStamped(twist=twist)
+            message.header.stamp, message.header.frame_id = rospy.Time.now(), self._frame
+        self._publisher.publish(message)
+
+
+@contextmanager
+def single_keys(terminal: int):
+    """Each key at once and unseen; whatever happens, the terminal is as before afterwards."""
+    before = termios.tcgetattr(terminal)
+    try:
+        tty.setcbreak(terminal)
+        yield
+    finally:
+        with suppress(termios.error):  # the window may be closed: then nothing is to be put back
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+
+
+def read_key(terminal: int, wait: float) -> str:
+    """The next key, or "" when none came in time; a terminal that is gone counts as Ctrl-C."""
+    if not select.select([terminal], [], [], wait)[0]:
+        return ""
+    try:
+        return os.read(terminal, 1).decode(errors="replace") or CTRL_C
+    except OSError:
+        return CTRL_C
+
+
+def drive_by_keys(terminal: int, topic: CommandTopic, drive: Drive) -> None:
+    """Until Ctrl-C or the end of ROS. A rate or timeout of 0 means none, as upstream's."""
+    repeat_rate = rospy.get_param("~repeat_rate", 0.0)  # Hz
+    key_timeout = rospy.get_param("~key_timeout", 0.0)  # s
+    period = 1.0 / repeat_rate if repeat_rate > 0 else float("inf")
+    last_key = last_sent = time.monotonic()
+    while not rospy.is_shutdown():
+        key = read_key(terminal, max(0.0, min(LOOK_UP, last_sent + period - time.monotonic())))
+        now = time.monotonic()
+        if key == CTRL_C:
+            return
+        forgotten = key_timeout > 0 and now - last_key >= key_timeout and drive.move != STANDING
+        if key:
+            last_key = now
+            say(*drive.press(key))
+        elif forgotten:
+            drive.move = STANDING
+        if key or forgotten or now - last_sent >= period:
+            topic.send(drive)
+            last_sent = now
+
+
+def say(*lines: str) -> None:
+    for line in lines:
+        print(line, flush=True)
+
+
+def stop(*_) -> None:
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    if not sys.stdin.isatty():
+        sys.exit("teleop_twist_keyboard: no terminal to read keys from; start it in a terminal")
+    # A robot may keep its last command: every way out has to pass the zero Twist below.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, stop)
+    rospy.init_node("teleop_twist_keyboard", disable_signals=True)
+    drive = Drive(rospy.get_param("~speed", 0.5), rospy.get_param("~turn", 1.0),
+                  rospy.get_param("~speed_limit", 1000.0), rospy.get_param("~turn_limit", 1000.0))
+    topic = CommandTopic()
+    terminal = sys.stdin.fileno()
+    try:
+        with single_keys(terminal):
+            topic.wait_for_subscriber()
+            say(HELP, drive.state())
+            drive_by_keys(terminal, topic, drive)
+    finally:
+        drive.move = STANDING
+        topic.send(drive)
+        time.sleep(FLUSH_TIME)
+
+
+if __name__ == "__main__":
+    with suppress(KeyboardInterrupt):
+        main()

@@ -1,0 +1,25 @@
+#!/usr/bin/env python3
+"""Read the messages of test.bag back.  读出 test.bag 里的消息。"""
+
+import sys
+
+import rosbag
+import rospy
+
+FILE = "test.bag"
+TOPIC = "chatter"
+
+
+def main():
+    rospy.init_node("read_bag")
+    try:
+        with rosbag.Bag(FILE) as bag:
+            # The time is when the message was written.  时间是写入的时刻
+            for topic, message, time in bag.read_messages(topics=[TOPIC]):
+                rospy.loginfo("%.3f %s: %s", time.to_sec(), topic, message.data)
+    except (OSError, rosbag.ROSBagException) as error:
+        sys.exit(f"read_bag.py: {error}: run write_bag.py here first  请先运行 write_bag.py")
+
+
+if __name__ == "__main__":
+    main()

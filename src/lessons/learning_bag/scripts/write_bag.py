@@ -1,0 +1,22 @@
+#!/usr/bin/env python3
+"""Write three messages to test.bag.  把三条消息写入 test.bag。"""
+
+import rosbag
+import rospy
+from std_msgs.msg import String
+
+FILE = "test.bag"  # in the folder you are in; it is overwritten  写在当前目录，会覆盖
+TOPIC = "chatter"
+
+
+def main():
+    rospy.init_node("write_bag")
+    # `with` closes the file; without its index a bag cannot be read.  不关闭则没有索引
+    with rosbag.Bag(FILE, "w") as bag:
+        for count in range(3):
+            bag.write(TOPIC, String(data=f"hello {count}"))
+    rospy.loginfo("wrote 3 messages on %s to %s", TOPIC, FILE)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""Make turtlesim's background white: read and set parameters.  读写参数，改背景色。"""
+
+import sys
+
+import rospy
+from std_srvs.srv import Empty
+
+WHITE = 255
+# Private parameters of the node /turtlesim, hence below its name.  节点 /turtlesim 的私有参数
+NAMES = ["/turtlesim/background_r", "/turtlesim/background_g", "/turtlesim/background_b"]
+
+
+def show_background():
+    try:
+        rospy.loginfo("background: r %d, g %d, b %d", *[rospy.get_param(name) for name in NAMES])
+    except KeyError as error:
+        sys.exit(f"parameter_config.py: no parameter {error}: start turtlesim first, "
+                 "rosrun turtlesim turtlesim_node  请先启动 turtlesim")
+
+
+def main():
+    rospy.init_node("parameter_config")
+    show_background()
+    for name in NAMES:
+        rospy.set_param(name, WHITE)
+    show_background()
+    # A node reads its parameters when it wants to: turtlesim on /clear.  调用 /clear 后才重新读取
+    rospy.wait_for_service("/clear")
+    try:
+        rospy.ServiceProxy("/clear", Empty)()
+    except rospy.ServiceException as error:
+        rospy.logerr("turtlesim did not clear its background: %s", error)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while waiting  等待时按下 Ctrl-C

@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""Ask turtlesim for a second turtle: call a service.  调用服务，再生成一只海龟。"""
+
+import rospy
+from turtlesim.srv import Spawn
+
+X, Y, THETA = 2.0, 2.0, 0.0  # m, m, rad
+NAME = "turtle2"
+
+
+def main():
+    rospy.init_node("turtle_spawn")
+    rospy.loginfo("waiting for /spawn")
+    rospy.wait_for_service("/spawn")  # until turtlesim is there  等待 turtlesim 启动
+    spawn = rospy.ServiceProxy("/spawn", Spawn)
+    try:
+        response = spawn(X, Y, THETA, NAME)
+    except rospy.ServiceException as error:
+        rospy.logerr("no turtle: %s  (is there a %s already? 是否已有同名海龟？)", error, NAME)
+        return
+    rospy.loginfo("spawned: %s", response.name)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while waiting  等待时按下 Ctrl-C

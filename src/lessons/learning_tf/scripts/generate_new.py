@@ -1,0 +1,25 @@
+#!/usr/bin/env python3
+"""Follow, 1 of 3: a second turtle.  跟随（一）：生成第二只海龟。"""
+
+import rospy
+from turtlesim.srv import Spawn
+
+X, Y, THETA = 1.0, 1.0, 3.14  # m, m, rad
+NAME = "turtle2"
+
+
+def main():
+    rospy.init_node("generate_new")
+    rospy.wait_for_service("/spawn")
+    try:
+        response = rospy.ServiceProxy("/spawn", Spawn)(X, Y, THETA, NAME)
+        rospy.loginfo("spawned: %s", response.name)
+    except rospy.ServiceException as error:
+        rospy.logerr("no turtle: %s  (is there a %s already? 是否已有同名海龟？)", error, NAME)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while waiting  等待时按下 Ctrl-C

@@ -1,0 +1,105 @@
+"""Terminals in which commands are typed, as a learner has them open side by side."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import socket
+import subprocess
+import termios
+import time
+from pathlib import Path
+
+LIMIT = 40.0  # s, for whatever is waited for
+IMPATIENCE = 4.0  # s until Ctrl-C is typed again
+COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\]2;[^\x07]*\x07|\r")
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def _take_terminal() -> None:
+    """Makes stdin the terminal of the new session, so that a typed Ctrl-C interrupts it."""
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+class Terminal:
+    """One command in a terminal of its own, and what it has shown so far."""
+
+    def __init__(self, command: str, folder: Path, environment: dict[str, str]):
+        self.command, self.shown = command, ""
+        self._keyboard, screen = pty.openpty()
+        self._process = subprocess.Popen(["bash", "-c", command], cwd=folder, env=environment,
+                                         stdin=screen, stdout=screen, stderr=screen,
+                                         start_new_session=True, preexec_fn=_take_terminal)
+        os.close(screen)
+
+    def type(self, keys: str) -> None:
+        os.write(self._keyboard, keys.encode())
+
+    def _read(self, wait: float) -> bool:
+        """Adds what came within `wait` s; False once the other end is closed."""
+        try:
+            if select.select([self._keyboard], [], [], wait)[0]:
+                text = os.read(self._keyboard, 65536)
+                self.shown += COLOUR.sub("", text.decode(errors="replace"))
+                return bool(text)
+        except OSError:
+            return False
+        return True
+
+    def _read_for(self, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and self._read(0.1):
+            pass
+
+    def wait_until_shown(self, pattern: str, limit: float = LIMIT) -> str | None:
+        """What is wrong, or None once the pattern has been shown."""
+        end, is_open = time.monotonic() + limit, True
+        while not re.search(pattern, self.shown) and is_open and time.monotonic() < end:
+            is_open = self._read(0.1)
+        if re.search(pattern, self.shown):
+            return None
+        return f"`{self.command}` never showed /{pattern}/, but:\n{self.shown[-3000:]}"
+
+    def wait_until_ended(self, code: int, limit: float = LIMIT) -> str | None:
+        """What is wrong, or None once it has ended with this exit code."""
+        end = time.monotonic() + limit
+        while self._process.poll() is None and time.monotonic() < end:
+            self._read(0.1)
+        if self._process.poll() == code:
+            return None
+        return f"`{self.command}` ended with {self._process.poll()}:\n{self.shown[-3000:]}"
+
+    def _lives(self) -> bool:
+        """The command, or what it has started: `rosbag record` ends before its recorder does."""
+        self._process.poll()
+        try:
+            os.killpg(self._process.pid, 0)
+        except ProcessLookupError:
+            return False
+        return True
+
+    def close(self, limit: float = 20.0) -> None:
+        """Ctrl-C, and what does not mind it is killed; nothing of its session is left."""
+        # Nobody is quicker; a signal that meets rospy in the midst of a log line blocks it.
+        self._read_for(0.4)
+        end = time.monotonic() + limit
+        typed_at = float("-inf")
+        while self._lives() and time.monotonic() < end:
+            # As a person does: roslaunch may overlook the first while it starts its nodes.
+            if time.monotonic() - typed_at >= IMPATIENCE and self._process.poll() is None:
+                self.type("\x03")
+                typed_at = time.monotonic()
+            self._read(0.1)
+        if self._lives():
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        os.close(self._keyboard)

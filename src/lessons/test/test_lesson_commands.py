@@ -1,0 +1,101 @@
+"""Every command of the lessons' READMEs, typed in real terminals; lesson_commands.yaml has them.
+
+`python3 -m pytest -v src/lessons/test` prints the list with results.
+"""
+
+import importlib.util
+import os
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+HERE = Path(__file__).resolve().parent
+LESSONS = HERE.parent
+SCENARIOS = yaml.safe_load((HERE / "lesson_commands.yaml").read_text(encoding="utf-8"))
+PACKAGES = sorted(manifest.parent.name for manifest in LESSONS.glob("*/package.xml"))
+FENCE = re.compile(r"^```bash\n(.*?)^```", re.MULTILINE | re.DOTALL)
+INLINE = re.compile(r"`((?:rosrun \S+|roslaunch \S+ \S+\.launch)\b[^`…]*)`")
+CASES = [pytest.param(package, scenario, id=f"{package}: {scenario['name']}")
+         for package, scenarios in SCENARIOS.items() for scenario in scenarios]
+
+_spec = importlib.util.spec_from_file_location("terminals", HERE / "terminals.py")
+terminals = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(terminals)
+
+
+def commands_in(readme: Path) -> set[str]:
+    """Those of its bash fences, and rosrun and roslaunch lines between backquotes."""
+    text = readme.read_text(encoding="utf-8")
+    fenced = "".join(FENCE.findall(text)).splitlines()
+    inline = INLINE.findall(FENCE.sub("", text))
+    return {" ".join(line.split()) for line in [*fenced, *inline] if line.strip()}
+
+
+def typed_in(package: str) -> set[str]:
+    """What the list types for a package."""
+    return {" ".join(step["type"].split()) for scenario in SCENARIOS.get(package, [])
+            for step in scenario["terminals"]}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_list_types_every_command_of_the_readme(package):
+    english, chinese = (commands_in(LESSONS / package / name)
+                        for name in ("README.md", "README.zh-CN.md"))
+    assert english == chinese
+    assert english <= typed_in(package)
+
+
+def environment(folder: Path, port: int) -> dict[str, str]:
+    """A terminal's on a machine without a screen, with a master of its own."""
+    own = {"ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
+           "ROS_HOME": str(folder / "ros"), "ROS_LOG_DIR": str(folder / "ros")}
+    dropped = {"DISPLAY", "PYTHONUNBUFFERED", "ROS_IP"}
+    return {name: value for name, value in os.environ.items() if name not in dropped} | own
+
+
+def of_command(opened: list, command: str):
+    return next(terminal for terminal in opened if terminal.command == command)
+
+
+def take(step: dict, opened: list, folder: Path) -> str | None:
+    """Waits for what the step promises of the last terminal; what is wrong, or None."""
+    terminal = opened[-1]
+    problem = terminal.wait_until_shown(step["shows"])
+    if not problem and "keys" in step:
+        of_command(opened, step.get("into", terminal.command)).type(step["keys"])
+        problem = terminal.wait_until_shown(step["then"]) if "then" in step else None
+    if not problem and "also" in step:
+        problem = of_command(opened, step["also"]["in"]).wait_until_shown(step["also"]["shows"])
+    if not problem and "ends" in step:
+        problem = terminal.wait_until_ended(step["ends"])
+    if not problem and "makes" in step and not (folder / step["makes"]).exists():
+        problem = f"`{step['type']}` made no {step['makes']}"
+    return problem
+
+
+@pytest.mark.parametrize("package, scenario", CASES)
+def test_commands(package, scenario, tmp_path):
+    port, opened, problem = terminals.free_port(), [], None
+    surroundings = environment(tmp_path, port)
+    (tmp_path / "here").mkdir()
+    try:
+        for step in scenario["terminals"]:
+            # roscore alone takes no notice of ROS_MASTER_URI's port.
+            command = f"roscore -p {port}" if step["type"] == "roscore" else step["type"]
+            if "in" in step:
+                command = f"cd {step['in']} && {command}"
+            opened.append(terminals.Terminal(command, tmp_path / "here", surroundings))
+            problem = take(step, opened, tmp_path / "here")
+            if problem:
+                break
+            if "closes" in step:
+                ended = of_command(opened, step["closes"])
+                opened.remove(ended)
+                ended.close()
+    finally:
+        for terminal in reversed(opened):
+            terminal.close()
+    assert not problem, problem + "".join(
+        f"\n\n--- {each.command}\n{each.shown[-1500:]}" for each in opened)
