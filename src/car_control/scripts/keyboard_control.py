@@ -11,7 +11,7 @@ import rospy
 from car_control.key_terminal import run_terminal
 from car_control.keys import Pace, command
 from car_control.master_watch import MasterWatch
-from car_control.node import Ending, read_settings
+from car_control.node import Ending, read_settings, start_node
 from car_control.settings import bounded
 from geometry_msgs.msg import Twist
 
@@ -78,7 +78,7 @@ def main():
     parser = argparse.ArgumentParser(prog="keyboard_control.py", description=__doc__)
     parser.add_argument("--terminal", action="store_true", help="keys from this terminal")
     run = open_keys(parser.parse_args(rospy.myargv()[1:]).terminal)
-    rospy.init_node("key_control", disable_signals=True)
+    start_node("key_control")
     control = KeyControl(read_settings(KeySettings, "car_control.yaml", "key_control"))
     try:
         run(control.turn)

@@ -13,7 +13,7 @@ import rospy
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
 from car_control.lane.lane_settings import LaneSettings
 from car_control.lane.line_finding import find_line
-from car_control.node import Ending, read_settings
+from car_control.node import Ending, read_settings, start_node
 from car_control.reconfigure import serve_settings
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
@@ -102,7 +102,7 @@ class LaneFollow:
 
 
 def main():
-    rospy.init_node("lane_follow", disable_signals=True)
+    start_node("lane_follow")
     ending = Ending()
     follow = LaneFollow(read_settings(LaneSettings, "lane_follow.yaml"))
     serve_settings(follow.driver.settings, follow.change)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Turns Twist or AckermannDriveStamped into commands for the car's six joint controllers.
 
-Two things make the car stop: no command for ~timeout, and the end of the node that sent them.
+Two things make the car stop: no command for ~timeout, and the end of the node that sent them. That
+end is seen at once only if no other publisher is connected to that topic; else after ~timeout.
 """
 
 import math
@@ -11,7 +12,7 @@ import time
 import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from car_control.motor import Drive, Motor, MotorSettings, controller_commands
-from car_control.node import Ending, read_settings
+from car_control.node import Ending, read_settings, start_node
 from car_control.reconfigure import serve_settings
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, Float64
@@ -118,7 +119,7 @@ class MotorControl:
 
 
 def main():
-    rospy.init_node("motor_control", anonymous=True, disable_signals=True)
+    start_node("motor_control", anonymous=True)
     ending = Ending()
     control = MotorControl(read_settings(MotorSettings, "car_control.yaml", "motor_control"))
     serve_settings(control.motor.settings, control.change)

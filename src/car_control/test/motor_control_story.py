@@ -152,7 +152,7 @@ class MotorControlStory(unittest.TestCase):
         self.car.wait_for_speed(1.5, "slower")
         now = self.settings.update_configuration({"max_speed": math.nan})
         self.assertEqual(now["max_speed"], 1.5)
-        self.assertEqual(rospy.get_param("/motor_control/max_speed"), 1.5)
+        self.assertEqual(self.settings.get_configuration()["max_speed"], 1.5)
 
     def test_ctrl_c_leaves_the_car_standing(self):
         other = FakeControllers("/other")

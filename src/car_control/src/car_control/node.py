@@ -9,17 +9,28 @@ from pathlib import Path
 
 import rospkg
 import rospy
+from rospy.client import load_command_line_node_params
 
 from car_control.settings import Settings, SettingsError, load_settings
+
+
+def start_node(name: str, anonymous: bool = False) -> None:
+    """init_node without its signal handlers; parameters such as `_kp:=2.5` are for this run only.
+
+    rospy would write them to the parameter server, where the next run would find them:
+    `read_settings` takes them from the command line itself.
+    """
+    names = [word for word in sys.argv if not load_command_line_node_params([word])]
+    rospy.init_node(name, argv=names, anonymous=anonymous, disable_signals=True)
 
 
 def read_settings(kind: type[Settings], file_name: str, section: str | None = None) -> Settings:
     """Settings from config/FILE_NAME of this package, or from the file in the parameter ~config.
 
-    The node's other parameters override single keys. Ends the program with one line if they do
-    not fit.
+    The node's other parameters override single keys; those on the command line win. Ends the
+    program with one line if they do not fit.
     """
-    given = rospy.get_param("~", {})
+    given = rospy.get_param("~", {}) | load_command_line_node_params(sys.argv)
     folder = Path(rospkg.RosPack().get_path("car_control"), "config")
     try:
         return load_settings(kind, given.pop("config", folder / file_name), section, given)
@@ -31,7 +42,7 @@ def read_settings(kind: type[Settings], file_name: str, section: str | None = No
 class Ending:
     """Ctrl-C, a closed terminal, `rosnode kill`: in each case there is time for a last message.
 
-    Start the node with disable_signals=True and make this right after. A signal only sets
+    Make this right after `start_node`. A signal only sets
     `asked`; the main thread sees it, sends what is to be sent, and calls `done`.
     """
 

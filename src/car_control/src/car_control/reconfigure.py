@@ -41,11 +41,20 @@ def serve_settings(settings: Settings, apply: Callable[[Settings], None]) -> Ser
             config[entry.name] = getattr(current, entry.name)
         return config
 
-    # The server reads its first values from the node's parameters: they may be whole numbers
-    # there, or not there at all.
-    for entry in changeable(type(settings)):
-        rospy.set_param(f"~{entry.name}", getattr(settings, entry.name))
-    return Server(describe(settings), change)
+    return _UnstoredServer(describe(settings), change)
+
+
+class _UnstoredServer(Server):
+    """Leaves the parameter server alone: what it wrote there would override the next run's file.
+
+    dynamic_reconfigure's clients use only the server's topics and its service.
+    """
+
+    def _copy_from_parameter_server(self) -> None:
+        """The settings were read already; here a whole number would turn into another type."""
+
+    def _copy_to_parameter_server(self) -> None:
+        """A change lasts as long as the node, whichever way that ends."""
 
 
 def describe(settings: object) -> SimpleNamespace:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Callable, Sequence
 
 from std_msgs.msg import Float64, Float64MultiArray
@@ -10,39 +11,68 @@ from std_msgs.msg import Float64, Float64MultiArray
 from bullet_sim.control.controllers.commands import Commands
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.convert import LARGEST
+from bullet_sim_ros.errors import PluginError
+
+COMPLAINT_PERIOD = 10.0  # s, wall: a sender of bad commands sends many
 
 log = logging.getLogger("bullet_sim.control")
 
 
 def command_timeout(host: ControllerHost) -> float:
-    """`command_timeout`, s: ours; upstream's controllers go on with the last command for ever."""
-    return max(0.0, host.parameters.number("command_timeout", 0.0))
+    """`command_timeout`, s: ours; upstream's controllers go on with the last command for ever.
+
+    PluginError if it is negative.
+    """
+    seconds = host.parameters.number("command_timeout", 0.0)
+    if seconds < 0:
+        raise PluginError(f"parameter {host.parameters.where('command_timeout')} is {seconds:g}, "
+                          "which is not a time-out: write seconds, not negative (0: none)")
+    return seconds
+
+
+class _Complaints:
+    """What one controller says of bad commands: at most one line in COMPLAINT_PERIOD."""
+
+    def __init__(self, host: ControllerHost):
+        self._host = host
+        self._next = 0.0  # s, wall
+
+    def say(self, level: int, text: str, *values: object) -> None:
+        """By the wall clock: simulated time may stand still, or run fast."""
+        now = time.monotonic()
+        if now >= self._next:
+            self._next = now + COMPLAINT_PERIOD
+            log.log(level, f"%s: {text}", self._host.describe(), *values)
 
 
 def subscribe_one(host: ControllerHost, commands: Commands) -> None:
     """`command` is a Float64."""
+    complaints = _Complaints(host)
+
     def take(msg: Float64) -> Callable[[], None] | None:
-        return _checked(host, commands, (msg.data,))
+        return _checked(complaints, commands, (msg.data,))
 
     host.subscribe("command", Float64, take, queue_size=1, tcp_nodelay=True)
 
 
 def subscribe_all(host: ControllerHost, commands: Commands, count: int) -> None:
     """`command` is a Float64MultiArray with a number for each joint."""
+    complaints = _Complaints(host)
+
     def take(msg: Float64MultiArray) -> Callable[[], None] | None:
         if len(msg.data) != count:
-            log.error("%s: Dimension of command (%d) does not match number of joints (%d)! Not "
-                      "executing!", host.describe(), len(msg.data), count)
+            complaints.say(logging.ERROR, "Dimension of command (%d) does not match number of "
+                           "joints (%d)! Not executing!", len(msg.data), count)
             return None
-        return _checked(host, commands, msg.data)
+        return _checked(complaints, commands, msg.data)
 
     host.subscribe("command", Float64MultiArray, take, queue_size=1, tcp_nodelay=True)
 
 
-def _checked(host: ControllerHost, commands: Commands,
+def _checked(complaints: _Complaints, commands: Commands,
              values: Sequence[float]) -> Callable[[], None] | None:
     if all(abs(value) <= LARGEST for value in values):
         return lambda: commands.take(values)
-    log.warning("%s: a command that is not finite, or beyond %g, is ignored", host.describe(),
-                LARGEST)
+    complaints.say(logging.WARNING, "a command that is not finite, or beyond %g, is ignored",
+                   LARGEST)
     return None
