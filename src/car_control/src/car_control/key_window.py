@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import ctypes.util
 import time
 import tkinter
 from collections.abc import Callable
@@ -13,6 +15,12 @@ PERIOD_MS = 20
 ARROWS = {"up": "w", "left": "a", "down": "s", "right": "d", "space": STOP_KEY}
 
 
+@ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)
+def _ignored(_display: int, _event: int) -> int:
+    """An Xlib error handler; Tk hands it the errors that it did not expect."""
+    return 0
+
+
 class NoScreen(Exception):
     """There is no screen to open a window on; the message says why."""
 
@@ -21,6 +29,7 @@ class KeyWindow:
     """Opens the window; NoScreen if that is not possible."""
 
     def __init__(self) -> None:
+        _survive_x_errors()
         try:
             self.root = tkinter.Tk(className="key_control")
         except tkinter.TclError as error:
@@ -92,6 +101,13 @@ class KeyWindow:
         """Tk would print an error in a callback and go on, with the car at speed."""
         self.failure = error
         self._close()
+
+
+def _survive_x_errors() -> None:
+    """Tk unmaps what somebody else has destroyed; Xlib would end the program before it stops."""
+    library = ctypes.util.find_library("X11")
+    if library:
+        ctypes.CDLL(library).XSetErrorHandler(_ignored)
 
 
 def _key(event: tkinter.Event) -> str:

@@ -3,6 +3,7 @@
 import subprocess
 import threading
 import time
+import xmlrpc.client
 
 import rosgraph
 import rospy
@@ -28,6 +29,14 @@ def rosrun(*words, **options):
 def service_names():
     """All services that the master knows."""
     return {name for name, _ in rosgraph.Master("/pond_watch").getSystemState()[2]}
+
+
+def sends_to_us(node, topic):
+    """Whether a node has its link to us open; before that its messages are lost. Only it knows."""
+    uri = rosgraph.Master("/pond_watch").lookupNode(node)
+    _, _, links = xmlrpc.client.ServerProxy(uri).getBusInfo("/pond_watch")
+    return any(receiver == rospy.get_name() and direction == "o" and name == topic and is_open
+               for _, receiver, direction, _, name, is_open, *_ in links)  # fmt: skip
 
 
 class Topic:

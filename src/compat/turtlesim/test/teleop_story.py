@@ -15,7 +15,7 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from pond_watch import LIMIT, Topic, rosrun, wait_until
+from pond_watch import LIMIT, Topic, rosrun, sends_to_us, wait_until
 
 UP, DOWN, RIGHT, LEFT = (f"\x1b[{letter}" for letter in "ABCD")
 TEXT = (
@@ -46,6 +46,7 @@ class TeleopStory(unittest.TestCase):
         self.addCleanup(self.end)
         threading.Thread(target=self.read, daemon=True).start()
         wait_until(lambda: self.sent.subscriber.get_num_connections(), "the node's publisher")
+        wait_until(lambda: sends_to_us("/teleop_turtle", topic), "the node's link to us")
         wait_until(lambda: "quit" in self.shown, "the text")
         wait_until(lambda: termios.tcgetattr(self.terminal) != self.before, "keys being read")
 
