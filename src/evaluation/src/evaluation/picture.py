@@ -22,6 +22,7 @@ LAP_COLOURS = (
     (200, 200, 80),
 )
 FONT = cv2.FONT_HERSHEY_DUPLEX
+LEGEND_WIDTH_PX = 440
 SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
 
 
@@ -132,7 +133,7 @@ def lap_colour(number: int) -> tuple[int, int, int]:
 
 
 def _draw_legend(image: np.ndarray, drive: LapScorer, laps: int, fine: int) -> None:
-    """What the lines mean, in the free middle of the course."""
+    """What the lines mean, where the course leaves room for it."""
     entries = [
         (YELLOW, "yellow line: what the car follows"),
         (WHITE, "white line: right edge of the lane"),
@@ -143,15 +144,27 @@ def _draw_legend(image: np.ndarray, drive: LapScorer, laps: int, fine: int) -> N
     if laps > shown:
         entries.append((FAINT, f"laps {shown + 1} to {laps}: the same colours again"))
     step = 30 * fine
-    left, top = (
-        round(image.shape[1] * 0.31),
-        round(image.shape[0] * 0.55) - step * len(entries) // 2,
-    )
+    left, top = _free_place(image, (LEGEND_WIDTH_PX * fine, step * len(entries)))
+    top += step // 2
     for row, (colour, text) in enumerate(entries):
         y = top + row * step
         ends = np.array([(left, y), (left + 44 * fine, y)])
         draw_line(image, ends, colour, 5 * fine)
         write_text(image, text, (left + 60 * fine, y + 6 * fine), 13 * fine)
+
+
+def _free_place(image: np.ndarray, size_px: tuple[int, int]) -> tuple[int, int]:
+    """Left and top of a box (width, height) that covers no line, as near the middle as may be."""
+    width, height = size_px
+    drawn = cv2.integral((image.max(axis=2) > max(GRID) + 16).astype(np.uint8))
+    lefts = np.arange(0, image.shape[1] - width, 16)
+    tops = np.arange(0, image.shape[0] - height, 16)[:, None]
+    lines = (drawn[tops + height, lefts + width] - drawn[tops, lefts + width]
+             - drawn[tops + height, lefts] + drawn[tops, lefts])  # fmt: skip
+    away = np.hypot(lefts + width / 2 - image.shape[1] / 2, tops + height / 2 - image.shape[0] / 2)
+    best = np.argmin(lines * 1e6 + away)
+    row, column = np.unravel_index(best, away.shape)
+    return int(lefts[column]), int(tops[row, 0])
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:
