@@ -143,13 +143,13 @@ def fit(image: np.ndarray) -> np.ndarray:
 def mark_line(view: np.ndarray, band: float) -> np.ndarray:
     """Tint what the lessons' mask keeps, and put their red dot where lesson 05 finds the line.
 
-    That is in a band at this share of the height; 0: no dot.
+    That is in a band at this share of the height; 0: the picture as it is.
     """
+    if not band:
+        return view
     mask = cv2.inRange(cv2.cvtColor(view, cv2.COLOR_BGR2HSV), MASK_LOW, MASK_HIGH)
     marked, line = view.copy(), mask > 0
     marked[line] = 0.35 * view[line] + 0.65 * np.array(MASK_TINT)
-    if not band:
-        return marked
     height = view.shape[0]
     top, deep = round(band * height), max(1, round(20 * height / 1080))
     cv2.rectangle(marked, (0, top), (view.shape[1] - 1, top + deep), (120, 120, 120), 1)
