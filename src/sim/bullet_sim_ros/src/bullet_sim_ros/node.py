@@ -25,10 +25,7 @@ from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
 from bullet_sim_ros.prompt_connection import send_promptly
-from bullet_sim_ros.services.models import offer_model_services
-from bullet_sim_ros.services.physics import offer_physics_services
-from bullet_sim_ros.services.states import offer_state_services
-from bullet_sim_ros.services.worlds import offer_world_services
+from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.simulation import Simulation
 
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
@@ -125,10 +122,7 @@ def main() -> int:
         return 1
     simulation = Simulation(world, parameters)
     if parameters.enable_ros_network:
-        offer_model_services(simulation, resources)
-        offer_state_services(simulation)
-        offer_world_services(simulation)
-        offer_physics_services(simulation)
+        offer_services(simulation, resources)
     else:
         rospy.loginfo("ROS gazebo topics/services are disabled")
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)

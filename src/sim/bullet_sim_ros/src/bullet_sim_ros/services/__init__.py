@@ -1,1 +1,22 @@
 """The services of /gazebo: each handler runs in the loop, and turns an exception into a status."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from bullet_sim.formats import Resources
+from bullet_sim_ros.services.models import offer_model_services
+from bullet_sim_ros.services.physics import offer_physics_services
+from bullet_sim_ros.services.states import offer_state_services
+from bullet_sim_ros.services.worlds import offer_world_services
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.simulation import Simulation
+
+
+def offer_services(simulation: Simulation, resources: Resources) -> None:
+    """All of them."""
+    offer_model_services(simulation, resources)
+    offer_state_services(simulation)
+    offer_world_services(simulation)
+    offer_physics_services(simulation)
