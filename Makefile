@@ -21,7 +21,7 @@ race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRAC
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh
 
-test: ## run every check and test [JOBS=1]
+test: ## run every check and test [JOBS=2]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")
 
 bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]

@@ -1,7 +1,9 @@
 """Runs ruff, pytest and every rostest file, and ends with one line: N passed, M failed.
 
-Each rostest file gets a session of its own, a free port for its master (rostest sees to that) and
-a time limit. What it leaves running is killed and counts as a failure.
+First what is quick, then what starts processes and mostly waits for them: rostest files, and the
+pytest files marked `processes`, a few at a time. Each of these gets a session of its own, a free
+port for its master and a time limit. What it leaves running is killed and counts as a failure.
+Files that say `runs alone` measure time: they come last, one after the other.
 """
 
 from __future__ import annotations
@@ -28,6 +30,8 @@ MARK = "RUN_TESTS_MARK"  # environment variable by which a test's processes are 
 GRACE = 5.0  # s a test's processes have to end after it
 STOP = 15.0  # s rostest has to end its nodes when it is told to stop
 PROGRESS = re.compile(r"\[ *\d+%\]$")
+PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
+ALONE = re.compile(r"\bruns alone\b")
 Watch = Callable[[Path], None]
 
 stopping = False
@@ -152,32 +156,67 @@ def run_ruff() -> Result:
     return result
 
 
-def run_pytest(limit: float) -> list[Result]:
-    """A result for each file, and one for pytest itself if it came to no good end."""
+def run_pytest(limit: float, apart: list[Path]) -> list[Result]:
+    """All files but those `apart`, in one process; a result for each file, and one for itself."""
     cases, log = OUT / "pytest.xml", OUT / "pytest.log"
-    command = [sys.executable, "-m", "pytest", f"--junitxml={cases}", "--color=no", "--tb=short",
-               "--continue-on-collection-errors"]
     whole = Result("pytest")
     began = time.monotonic()
-    code, left = run_marked(command, log, limit, Progress())
+    code, left = run_marked([*pytest_command(cases), *(f"--ignore={path}" for path in apart)],
+                            log, limit, Progress())
     whole.seconds = time.monotonic() - began
-    files: dict[str, Result] = {}
-    if cases.exists():
-        for case in ET.parse(cases).iter("testcase"):
-            name = case.get("file") or case.get("classname") or case.get("name") or "?"
-            files.setdefault(name, Result(name)).add_case(case)
+    files = pytest_cases(cases)
     failed = any(result.failures for result in files.values())
-    if code == 124:
-        whole.failures.append(f"pytest: not done after {whole.seconds:.0f} s")
-    elif code not in (0, 1) or (code == 1 and not failed):
-        whole.failures.append(f"pytest: ended with exit code {code}")
-    whole.failures += [f"pytest: left running: {command}" for command in left]
+    note_end(whole, code, failed, left)
     if failed or whole.failures:
         whole.output = log.read_text(errors="replace")
     for result in files.values():
         print(result.line())
     print(whole.line(), flush=True)
     return [*files.values(), whole]
+
+
+def pytest_command(cases: Path) -> list[str]:
+    """What to run, for results in a file of its own."""
+    return [sys.executable, "-m", "pytest", f"--junitxml={cases}", "--color=no", "--tb=short",
+            "--continue-on-collection-errors"]
+
+
+def pytest_cases(cases: Path) -> dict[str, Result]:
+    """A result for each file that the report names."""
+    files: dict[str, Result] = {}
+    if cases.exists():
+        for case in ET.parse(cases).iter("testcase"):
+            name = case.get("file") or case.get("classname") or case.get("name") or "?"
+            files.setdefault(name, Result(name)).add_case(case)
+    return files
+
+
+def note_end(result: Result, code: int, failed: bool, left: list[str]) -> None:
+    """Count how pytest itself ended, where its cases do not say it already."""
+    if code == 124:
+        result.failures.append(f"{result.name}: not done after {result.seconds:.0f} s")
+    elif code not in (0, 1) or (code == 1 and not failed):
+        result.failures.append(f"{result.name}: ended with exit code {code}")
+    result.failures += [f"{result.name}: left running: {command}" for command in left]
+
+
+def run_pytest_file(path: Path, limit: float) -> Result:
+    """One file in a process of its own."""
+    name = str(path.relative_to(ROOT))
+    result = Result(name)
+    if stopping:
+        return result
+    folder = OUT / name.replace("/", ".")
+    folder.mkdir(parents=True)
+    cases, log = folder / "pytest.xml", folder / "output.log"
+    began = time.monotonic()
+    code, left = run_marked([*pytest_command(cases), name], log, limit, unseen)
+    result = pytest_cases(cases).get(name, result)
+    result.seconds = time.monotonic() - began
+    note_end(result, code, bool(result.failures), left)
+    if result.failures:
+        result.output = log.read_text(errors="replace")
+    return result
 
 
 def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
@@ -217,11 +256,12 @@ def run_rostest(launch: Path, limit: float) -> Result:
     return result
 
 
-def run_rostests(jobs: int, limit: float) -> list[Result]:
-    launches = sorted(ROOT.glob("src/**/test/**/*.test"))
-    results = []
+def run_apart(files: list[Path], jobs: int, limit: float) -> list[Result]:
+    """Files that start processes, so many at a time."""
+    results: list[Result] = []
     with ThreadPoolExecutor(jobs) as pool:
-        waiting = [pool.submit(run_rostest, launch, limit) for launch in launches]
+        waiting = [pool.submit(run_rostest if file.suffix == ".test" else run_pytest_file,
+                               file, limit) for file in files]
         for done in as_completed(waiting):
             if stopping:
                 pool.shutdown(cancel_futures=True)
@@ -229,6 +269,12 @@ def run_rostests(jobs: int, limit: float) -> list[Result]:
             results.append(done.result())
             print(results[-1].line(), flush=True)
     return results
+
+
+def files_that_say(pattern: re.Pattern, glob: str) -> list[Path]:
+    """Files below src and test whose text has the pattern, in the order of their names."""
+    found = [*ROOT.glob(f"src/**/test/**/{glob}"), *ROOT.glob(f"test/**/{glob}")]
+    return sorted(path for path in found if pattern.search(path.read_text(encoding="utf-8")))
 
 
 def report(results: list[Result]) -> int:
@@ -257,8 +303,8 @@ def stop(_signal: int, _frame: object) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--jobs", type=int, default=1, help="rostest files at a time (1)")
-    parser.add_argument("--limit", type=float, default=600.0, help="seconds for a rostest file")
+    parser.add_argument("--jobs", type=int, default=2, help="files with processes at a time (2)")
+    parser.add_argument("--limit", type=float, default=600.0, help="seconds for one of these files")
     parser.add_argument("--pytest-limit", type=float, default=1200.0, help="seconds for pytest")
     args = parser.parse_args()
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -267,8 +313,13 @@ def main() -> int:
     OUT.mkdir(parents=True)
     results = [run_ruff()]
     print(results[0].line(), flush=True)
-    results += run_pytest(args.pytest_limit)
-    results += run_rostests(args.jobs, args.limit)
+    slow = files_that_say(PROCESSES, "test_*.py")  # first: the longest of them take minutes
+    rostests = files_that_say(re.compile(""), "*.test")
+    alone = [*files_that_say(ALONE, "*.test")]
+    results += run_pytest(args.pytest_limit, slow)
+    results += run_apart([*slow, *(path for path in rostests if path not in alone)],
+                         args.jobs, args.limit)
+    results += run_apart(alone, 1, args.limit)
     if stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up what is missing, then runs every check and test. The last line says how many passed and failed.
 #
-#   scripts/test.sh [--jobs N]     N rostest files at a time (1)
+#   scripts/test.sh [--jobs N]     N files that start processes at a time (2)
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --tests
 enter_workspace

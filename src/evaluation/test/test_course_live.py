@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
 LAP_LIMIT = 420.0  # s, wall, for a lap of 70 simulated seconds on a slow machine
 START_LIMIT = 90.0  # s, wall

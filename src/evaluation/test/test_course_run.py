@@ -14,6 +14,7 @@ from pathlib import Path
 import cv2
 import pytest
 
+pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
 FAKE = ("--launch", "evaluation", "fake_course.launch")
 END_TIME = 3.0  # s that Ctrl-C may take
@@ -115,6 +116,20 @@ def test_closed_laps_are_reported_and_drawn(start):
     assert film.read()[0]
     filmed_s = film.get(cv2.CAP_PROP_FRAME_COUNT) * 0.2  # a busy machine may miss some pictures
     assert 0.5 * report["simulated_s"] < filmed_s < 1.1 * report["simulated_s"]
+
+
+def test_runs_that_begin_together_have_masters_of_their_own(tmp_path):
+    runs = []
+    for number in range(3):
+        (tmp_path / str(number)).mkdir()
+        runs.append(Run(tmp_path / str(number) / "course", *FAKE, "--duration", "2", "--no-video"))
+    try:
+        assert [run.wait() for run in runs] == [1, 1, 1], [run.output for run in runs]  # no lap yet
+        assert all("simulated s are over" in run.output for run in runs), [run.output for run in runs]
+    finally:
+        for run in runs:
+            run.process.kill()
+            run.process.wait()
 
 
 def test_the_report_shows_followers_side_by_side(start):

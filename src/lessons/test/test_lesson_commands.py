@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+pytestmark = pytest.mark.processes
 HERE = Path(__file__).resolve().parent
 LESSONS = HERE.parent
 SCENARIOS = yaml.safe_load((HERE / "lesson_commands.yaml").read_text(encoding="utf-8"))

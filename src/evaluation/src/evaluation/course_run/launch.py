@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import re
 import shutil
 import signal
 import socket
+import tempfile
 import time
 import xmlrpc.client
 from pathlib import Path
@@ -31,6 +33,9 @@ class Launched:
         self.log_folder = log_folder
         shutil.rmtree(self.log_folder, ignore_errors=True)
         self.log_folder.mkdir(parents=True)
+        # From looking for a port to listening there: no other run may choose the same one.
+        self._turn = (Path(tempfile.gettempdir()) / f"course_run-{os.getuid()}.lock").open("w")
+        fcntl.flock(self._turn, fcntl.LOCK_EX)
         self.port = free_port()
         self.master_uri = f"http://localhost:{self.port}"
         self._environment = dict(
@@ -54,6 +59,7 @@ class Launched:
                     self._children[0].last_lines(),
                 )
             time.sleep(0.05)
+        self._turn.close()
 
     def start(self, name: str, command: list[str]) -> Child:
         """Start one more program of this run; its output goes to NAME.log."""
