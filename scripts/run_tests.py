@@ -291,6 +291,9 @@ def report(results: list[Result]) -> int:
         print("\nFailed:")
         for result in results:
             print("".join(f"  {failure}\n" for failure in result.failures), end="")
+    conformance = subprocess.run([sys.executable, str(ROOT / "scripts" / "conformance.py")],
+                                 capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    print(f"\n==== conformance\n{conformance.stdout}{conformance.stderr}")
     last = f"{totals['passed']} passed, {totals['failed']} failed"
     print(last + (f", {totals['skipped']} skipped" if totals["skipped"] else ""), flush=True)
     return 0 if totals["passed"] and not totals["failed"] else 1

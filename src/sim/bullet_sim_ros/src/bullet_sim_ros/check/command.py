@@ -1,0 +1,111 @@
+"""The command line of check."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+import rospkg
+
+from bullet_sim_ros.check.elements import problem
+from bullet_sim_ros.check.findings import ACCEPTED, Finding, is_serious, table
+from bullet_sim_ros.check.launches import LaunchChecker
+from bullet_sim_ros.check.texts import TextChecker
+from bullet_sim_ros.interface import read_interface, rows_by_name
+from bullet_sim_ros.package_paths import open_resources
+
+EPILOG = """examples:
+  rosrun bullet_sim_ros check robot.urdf.xacro model:=big    a robot
+  rosrun bullet_sim_ros check my_world.world                 a world
+  rosrun bullet_sim_ros check learning_topic                 all robots, worlds, launch files of it
+  rosrun bullet_sim_ros check learning_topic 0course.launch  what this launch file starts
+exit code: 0 if all of it will work, if need be approximated; 1 if something will be missing"""
+INCLUDED = re.compile(r"<(?:xacro:)?include\b[^>]*filename=[\"']([^\"']+)[\"']")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Print the table; 0, or 1 if something will be missing, or 2 if there is nothing to check."""
+    parser = argparse.ArgumentParser(
+        prog="check", description="Says what of a robot, world or package will work here.",
+        epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch), model folder, "
+                                     "or package")
+    parser.add_argument("launch", nargs="?", help="launch file of the package")
+    parser.add_argument("arguments", nargs="*", metavar="name:=value", help="for xacro or launch")
+    parser.add_argument("--all", action="store_true", help="also list accepted tags without effect")
+    args = parser.parse_args(argv)
+    if args.launch and ":=" in args.launch:
+        args.arguments.insert(0, args.launch)
+        args.launch = None
+    findings = Check(args.arguments).run(args.what, args.launch)
+    if findings is None:
+        print(f"check: {args.what}: no such file or package; try `rospack list`, or give a path",
+              file=sys.stderr)
+        return 2
+    shown = findings if args.all else [f for f in findings if f.status != ACCEPTED]
+    print(table(shown))
+    left_out = len(set(findings)) - len(set(shown))
+    if left_out:
+        print(f"\n{left_out} ignored tags and elements are not listed: --all")
+    serious = is_serious(findings)
+    print("\nsomething will be missing, see above" if serious else "\nall of it will work")
+    return 1 if serious else 0
+
+
+class Check:
+    """What a file or package holds, looked through."""
+
+    def __init__(self, arguments: list[str]):
+        self._arguments = arguments
+        resources = open_resources()
+        self._texts = TextChecker(rows_by_name(read_interface()), resources)
+        self._launches = LaunchChecker(self._texts, resources)
+
+    def run(self, what: str, launch: str | None) -> list[Finding] | None:
+        """None if there is no such thing."""
+        path = Path(what)
+        if path.is_file():
+            return self._file(path.resolve())
+        if path.is_dir() and (path / "model.sdf").is_file():
+            return self._file((path / "model.sdf").resolve())
+        try:
+            folder = Path(rospkg.RosPack().get_path(what))
+        except rospkg.ResourceNotFound:
+            if not (path / "package.xml").is_file():
+                return None
+            folder = path.resolve()
+        return self._one_launch(folder, launch) if launch else self._package(folder)
+
+    def _file(self, path: Path) -> list[Finding]:
+        if path.suffix == ".launch":
+            return self._launches.launch_file(path, self._arguments)
+        if path.suffix == ".world":
+            return self._texts.world_file(path)
+        values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
+        if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
+            return self._texts.world_file(path)
+        return self._texts.model_file(path, values)
+
+    def _one_launch(self, folder: Path, name: str) -> list[Finding]:
+        found = sorted(folder.rglob(name))
+        if not found:
+            there = ", ".join(sorted(path.name for path in folder.rglob("*.launch"))) or "none"
+            return [problem(str(folder), f"launch file {name}", f"not there; there are: {there}")]
+        return self._file(found[0])
+
+    def _package(self, folder: Path) -> list[Finding]:
+        findings: list[Finding] = []
+        for pattern in ("*.urdf", "*.xacro", "*.world", "model.sdf", "*.launch"):
+            for path in sorted(folder.rglob(pattern)):
+                if path.suffix != ".xacro" or _is_robot(path, folder):
+                    findings += self._file(path)
+        return findings
+
+
+def _is_robot(path: Path, folder: Path) -> bool:
+    """Whether a xacro file is one to expand by itself: not a part that others include."""
+    included = {Path(name).name for other in folder.rglob("*.xacro")
+                for name in INCLUDED.findall(other.read_text("utf-8", "replace"))}
+    return path.name not in included and "<link" in path.read_text("utf-8", "replace")

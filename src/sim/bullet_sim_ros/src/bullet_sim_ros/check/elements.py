@@ -1,0 +1,84 @@
+"""Looks up what a text uses in the table of what works: plugins with their tags, elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+from xml.etree.ElementTree import Element
+
+from bullet_sim_ros.check.findings import PROBLEM, Finding
+from bullet_sim_ros.interface import ABSENT, WORKS, Entry, Row
+
+EVERY_PLUGIN = ("robotNamespace", "alwaysOn", "always_on", "update_rate", "visualize", "plugin")
+MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or tells is missing",
+           "world": "what it does to the world is missing", "visual": "only what is seen differs"}
+
+
+class Lookup:
+    """Findings of one text."""
+
+    def __init__(self, rows: dict[str, Row], where: str):
+        self._where = where
+        self._plugins = {name: row for name, row in rows.items() if name.endswith(".so")}
+        self._elements = {}
+        for row in rows.values():
+            for name, entry in row.names():
+                language, _, path = name.partition(" ")
+                if language in ("sdf", "urdf"):
+                    self._elements[(language, *path.split("/"))] = entry
+
+    def findings(self, root: Element) -> Iterator[Finding]:
+        """Of all plugins, and of the elements that do not simply work."""
+        language = "urdf" if root.tag == "robot" else "sdf"
+        joints = {joint.get("name") for joint in root.iter("joint")}
+        yield from self._walk(root, (), language, joints)
+
+    def _walk(self, element: Element, above: tuple[str, ...], language: str,
+              joints: set) -> Iterator[Finding]:
+        here = (*above, _label(element, joints))
+        if element.tag == "plugin" and element.get("filename"):
+            yield from self._plugin(element, above[-1].split("@")[0] if above else "")
+            return
+        entry = self._entry(language, here)
+        if entry is not None and entry.status != WORKS:
+            yield Finding(self._where, f"<{'/'.join(here[-2:])}>", entry.status, entry.how)
+        for child in element:
+            if isinstance(child.tag, str):
+                yield from self._walk(child, here, language, joints)
+
+    def _entry(self, language: str, path: tuple[str, ...]) -> Entry | None:
+        """That of the longest end of the path; a lone last name must not fit by accident."""
+        for first in range(len(path) - 1):
+            if entry := self._elements.get((language, *path[first:])):
+                return entry
+        return None
+
+    def _plugin(self, element: Element, parent: str) -> Iterator[Finding]:
+        library = PurePosixPath(element.get("filename", "")).name
+        library += "" if library.endswith(".so") else ".so"
+        name = f"plugin {element.get('name') or '(no name)'} ({library})"
+        row = self._plugins.get(library)
+        if row is None:
+            kind = parent if parent in MATTERS else "model"
+            yield Finding(self._where, name, ABSENT, f"not known here: {MATTERS[kind]}")
+            return
+        yield Finding(self._where, name, row.status, row.how)
+        for child in element:
+            tag = row.tags.get(child.tag) if isinstance(child.tag, str) else None
+            if tag is not None and tag.status != WORKS:
+                yield Finding(self._where, f"{name} <{tag.name}>", tag.status, tag.how)
+            elif tag is None and row.tags and child.tag not in EVERY_PLUGIN:
+                yield Finding(self._where, f"{name} <{child.tag}>", "accepted",
+                              "the plugin has no such tag")
+
+
+def _label(element: Element, joints: set) -> str:
+    reference = element.get("reference") if element.tag == "gazebo" else None
+    if not reference:
+        return element.tag
+    return "gazebo@joint" if reference in joints else "gazebo@link"
+
+
+def problem(where: str, part: str, error: object) -> Finding:
+    """Something that stops it."""
+    return Finding(where, part, PROBLEM, " ".join(str(error).split()))

@@ -1,0 +1,43 @@
+"""What the check has to say, one thing at a time, and the table made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS
+
+PROBLEM = "problem"
+ORDER = (PROBLEM, ABSENT, APPROXIMATED, ACCEPTED, WORKS)
+WORDS = {PROBLEM: "PROBLEM", ABSENT: "NOT THERE", APPROXIMATED: "approximated",
+         ACCEPTED: "ignored", WORKS: "works"}
+SERIOUS = (PROBLEM, ABSENT)  # what makes the exit code 1
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One part of what was checked."""
+
+    where: str  # file, and robot or world in it
+    part: str  # plugin, element, node …
+    status: str  # one of ORDER
+    how: str = ""
+
+
+def table(findings: Iterable[Finding]) -> str:
+    """Lines, worst first within each file; the same thing said twice counts once."""
+    lines, last = [], None
+    unique = dict.fromkeys(findings)
+    places = list(dict.fromkeys(finding.where for finding in unique))
+    for finding in sorted(unique, key=lambda f: (places.index(f.where), ORDER.index(f.status))):
+        if finding.where != last:
+            lines.append(f"\n{finding.where}")
+            last = finding.where
+        how = f": {finding.how}" if finding.how else ""
+        lines.append(f"  {WORDS[finding.status]:13s} {finding.part}{how}")
+    return "\n".join(lines).lstrip("\n")
+
+
+def is_serious(findings: Iterable[Finding]) -> bool:
+    """Whether anything will be missing."""
+    return any(finding.status in SERIOUS for finding in findings)
