@@ -124,8 +124,9 @@ def test_runs_that_begin_together_have_masters_of_their_own(tmp_path):
         (tmp_path / str(number)).mkdir()
         runs.append(Run(tmp_path / str(number) / "course", *FAKE, "--duration", "2", "--no-video"))
     try:
-        assert [run.wait() for run in runs] == [1, 1, 1], [run.output for run in runs]  # no lap yet
-        assert all("simulated s are over" in run.output for run in runs), [run.output for run in runs]
+        assert [run.wait() for run in runs] == [1, 1, 1]  # no lap yet
+        for run in runs:
+            assert "simulated s are over" in run.output, run.output
     finally:
         for run in runs:
             run.process.kill()

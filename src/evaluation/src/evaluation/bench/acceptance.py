@@ -70,6 +70,8 @@ CRITERIA = (
     Criterion("/clock behind the ticks", "memory/clock.behind_ticks", at_most=10),
     Criterion("ten robots by services", "robots/spawned", at_most=5),
     Criterion("ten robots by a launch file", "robots/launched.spawned", at_most=5),
+    Criterion("memory after 1000 spawns", "respawn/memory.growth", at_most=5),
+    Criterion("step after 1000 spawns", "respawn/step.last_to_first", at_most=1.05),
 )
 
 

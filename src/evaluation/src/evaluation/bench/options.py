@@ -8,7 +8,8 @@ from pathlib import Path
 
 from evaluation.course_run.failure import RunError
 
-PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "memory")
+PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
+         "memory")
 DEFAULT_MEMORY_S = 300.0
 LEAST_MEMORY_S = 20.0  # below that there are too few samples for a growth
 
