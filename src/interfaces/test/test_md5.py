@@ -33,6 +33,8 @@ def search_path(tmp_path_factory):
 
 @pytest.mark.parametrize(("package", "kind", "name"), DEFINITIONS)
 def test_definition_is_upstreams(package, kind, name, search_path):
+    # conforms: turtlebot3_msgs, turtlebot3_msgs/SensorState, turtlebot3_msgs/Sound
+    # conforms: turtlebot3_msgs/VersionInfo
     context = MsgContext.create_default()
     load = load_msg_from_file if kind == "msg" else load_srv_from_file
     folders = search_path[package] if kind == "msg" else [str(HERE / package / "srv")]
@@ -44,6 +46,6 @@ def test_definition_is_upstreams(package, kind, name, search_path):
 
 @pytest.mark.parametrize("package", SUMS)
 def test_no_definition_is_missing_or_extra(package, search_path):
-    messages = {file.stem for folder in search_path[package] for file in Path(folder).iterdir()}
+    messages = {file.stem for folder in search_path[package] for file in Path(folder).glob("*")}
     services = {file.stem for file in (HERE / package).glob("srv/*")}
     assert (messages, services) == (set(SUMS[package]["msg"]), set(SUMS[package]["srv"]))
