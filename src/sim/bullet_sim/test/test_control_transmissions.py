@@ -21,6 +21,7 @@ def read(body, name="name='t'"):
 
 
 def test_what_is_usable():
+    # conforms: urdf transmission/hardwareInterface
     reduction = "<actuator name='m'><mechanicalReduction>50</mechanicalReduction></actuator>"
     for kind, interface in (("Effort", "effort"), ("Position", "position"),
                             ("Velocity", "velocity")):

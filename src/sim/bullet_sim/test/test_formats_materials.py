@@ -48,6 +48,7 @@ def test_every_named_material_is_a_material(name):
 
 
 def test_some_of_gazebos_values():
+    # conforms: materials Gazebo/*
     named = named_materials()
     assert (named["Gazebo/Grey"].ambient, named["Gazebo/Grey"].diffuse) == (
         (0.3, 0.3, 0.3, 1), (0.7, 0.7, 0.7, 1))

@@ -16,6 +16,7 @@ def touch(path: Path) -> Path:
 
 
 def test_order_of_the_environment(tmp_path):
+    # conforms: GAZEBO_MODEL_PATH, GAZEBO_RESOURCE_PATH
     environ = {"HOME": str(tmp_path), "GAZEBO_MODEL_PATH": "/a::/b", "GAZEBO_RESOURCE_PATH": "/r"}
     paths = Resources.from_environment(environ, ["/exported", "/a"], ["/media"])
     assert paths.model_paths == (
@@ -25,6 +26,7 @@ def test_order_of_the_environment(tmp_path):
 
 
 def test_first_model_path_wins(tmp_path):
+    # conforms: uri model://
     touch(tmp_path / "two/X/model.sdf")
     both = Resources([tmp_path / "one", tmp_path / "two"])
     assert both.resolve("model://X/model.sdf") == tmp_path / "two/X/model.sdf"
@@ -33,6 +35,7 @@ def test_first_model_path_wins(tmp_path):
 
 
 def test_package_file_absolute_and_relative(tmp_path):
+    # conforms: uri file://, uri package://
     mesh = touch(tmp_path / "pkg/meshes/a.stl")
     paths = Resources([], [tmp_path], {"pkg": str(tmp_path / "pkg")}.__getitem__)
     assert paths.resolve("package://pkg/meshes/a.stl") == mesh

@@ -32,7 +32,8 @@ def test_shapes_and_surfaces():
       <collision name="c"><geometry><box><size>1 2 3</size></box></geometry>
         <surface><friction><ode><mu>0.5</mu><fdir1>1 0 0</fdir1></ode></friction>
           <contact><ode><kp>1e5</kp><min_depth>0.001</min_depth></ode></contact>
-          <bounce><restitution_coefficient>0.9</restitution_coefficient></bounce></surface>
+          <bounce><restitution_coefficient>0.9</restitution_coefficient><threshold>1</threshold>
+          </bounce></surface>
           </collision>
       <collision name="floor"><geometry><plane><size>4 5</size></plane></geometry></collision>
       <visual name="v"><pose>1 -0
@@ -120,12 +121,12 @@ def test_multicamera_keeps_all_cameras():
 
 
 def test_unknown_geometry_is_one_warning(caplog):
-    model = read("""<link name="l"><visual name="v"><geometry><heightmap/></geometry>
+    model = read("""<link name="l"><visual name="v"><geometry><capsule/></geometry>
     </visual>
         </link>""")
     assert model.links[0].visuals == ()
     assert len(caplog.records) == 1
-    assert "<heightmap> is not supported" in caplog.text
+    assert "<capsule> is not supported" in caplog.text
 
 
 def test_gazebo_root_and_light_root():

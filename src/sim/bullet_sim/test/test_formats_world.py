@@ -195,11 +195,15 @@ def test_state_overrides_poses(load):
     assert world.lights[0].pose.position == (5, 6, 7)
 
 
-def test_unsupported_elements_are_one_warning_each(load, caplog):
-    load('<actor name="a"/><actor name="b"/><road name="r"/><gui/><wind/><atmosphere/>')
+def test_unknown_elements_are_one_warning_each(load, caplog, tmp_path):
+    # conforms: SDF 1.2 to 1.7/unknown element, SDF 1.2 to 1.7/foreign namespace
+    load(f"""<gui/><wind/><atmosphere/><my:own/><elevator/><elevator/>
+        <model name="m">{BOX.replace("collision", "colision")}</model>""")
+    file = tmp_path / "test.world"
     assert [record.getMessage() for record in caplog.records] == [
-        "world 'default': <actor> is not supported, left out",
-        "world 'default': <road> is not supported, left out"]
+        f"{file}: world 'default': <elevator> is not known, left out",
+        f"{file}: world 'default', model 'm', link 'link': <colision> is not known, "
+        "left out; did you mean <collision>?"]
 
 
 def test_world_plugins_are_kept(load):

@@ -201,13 +201,14 @@ def test_obj_without_its_material_library_still_loads(tmp_path):
 @pytest.mark.parametrize(("name", "content", "reason"), [
     ("junk.stl", b"nonsense" * 30, "neither text nor binary STL"),
     ("empty.stl", b"", "neither text nor binary STL"),
-    ("cut.stl", b"a header".ljust(80) + b"\2\0\0\0" + bytes(99), "neither text nor binary STL"),
+    ("cut.stl", b"a header".ljust(80) + b"\2\0\0\0" + bytes(99),
+     "the header says 2 triangles, 1 are there"),
     ("cut_text.stl", b"solid x\nvertex 0 0 0\nvertex 1 0 0\n", "'x' has a facet without three"),
     ("word.stl", b"solid\nvertex 0 0 zero\n", "could not convert string to float: 'zero'"),
     ("cut.dae", b"<COLLADA", "XML Parsing Error"),
     ("text.obj", b"hello", "no triangles"),
-    ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "out of bounds"),
-    ("shape.step", b"ISO-10303", "unknown kind '.step'; there are: .dae, .obj, .stl"),
+    ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "asks for v number 7, there are 2"),
+    ("shape.step", b"ISO-10303", "unknown kind '.step'; there are: .dae, .glb, .gltf, .obj,"),
     ("gone.stl", None, "No such file"),
 ])
 def test_unreadable_mesh_is_one_line_with_file_and_reason(tmp_path, capfd, name, content, reason):

@@ -205,11 +205,11 @@ def test_a_small_wheel_turns_faster_than_the_engines_own_bound(world):
     assert joint.velocity == pytest.approx(300.0, rel=0.01)
 
 
-def test_a_joint_that_is_held_says_so(world):
+def test_a_joint_without_a_position_says_so(world):
     links = (box_link("a", (0.1, 0.1, 0.1), 1.0), box_link("b", (0.1, 0.1, 0.1), 1.0))
-    held = JointDescription("j", "screw", "a", "b")
-    model = world.spawn(ModelDescription("m", links=links, joints=(held,)))
-    with pytest.raises(SimulationError, match="joint 'j' of model m is of type screw"):
+    gear = JointDescription("j", "gearbox", "a", "b")
+    model = world.spawn(ModelDescription("m", links=links, joints=(gear,)))
+    with pytest.raises(SimulationError, match="joint 'j' of model m is of type gearbox"):
         model.joint("j")
 
 

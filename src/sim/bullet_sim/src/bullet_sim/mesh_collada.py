@@ -7,6 +7,7 @@ in their bind pose.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,8 @@ import numpy as np
 
 from bullet_sim.description import Material, Rgba
 from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
+
+_log = logging.getLogger(__name__)
 
 
 def read_collada(path: Path, split: bool) -> list[NamedPart]:
@@ -144,7 +147,7 @@ def _opacity(effect: Any) -> float:
 
 
 def _texture(value: Any, folder: Path) -> str | None:
-    """Absolute path of a diffuse map that exists, sought as written and beside the file."""
+    """Absolute path of a diffuse map, sought as written and beside the file; else a warning."""
     image = getattr(getattr(getattr(value, "sampler", None), "surface", None), "image", None)
     written = getattr(image, "path", None)
     if not written:
@@ -153,4 +156,5 @@ def _texture(value: Any, folder: Path) -> str | None:
     for path in (folder / name, folder / Path(name).name):
         if path.is_file():
             return str(path.resolve())
+    _log.warning("a COLLADA mesh in %s: texture %s not found there; drawn without it", folder, name)
     return None

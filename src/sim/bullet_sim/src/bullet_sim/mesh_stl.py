@@ -16,6 +16,7 @@ from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
 
 # The binary layout: 80 bytes of anything, the number of facets, and for each facet this.
 _HEADER_BYTES = 84
+_MOST_FACETS = 10**8  # beyond this the number is letters
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 _SOLID = re.compile(r"^[ \t]*solid\b(.*)$", re.MULTILINE | re.IGNORECASE)
@@ -30,7 +31,7 @@ def read_stl(path: Path, split: bool) -> list[NamedPart]:
         return [(path.stem, _part(corners))]
     solids = _text_solids(content.decode(errors="replace"))
     if not solids:
-        raise FormatError("neither text nor binary STL, or empty")
+        return [(path.stem, _part(_cut_or_padded_corners(content)))]
     if len(solids) == 1:
         return [(path.stem, _part(solids[0][1]))]
     return [(name, _part(corners)) for name, corners in solids]
@@ -44,6 +45,19 @@ def _binary_corners(content: bytes) -> np.ndarray | None:
     if len(content) != _HEADER_BYTES + count * _FACET.itemsize:
         return None
     return np.frombuffer(content, _FACET, offset=_HEADER_BYTES)["corners"].reshape(-1, 3)
+
+
+def _cut_or_padded_corners(content: bytes) -> np.ndarray:
+    """As many facets as there are: some programs write a wrong number or append bytes."""
+    stated = int.from_bytes(content[_HEADER_BYTES - 4:_HEADER_BYTES], "little")
+    present = max(0, len(content) - _HEADER_BYTES) // _FACET.itemsize
+    if not present or stated > _MOST_FACETS:
+        raise FormatError("neither text nor binary STL, or empty")
+    if stated > present:
+        raise FormatError(f"cut off: the header says {stated} triangles, {present} are there; "
+                          "copy or export the file again")
+    facets = np.frombuffer(content, _FACET, stated or present, _HEADER_BYTES)
+    return facets["corners"].reshape(-1, 3)
 
 
 def _text_solids(text: str) -> list[tuple[str, np.ndarray]]:

@@ -1,113 +1,134 @@
-"""Wavefront OBJ files with the materials of their MTL file."""
+"""Wavefront OBJ files: polygons of any number of corners, with the materials of their MTL files.
+
+Read here and not by trimesh, which refuses polygons of four corners in a group of their own.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
-from urllib.parse import unquote
 
 import numpy as np
 
 from bullet_sim.description import Material
+from bullet_sim.errors import FormatError
 from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.mesh_wavefront_materials import read_materials
+
+LISTS = ("v", "vt", "vn")  # positions, image coordinates, normals
+WIDTHS = {"v": 3, "vt": 2, "vn": 3}
+
+
+@dataclass
+class _Statements:
+    """A file's lines by what they say."""
+
+    lists: dict[str, list[str]] = field(default_factory=lambda: {key: [] for key in LISTS})
+    corners: dict[tuple[str, str], list[str]] = field(default_factory=dict)
+    # object and material -> corners such as 7/3/5, three for each triangle
+    libraries: list[str] = field(default_factory=list)
 
 
 def read_wavefront(path: Path, split: bool) -> list[NamedPart]:
-    """One part per material; with `split`, one per object, named as in the file."""
-    from trimesh.exchange.obj import load_obj
-    from trimesh.resolvers import FilePathResolver
-
-    with path.open("rb") as file:
-        loaded = load_obj(
-            file,
-            resolver=FilePathResolver(str(path)),
-            group_material=True,
-            split_objects=split,
-        )
-    materials = _read_materials(path)
+    """One part per material; with `split`, one per object and material, named as in the file."""
+    statements = _statements(path, split)
+    materials = read_materials(path, statements.libraries)
+    arrays = {key: _array(rows, WIDTHS[key]) for key, rows in statements.lists.items()}
     return [
-        (_object_name(name, solid), _part(solid, materials))
-        for name, solid in loaded.get("geometry", {}).items()
+        (name, _part(_indices(corners), arrays, materials.get(material)))
+        for (name, material), corners in statements.corners.items() if corners
     ]
 
 
-def _object_name(name: str, solid: dict) -> str:
-    """Without the material that trimesh appends to the object's name."""
-    return name.removesuffix("_" + _material_name(solid)) if _material_name(solid) else name
+def _statements(path: Path, split: bool) -> _Statements:
+    found = _Statements()
+    name, material = path.stem, ""
+    target = found.corners.setdefault((name, material), [])
+    for line in path.read_text(errors="replace").replace("\\\n", " ").splitlines():
+        key, _, rest = line.strip().replace("\t", " ").partition(" ")
+        if key in found.lists:
+            found.lists[key].append(rest)
+        elif key == "f":
+            target += _triangles(rest.split(), found.lists)
+        elif key in ("o", "g", "usemtl"):
+            if key == "usemtl":
+                material = rest.strip()
+            elif split:
+                name = rest.strip() or name
+            target = found.corners.setdefault((name, material), [])
+        elif key == "mtllib":
+            found.libraries += [rest.strip()]
+    return found
 
 
-def _material_name(solid: dict) -> str:
-    material = getattr(solid.get("visual"), "material", None)
-    return getattr(material, "name", None) or ""
+def _triangles(corners: list[str], lists: dict[str, list[str]]) -> Iterable[str]:
+    """A polygon as a fan; indices that count from the end of the lists so far, from the start."""
+    if any("-" in corner for corner in corners):
+        corners = [_from_the_start(corner, lists) for corner in corners]
+    if len(corners) == 3:
+        return corners
+    return [
+        corner for second, third in pairwise(corners[1:])
+        for corner in (corners[0], second, third)
+    ]
 
 
-def _part(solid: dict, materials: dict[str, Material]) -> MeshPart:
-    material = materials.get(_material_name(solid))
-    uv = getattr(solid.get("visual"), "uv", None)
-    vertices, faces = np.asarray(solid["vertices"]), np.asarray(solid["faces"])
-    normals = solid.get("vertex_normals")
-    if normals is None:
+def _from_the_start(corner: str, lists: dict[str, list[str]]) -> str:
+    words = []
+    for word, key in zip(corner.split("/"), LISTS, strict=False):
+        words.append(str(len(lists[key]) + 1 + int(word)) if word.startswith("-") else word)
+    return "/".join(words)
+
+
+def _array(rows: list[str], width: int) -> np.ndarray:
+    """(n, width) of what may have more columns, such as colours, or too few."""
+    if not rows:
+        return np.zeros((0, width))
+    columns = len(rows[0].split())
+    values = np.array(" ".join(rows).split(), np.float64)
+    if columns < width or values.size != len(rows) * columns:
+        padded = [[*row.split(), *["0"] * width][:width] for row in rows]
+        return np.array(padded, np.float64)
+    return values.reshape(len(rows), columns)[:, :width]
+
+
+def _indices(corners: list[str]) -> np.ndarray:
+    """(n, 3) from 0, of position, image coordinate and normal; -1 where a corner has none."""
+    text = " ".join(corners)
+    first = corners[0]
+    columns = first.count("/") + 1
+    if "//" not in text and text.count("/") == (columns - 1) * len(corners):
+        given = np.array(text.replace("/", " ").split(), np.int64).reshape(-1, columns)
+        indices = np.zeros((len(corners), 3), np.int64)
+        indices[:, :columns] = given
+        return indices - 1
+    words = [[*corner.split("/"), "", ""][:3] for corner in corners]
+    return np.array([[int(word or 0) for word in row] for row in words], np.int64) - 1
+
+
+def _part(
+    indices: np.ndarray, arrays: dict[str, np.ndarray], material: Material | None
+) -> MeshPart:
+    for key, column in zip(LISTS, indices.T):
+        if len(column) and column.max() >= len(arrays[key]):
+            raise FormatError(f"a face asks for {key} number {column.max() + 1}, there are "
+                              f"{len(arrays[key])}")
+    if (indices[:, 0] < 0).any():
+        raise FormatError("a face has a corner number below 1")
+    position, image, normal = indices.T
+    faces = np.arange(len(indices), dtype=np.uint32).reshape(-1, 3)
+    vertices = arrays["v"][position]
+    uv = None if (image < 0).any() else arrays["vt"][image].astype(np.float32)
+    if (normal < 0).any():
         return flat_shaded(vertices, faces, uv, material)
+    normals = arrays["vn"][normal]
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
     return MeshPart(
         vertices=vertices.astype(np.float32),
-        normals=np.asarray(normals, np.float32),
-        uv=None if uv is None else np.asarray(uv, np.float32),
-        faces=faces.astype(np.uint32),
+        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
+        uv=uv,
+        faces=faces,
         material=material,
     )
-
-
-def _read_materials(path: Path) -> dict[str, Material]:
-    """Colours and texture of each `newmtl` in the OBJ's library; a missing library has none."""
-    library = _library_of(path)
-    if library is None or not library.is_file():
-        return {}
-    values: dict[str, dict[str, list[str]]] = {}
-    current: dict[str, list[str]] = {}
-    for line in library.read_text(errors="replace").splitlines():
-        key, *words = line.split() or [""]
-        if key.lower() == "newmtl":
-            current = values[" ".join(words)] = {}
-        elif words:
-            current[key.lower()] = words
-    return {name: _material(entry, library.parent) for name, entry in values.items()}
-
-
-def _library_of(path: Path) -> Path | None:
-    with path.open(errors="replace") as lines:
-        for line in lines:
-            if line.startswith("mtllib"):
-                return path.parent / line[len("mtllib"):].strip()
-    return None
-
-
-def _material(entry: dict[str, list[str]], folder: Path) -> Material:
-    alpha = float(entry["d"][-1]) if "d" in entry else 1.0
-    texture = _texture(entry.get("map_kd"), folder)
-    diffuse = _colour(entry.get("kd"), (1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7))
-    return Material(
-        # As Gazebo: exporters leave Ka black or white whatever the surface is.
-        ambient=(*diffuse, 1.0),
-        diffuse=(*diffuse, alpha),
-        specular=(*_colour(entry.get("ks"), (0.0, 0.0, 0.0)), 1.0),
-        emissive=(*_colour(entry.get("ke"), (0.0, 0.0, 0.0)), 1.0),
-        shininess=float(entry["ns"][0]) if "ns" in entry else 0.0,
-        texture=texture,
-    )
-
-
-def _colour(words: list[str] | None, default: tuple) -> tuple[float, float, float]:
-    if words is None:
-        return default
-    red, green, blue = (float(word) for word in (words * 3 if len(words) == 1 else words)[:3])
-    return (red, green, blue)
-
-
-def _texture(words: list[str] | None, folder: Path) -> str | None:
-    """Absolute path of `map_Kd`, whose options are skipped; a missing file is no texture."""
-    if not words:
-        return None
-    for name in (" ".join(words), words[-1]):
-        path = folder / unquote(name.replace("\\", "/"))
-        if path.is_file():
-            return str(path.resolve())
-    return None

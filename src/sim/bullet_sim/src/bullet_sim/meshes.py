@@ -11,15 +11,23 @@ from pathlib import Path
 
 import numpy as np
 
-from bullet_sim.description import Mesh
+from bullet_sim.description import Generated, Mesh
 from bullet_sim.errors import FormatError
+from bullet_sim.generated import generated_parts
 from bullet_sim.mesh_collada import read_collada
-from bullet_sim.mesh_part import MeshPart, NamedPart
+from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.mesh_scene import read_scene
+from bullet_sim.mesh_simplify import cluster
 from bullet_sim.mesh_stl import read_stl
 from bullet_sim.mesh_wavefront import read_wavefront
 
 __all__ = ["MeshPart", "collision_mesh", "load_mesh", "to_obj"]
 
+LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times that of memory
+MOST_DRAWN = 300_000  # triangles of one file; more hold the camera up
+MOST_COLLIDING = 60_000  # triangles of one file; with a million the engine takes ten seconds
+
+_log = logging.getLogger(__name__)
 _trimesh_log = logging.getLogger("trimesh")
 _trimesh_log.addHandler(logging.NullHandler())
 _trimesh_log.propagate = False  # a learner's terminal shows our own warning, once
@@ -33,23 +41,37 @@ class _FileVersion:
     modified_ns: int
 
 
-def load_mesh(geometry: Mesh) -> tuple[MeshPart, ...]:
-    """Parts of an STL, DAE or OBJ file, one per material, in the mesh's own frame and in metres."""
+def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
+    """Parts of a file, one per material, in the mesh's own frame and in metres.
+
+    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning.
+    """
+    if not isinstance(geometry, Mesh):
+        return generated_parts(geometry)
     try:
-        modified_ns = os.stat(geometry.path).st_mtime_ns
+        status = os.stat(geometry.path)
     except OSError as error:
         raise FormatError(f"mesh {geometry.path} cannot be read: {error.strerror}") from None
-    return _load(_FileVersion(geometry, modified_ns))
+    if status.st_size > LARGEST_FILE:
+        raise FormatError(f"mesh {geometry.path} cannot be read: {status.st_size // 10**6} MB, "
+                          f"more than {LARGEST_FILE // 10**6}; export it with fewer triangles")
+    return _load(_FileVersion(geometry, status.st_mtime_ns))
 
 
-def collision_mesh(geometry: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """All triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32."""
+def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
+    """The triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32.
+
+    Of more than `MOST_COLLIDING`, so many that stay close to them.
+    """
     parts = load_mesh(geometry)
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
     vertices = np.concatenate([part.vertices for part in parts])
     faces = np.concatenate([
         part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
     ])
+    if len(faces) > MOST_COLLIDING:
+        kept, faces = cluster(vertices, faces, MOST_COLLIDING)
+        return vertices[kept], faces
     unique, index = np.unique(vertices, axis=0, return_inverse=True)
     faces = index.reshape(-1)[faces].astype(np.uint32)
     has_area = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
@@ -81,6 +103,7 @@ def _load(version: _FileVersion) -> tuple[MeshPart, ...]:
     parts = [part for _, part in _chosen(named, geometry)]
     if geometry.submesh is not None and geometry.centre_submesh:
         parts = _centred(parts)
+    parts = _with_fewer_triangles(parts, geometry.path)
     return tuple(_scaled(part, geometry.scale) for part in parts)
 
 
@@ -125,6 +148,22 @@ def _centred(parts: list[MeshPart]) -> list[MeshPart]:
     return [replace(part, vertices=part.vertices - middle) for part in parts]
 
 
+def _with_fewer_triangles(parts: list[MeshPart], path: str) -> list[MeshPart]:
+    count = sum(len(part.faces) for part in parts)
+    if count <= MOST_DRAWN:
+        return parts
+    fewer = []
+    for part in parts:
+        kept, faces = cluster(part.vertices, part.faces, MOST_DRAWN * len(part.faces) // count)
+        uv = None if part.uv is None else part.uv[kept]
+        fewer.append(flat_shaded(part.vertices[kept], faces, uv, part.material))
+    fewer = [part for part in fewer if len(part.faces)]
+    left = sum(len(part.faces) for part in fewer)
+    _log.warning("mesh %s has %d triangles and is drawn with %d; export it with at most %d",
+                 path, count, left, MOST_DRAWN)
+    return fewer
+
+
 def _scaled(part: MeshPart, scale: tuple[float, float, float]) -> MeshPart:
     """Scaled along the mesh's axes; a mirroring scale turns triangles so they still face out."""
     if scale == (1.0, 1.0, 1.0):
@@ -150,4 +189,8 @@ _READERS = {
     ".stlb": read_stl,
     ".obj": read_wavefront,
     ".dae": read_collada,
+    ".glb": read_scene,
+    ".gltf": read_scene,
+    ".off": read_scene,
+    ".ply": read_scene,
 }

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
-from bullet_sim.description import JointDescription, LinkDescription, ModelDescription
+from bullet_sim.description import (
+    Inertial,
+    JointDescription,
+    LinkDescription,
+    ModelDescription,
+)
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.physics.assembly import WORLD, assemble
+from bullet_sim.joint import HeldJoint, Joint, LoopJoint, OddGroup
+from bullet_sim.physics.assembly import WORLD, assemble, loose_joints
+from bullet_sim.physics.attachments import Attachment
+from bullet_sim.physics.axes import SECOND
 from bullet_sim.physics.body import STILL, Body, Twist, gravity_compensation
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.filters import Filters
 from bullet_sim.physics.joint_group import JointGroup
+from bullet_sim.physics.loops import Closures
 from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 
@@ -33,46 +44,37 @@ class Link:
         """Velocity of the link frame's origin, world axes."""
         return self.model.link_states()[self.name][1]
 
+    def move(self, pose: Pose, twist: Twist) -> None:
+        """Put it there, with that velocity (world axes), and all that joints hold it to.
+
+        Joints keep their positions and rates.
+        """
+        self.model.move_body(self._body, pose * self.pose.inverse())
+        if not self._body.tree.held:
+            self._body.add_twist(twist_difference(twist, self.twist), pose.position)
+            self.model.forget()
+
+    def change(self, inertial: Inertial, gravity: bool) -> None:
+        """Other mass, centre of mass and inertia, and whether gravity pulls at it."""
+        self.description = replace(self.description, inertial=inertial, gravity=gravity)
+        self.model.note_weightless()
+        if not self.model.static:
+            self._body.change_inertial(self.name, inertial)
+            self.model.forget()
+
+    def attach(self, other: Link | None = None) -> Attachment:
+        """Hold it where it is now, on another model's link or in the world, until released."""
+        if other is None:
+            return Attachment(self._body, self.name)
+        return Attachment(self._body, self.name, other._body, other.name)
+
     def apply_force(self, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
         self._body.apply_force(self.name, force, torque)
 
-
-class Joint:
-    """A joint that can move; positions in rad or m."""
-
-    def __init__(self, description: JointDescription, body: Body, touched: Callable[[], None]):
-        self.description = description
-        self.name = description.name
-        self._body = body
-        self._touched = touched
-
-    @property
-    def position(self) -> float:
-        """Angle or travel from the described pose."""
-        return self._body.joint_state(self.name)[0]
-
-    @property
-    def velocity(self) -> float:
-        """Rate of `position`."""
-        return self._body.joint_state(self.name)[1]
-
-    def reset(self, position: float, velocity: float = 0.0) -> None:
-        """Put the joint there at once."""
-        self._body.reset_joint(self.name, position, velocity)
-        self._touched()
-
-    def drive_velocity(self, velocity: float, effort: float) -> None:
-        """Hold a rate with at most `effort` (N m or N), until told otherwise."""
-        self._body.drive_velocity(self.name, velocity, effort)
-
-    def drive_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step."""
-        self._body.drive_effort(self.name, effort)
-
-    def release(self) -> None:
-        """Let it turn freely, but for its own friction."""
-        self._body.release(self.name)
+    def apply_steady_force(self, force: Vector3) -> None:
+        """Force (N) at the centre of mass that acts in every step, world axes."""
+        self._body.apply_steady_force(self.name, force)
 
 
 class Model:
@@ -84,10 +86,16 @@ class Model:
         self.description = description
         self.static = description.static
         self.initial_pose = pose
+        self.was_mended = False  # whether its motion has been no number once
         self.bodies: list[Body] = []
+        self._rest = client.rest
         try:
-            for tree in assemble(description):
+            trees = assemble(description)
+            for tree in trees:
                 self.bodies.append(Body(client, tree, pose))
+            loose = loose_joints(description, trees)
+            Closures(client, description, self.bodies, loose)
+            Filters(client, description, self.bodies)
         except Exception:
             self.remove()  # what was made before the failure
             raise
@@ -97,12 +105,29 @@ class Model:
         self.links = {
             link.name: Link(self, link, owner[link.name]) for link in description.links
         }
-        self.joints = {
+        self._axes = {  # all that the engine can move, second axes and travels of screws too
             joint: Joint(body.joint_description(joint), body, self.forget)
             for body in self.bodies for joint in body.joint_names()
         }
-        self._weightless = [] if self.static else [
-            link for link in self.links.values() if not link.description.gravity]
+        self._find_joints(loose)
+        self._steady = [body for body in self.bodies if body.acts_steadily]
+        self.note_weightless()
+
+    def _find_joints(self, loose: Sequence[JointDescription]) -> None:
+        described = {joint.name: joint for joint in self.description.joints}
+        self.joints: dict[str, Joint | HeldJoint] = {
+            name: joint for name, joint in self._axes.items() if name in described}
+        for name, joint in self.joints.items():
+            joint.second_axis = self._axes.get(name + SECOND)
+        self.fixed_joints: dict[str, HeldJoint] = {}
+        for body in self.bodies:
+            for link in body.tree.links:
+                if link.carrier is not None and link.carrier.name not in self.joints:
+                    held = HeldJoint(described[link.carrier.name], body)
+                    known = self.fixed_joints if held.description.type == "fixed" else self.joints
+                    known[held.name] = held
+        self.joints |= {joint.name: LoopJoint(joint, self) for joint in loose
+                        if joint.type not in ("fixed", "gearbox")}
 
     # --- state
 
@@ -144,18 +169,28 @@ class Model:
         self._set_pose = pose
         self.forget()
 
+    def move_body(self, body: Body, change: Pose) -> None:
+        """Move one of its bodies by a displacement that is given in the world."""
+        body.set_base_frame(change * body.base_frame())
+        self._set_pose = change * self._set_pose
+        self.forget()
+
     def set_twist(self, twist: Twist) -> None:
         """Move as a rigid whole whose model frame has that twist; joints stop turning."""
-        for joint in self.joints.values():
+        for joint in self._axes.values():
             joint.reset(joint.position)
+        self.set_velocity(twist)
+
+    def set_velocity(self, twist: Twist) -> None:
+        """Move as a whole with that twist of the model frame; joints go on turning."""
         for body in self.bodies:
-            if not body.tree.fixed:
+            if not body.tree.held:
                 body.set_twist(twist, self.pose.position)
         self.forget()
 
     def reset(self) -> None:
         """Back to the pose it was spawned at, joints at zero, everything still."""
-        for joint in self.joints.values():
+        for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
         for body in self.bodies:
             body.set_base_frame(self.initial_pose * body.base_pose_model)
@@ -165,10 +200,19 @@ class Model:
 
     # --- for the world
 
+    def note_weightless(self) -> None:
+        """Which links gravity does not pull at."""
+        self._weightless = [] if self.static else [
+            link for link in self.links.values() if not link.description.gravity]
+
     def before_step(self, gravity: Vector3) -> None:
         """Forces that act every step; gravity in m/s^2."""
+        if not (self._steady or self._weightless) or self._rest.reached:
+            return  # at rest no step takes place, and the engine would add them up
+        for body in self._steady:
+            body.apply_steady()
         for link in self._weightless:
-            link.apply_force(gravity_compensation(link.description, gravity))
+            link.apply_steady_force(gravity_compensation(link.description, gravity))
 
     def link(self, name: str) -> Link:
         """The link, or the one that took it in when fixed joints were lumped."""
@@ -177,21 +221,24 @@ class Model:
             raise UnknownName(f"link of model {self.name}", name, self.links)
         return self.links[name]
 
-    def joint(self, name: str) -> Joint:
-        """The joint of that name."""
+    def joint(self, name: str) -> Joint | HeldJoint:
+        """The joint of that name; fixed ones are there too, but not among `joints`."""
+        found = self.joints.get(name) or self.fixed_joints.get(name)
+        if found is not None:
+            return found
         held = [joint for joint in self.description.joints if joint.name == name]
-        if name not in self.joints and held:
+        if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
-                                  f"{held[0].type}, which is held fixed")
-        if name not in self.joints:
-            raise UnknownName(f"joint of model {self.name}", name, self.joints)
-        return self.joints[name]
+                                  f"{held[0].type}, of which there is nothing to read or drive")
+        raise UnknownName(f"joint of model {self.name}", name, self.joints)
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
         """The joints of these names, to be read and driven together: a group for each body."""
         for name in names:
             self.joint(name)
         groups = [body.joint_group(names) for body in self.bodies]
+        groups += [OddGroup(self.joint(name)) for name in names
+                   if isinstance(self.joint(name), HeldJoint)]
         return [group for group in groups if group.names]
 
     def remove(self) -> None:
@@ -209,6 +256,12 @@ def shifted_twist(twist: Twist, at: Vector3, to: Vector3) -> Twist:
         (linear[0] + ay * z - az * y, linear[1] + az * x - ax * z, linear[2] + ax * y - ay * x),
         twist.angular,
     )
+
+
+def twist_difference(a: Twist, b: Twist) -> Twist:
+    """What `a` is more than `b`."""
+    return Twist(tuple(x - y for x, y in zip(a.linear, b.linear, strict=True)),
+                 tuple(x - y for x, y in zip(a.angular, b.angular, strict=True)))
 
 
 def twist_in(pose: Pose, twist: Twist) -> Twist:

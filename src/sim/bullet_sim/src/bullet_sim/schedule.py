@@ -12,13 +12,16 @@ class Schedule:
 
     A period that is no whole number of steps alternates between two lengths, so that the long-run
     rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps, as in Gazebo's plugins that
-    accumulate.
+    accumulate. With `whole_steps` the period is rounded up to steps: every 34, as in those that
+    count from the last time.
     """
 
-    def __init__(self, rate_hz: float, timestep: float, origin: int = 0):
+    def __init__(self, rate_hz: float, timestep: float, origin: int = 0,
+                 whole_steps: bool = False):
         if rate_hz < 0 or not math.isfinite(rate_hz):
             raise SimulationError(f"a rate of {rate_hz} Hz is not possible; 0 means every step")
         self.rate_hz = rate_hz
+        self._whole_steps = whole_steps
         self.restart(origin, timestep)
 
     def restart(self, tick: int, timestep: float | None = None) -> None:
@@ -27,6 +30,8 @@ class Schedule:
         if timestep is not None:
             every = self.rate_hz == 0
             self._period = 1.0 if every else max(1.0, 1.0 / (self.rate_hz * timestep))  # steps
+            if self._whole_steps:
+                self._period = float(math.ceil(self._period - 1e-9))
 
     def next_tick(self, tick: int) -> int:
         """The first due tick after this one."""

@@ -10,15 +10,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bullet_sim.actors import Walker
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, UnknownName
+from bullet_sim.forces import Forces
 from bullet_sim.model import Link, Model
+from bullet_sim.nested import find_part
 from bullet_sim.physics.body import Twist
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.contacts import Contact, read_contacts
 from bullet_sim.physics.limits import check_physics
+from bullet_sim.physics.mending import mend
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.stages import Stages
+
+INERTIAL_FRAMES = ("", "world", "map", "/map")  # other names of the world's frame
 
 
 @dataclass(frozen=True)
@@ -53,20 +60,24 @@ class World:
         check_physics(self.description.physics)
         self.seed = seed
         self._initial_time = initial_time
-        self.tick = round(initial_time / self.timestep)
+        # A saved world goes on when it was saved; a reset takes it to the beginning.
+        self.tick = round((self.description.sim_time or initial_time) / self.timestep)
         self.paused = False
         self.models: dict[str, Model] = {}
         self.lights: dict[str, LightDescription] = {}
         self.scene = Scene(self.description.scene)
+        self.forces = Forces()
         self.stages = Stages()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
         self._moving: list[Model] = []
+        self._walkers: dict[str, Walker] = {}
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
-        self._retro: dict[tuple[int, int], float] = {}
         for light in self.description.lights:
             self.add_light(light)
         for model in self.description.models:
             self.spawn(model)
+        for name, visual in self.description.scenery:
+            self.scene.add_link(("", name), (visual,), IDENTITY)
 
     # --- time
 
@@ -84,19 +95,25 @@ class World:
         """So many steps forward; while paused, time stands still."""
         if self.paused or count < 1:
             return
-        if self._client.rest.reached and not self.each_step:
+        if self._client.rest.reached and not (self.each_step or self.forces or self._walkers):
             self.tick += count
             return
         start = time.perf_counter()
         step, moving, each_step = self._client.step, self._moving, self.each_step
         gravity = self.description.gravity
         for _ in range(count):
+            if self.forces:  # first: they may end the rest in which models do nothing
+                self.forces.apply((self.tick + 1) * self.timestep, self.timestep)
             for model in moving:
                 model.before_step(gravity)
             step()
             self.tick += 1
+            if self._client.rest.broken:
+                mend(self._client, self.models.values())
             for model in moving:
                 model.forget()
+            for walker in self._walkers.values():
+                walker.walk(self.time)
             for function in each_step:
                 function()
         self.stages.add("physics", time.perf_counter() - start, count)
@@ -120,6 +137,8 @@ class World:
         model = Model(name, description, pose * description.pose, self._client)
         self.models[name] = model
         self._note_moving()
+        if description.trajectory:
+            self._walkers[name] = Walker(model, description.trajectory)
         try:
             self._show(model)
         except Exception:
@@ -131,27 +150,23 @@ class World:
         self._moving = [model for model in self.models.values() if not model.static]
 
     def _show(self, model: Model) -> None:
-        """Put a model's visuals and lights into the scene, and note what lasers see of it."""
+        """Put a model's visuals and lights into the scene."""
         for link in model.links.values():
             self.scene.add_link((model.name, link.name), link.description.visuals, link.pose)
             for light in link.description.lights:
                 scoped = f"{link.scoped_name}::{light.name}"
                 self.add_light(replace(light, name=scoped, pose=link.pose * light.pose))
-        for body in model.bodies:
-            for index, link in enumerate(body.tree.links, start=-1):
-                if link.collisions and link.collisions[0].laser_retro:
-                    self._retro[(body.number, index)] = link.collisions[0].laser_retro
 
     def delete(self, name: str) -> None:
         """Take a model out."""
         model = self.model(name)
         del self.models[name]
+        self._walkers.pop(name, None)
         self._note_moving()
         self.scene.remove_model(name)
         for light in [light for light in self.lights if light.startswith(f"{name}::")]:
             self.remove_light(light)
-        numbers = {body.number for body in model.bodies}
-        self._retro = {key: value for key, value in self._retro.items() if key[0] not in numbers}
+        self.forces.drop_model(model)
         model.remove()
 
     def model(self, name: str) -> Model:
@@ -173,11 +188,14 @@ class World:
 
     def frame(self, name: str) -> tuple[Pose, Twist]:
         """Pose and twist of a reference frame: a model, a link, or the world by its usual names."""
-        if name in self.models:
-            return self.models[name].pose, self.models[name].twist
-        if name in ("", "world", "map", "/map"):
-            return IDENTITY, Twist()
-        link = self.link(name)
+        if part := find_part(self.models.values(), name):
+            return part.pose, part.twist
+        try:
+            link = self.link(name)
+        except UnknownName:
+            if name in INERTIAL_FRAMES:
+                return IDENTITY, Twist()
+            raise
         return link.pose, link.twist
 
     def add_light(self, light: LightDescription) -> None:
@@ -186,6 +204,11 @@ class World:
             raise NameTaken(f"a light named {light.name!r} is already there")
         self.lights[light.name] = light
         self.scene.add_light(light)
+
+    def change_light(self, light: LightDescription) -> None:
+        """Give the light of that name other properties, from the next picture on."""
+        self.remove_light(light.name)
+        self.add_light(light)
 
     def remove_light(self, name: str) -> None:
         """Switch a light off for good."""
@@ -230,9 +253,14 @@ class World:
         rows = self._client.cast_rays(starts.tolist(), ends.tolist())
         fraction = np.array([row[2] if row[0] >= 0 else 1.0 for row in rows])
         retro = np.zeros(len(rows))
-        if self._retro:
-            retro[:] = [self._retro.get((row[0], row[1]), 0.0) for row in rows]
+        if self._client.retro:
+            retro[:] = [self._client.retro.get((row[0], row[1]), 0.0) for row in rows]
         return RayHits(fraction, retro)
+
+    def contacts(self) -> list[Contact]:
+        """What touched what in the last step; read from the engine when asked for."""
+        return read_contacts(self._client, [
+            (model.name, body) for model in self.models.values() for body in model.bodies])
 
     def configure_physics(self, **changes) -> None:
         """Change fields of the world's PhysicsDescription, and gravity (m/s^2): all or none."""

@@ -13,16 +13,18 @@ from bullet_sim.formats import sdf_model, sdf_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf_include import read_include
 from bullet_sim.formats.sdf_light import read_light
+from bullet_sim.formats.sdf_schema import warn_of_unknown_elements
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf import read_robot
 from bullet_sim.formats.xml_values import parse_xml, read_xml_file
+from bullet_sim.pose import IDENTITY
 
 NOT_A_MODEL = (
     "GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, or cannot be "
     "converted to Gazebo compatible format."
 )
 SDF_ROOTS = ("sdf", "gazebo")
-PACKAGE_URI = re.compile(r"package://([^/\s\"'<>]+)")
+PACKAGE_URI = re.compile(r"package://([^/\\\s\"'<>]+)")
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
@@ -58,6 +60,7 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     if world is None:
         raise FormatError(f"{path} has no <world> in an <sdf> root (the root is <{root.tag}>)")
     source = Source(resources).entering(path.resolve()).of_root(root)
+    warn_of_unknown_elements(root, source, str(path))
     try:
         return sdf_world.read_world(world, source, _read_model, _read_include)
     except FormatError as error:
@@ -87,6 +90,7 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
     if root.tag == "robot":
         return read_robot(root, source)
     source = source.of_root(root)
+    warn_of_unknown_elements(root, source, str(source.including[-1]) if source.including else "")
     model = root.find("model")
     if model is None:
         model = root.find("world/model")
@@ -100,7 +104,8 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
     if not isinstance(found, ModelDescription):
         uri = (include.findtext("uri") or "").strip()
         raise FormatError(f"<include> of {uri!r} brings in no model")
-    return found
+    # The service writes a <pose> into the include, and that takes the place of the model's own.
+    return found if include.find("pose") is not None else replace(found, pose=IDENTITY)
 
 
 def _read_model(element: Element, source: Source) -> ModelDescription:

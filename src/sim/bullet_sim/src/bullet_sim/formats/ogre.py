@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
@@ -20,6 +21,7 @@ class ScriptMaterial:
 
     name: str
     parent: str | None = None
+    imports: tuple[str, ...] = ()  # names of the scripts that its script imports from
     values: dict[str, list[str]] = field(default_factory=dict)
 
 
@@ -27,13 +29,17 @@ def parse_script(text: str) -> dict[str, ScriptMaterial]:
     """All materials of a script by name."""
     statements = _statements(text)
     materials: dict[str, ScriptMaterial] = {}
+    imports: list[str] = []
     for words in statements:
         if words == ["{"]:
             _skip_block(statements)
+        elif words[0] == "import":
+            imports.append(words[-1])
         elif words[0] == "material" and len(words) > 1:
             material = _header(words[1:])
             if next(statements, None) != ["{"]:
                 raise FormatError(f"material {material.name!r}: expected '{{' after its name")
+            material.imports = tuple(imports)
             _read_block(statements, material, set())
             materials[material.name] = material
     return materials
@@ -43,12 +49,13 @@ def to_material(
     name: str,
     materials: dict[str, ScriptMaterial],
     find_texture: Callable[[str], str | None],
+    ready: Mapping[str, Material] = MappingProxyType({}),
 ) -> Material:
-    """The description of a parsed material, with what it inherits."""
-    values = _inherited(name, materials)
-    shown = Material()
-    specular, shininess = _specular(name, values.get("specular"))
-    texture = values.get("texture")
+    """The description of a parsed material, with what it inherits, at last from one of `ready`."""
+    values, oldest = _inherited(name, materials)
+    shown = ready.get(oldest or "", Material())
+    specular, shininess = _specular(name, values.get("specular"), shown)
+    texture = _texture_name(values)
     scale = _numbers(name, "scale", values.get("scale", ["1", "1"])[:2])
     return Material(
         ambient=_colour(name, "ambient", values, shown.ambient),
@@ -56,10 +63,19 @@ def to_material(
         specular=specular,
         emissive=_colour(name, "emissive", values, shown.emissive),
         shininess=shininess,
-        texture=find_texture(texture[0]) if texture else None,
+        texture=find_texture(texture) if texture else shown.texture,
         texture_scale=(scale[0], scale[-1]),
-        lighting=values.get("lighting", ["on"])[:1] != ["off"],
+        lighting=values["lighting"][0] != "off" if "lighting" in values else shown.lighting,
+        double_sided=values.get("cull_hardware") == ["none"],
     )
+
+
+def _texture_name(values: dict[str, list[str]]) -> str | None:
+    """Name of the image; a material that inherits may put another one in by its alias."""
+    alias, substitute = values.get("texture_alias"), values.get("set_texture_alias", [])
+    if len(substitute) > 1 and (alias is None or alias[0] == substitute[0]):
+        return substitute[1]
+    return values["texture"][0] if "texture" in values else None
 
 
 def _statements(text: str) -> Iterator[list[str]]:
@@ -110,7 +126,10 @@ def _skip_block(statements: Iterator[list[str]]) -> None:
             return
 
 
-def _inherited(name: str, materials: dict[str, ScriptMaterial]) -> dict[str, list[str]]:
+def _inherited(
+    name: str, materials: dict[str, ScriptMaterial]
+) -> tuple[dict[str, list[str]], str | None]:
+    """Keywords with what ancestors say, and the name of the oldest ancestor, not in `materials`."""
     chain: list[str] = []
     current: str | None = name
     while current in materials and current not in chain:
@@ -119,7 +138,7 @@ def _inherited(name: str, materials: dict[str, ScriptMaterial]) -> dict[str, lis
     values: dict[str, list[str]] = {}
     for ancestor in reversed(chain):
         values.update(materials[ancestor].values)
-    return values
+    return values, current
 
 
 def _colour(name: str, keyword: str, values: dict[str, list[str]], default: Rgba) -> Rgba:
@@ -129,10 +148,10 @@ def _colour(name: str, keyword: str, values: dict[str, list[str]], default: Rgba
     return _rgba(name, keyword, words)
 
 
-def _specular(name: str, words: list[str] | None) -> tuple[Rgba, float]:
+def _specular(name: str, words: list[str] | None, shown: Material) -> tuple[Rgba, float]:
     """OGRE writes the shininess as the last number, after three or four of colour."""
     if words is None or "vertexcolour" in words:
-        return Material().specular, Material().shininess
+        return shown.specular, shown.shininess
     if len(words) < 4:
         return _rgba(name, "specular", words), 0.0
     return _rgba(name, "specular", words[:-1]), _numbers(name, "specular", words[-1:])[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from urllib.parse import unquote
 
 from bullet_sim.errors import ResourceNotFound
 
@@ -45,10 +46,23 @@ class Resources:
         )
 
     def resolve(self, uri: str, base: Path | None = None) -> Path:
-        """The existing file or folder behind a URI; `base` is the folder of the text it is in."""
-        scheme, separator, rest = uri.strip().partition("://")
+        """The existing file or folder behind a URI; `base` is the folder of the text it is in.
+
+        What is not there as written is sought with `%20` and the like as letters, `\\` as `/`.
+        """
+        written = uri.strip()
+        try:
+            return self._as_written(written, base)
+        except ResourceNotFound:
+            meant = unquote(written.replace("\\", "/"))
+            if meant == written:
+                raise
+            return self._as_written(meant, base)
+
+    def _as_written(self, uri: str, base: Path | None) -> Path:
+        scheme, separator, rest = uri.partition("://")
         if not separator:
-            return self._first(uri, self._plain_candidates(uri.strip(), base))
+            return self._first(uri, self._plain_candidates(uri, base))
         if scheme == "model":
             return self._first(uri, [folder / rest for folder in self.model_paths])
         if scheme == "package":
@@ -56,6 +70,10 @@ class Resources:
             return self._first(uri, [self.package_folder(package) / inside])
         if scheme == "file":
             return self._first(uri, self._plain_candidates(rest, base))
+        if scheme in ("http", "https", "fuel"):
+            raise ResourceNotFound(uri, ["nowhere, unknown URI prefix: nothing is downloaded; "
+                                         "put the files into a folder of GAZEBO_MODEL_PATH and "
+                                         "write model://NAME"])
         raise ResourceNotFound(uri, ["nowhere, unknown URI prefix; known: model package file"])
 
     def find_world(self, name: str) -> Path:
@@ -75,7 +93,7 @@ class Resources:
         return Path(found)
 
     def _plain_candidates(self, name: str, base: Path | None) -> list[Path]:
-        path = Path(name).expanduser()
+        path = Path(os.path.expanduser(name))
         if path.is_absolute():
             return [path]
         nearby = [base / path] if base is not None else []
@@ -89,7 +107,7 @@ class Resources:
     @staticmethod
     def _first(uri: str, candidates: list[Path]) -> Path:
         for candidate in candidates:
-            if candidate.exists():
+            if os.path.exists(candidate):  # Path's own raises where a name is too long
                 return Path(os.path.abspath(candidate))
         raise ResourceNotFound(uri, dict.fromkeys(str(path.parent) for path in candidates))
 

@@ -33,6 +33,9 @@ class Frames:
         if element.tag != "joint" or name not in self._placed:
             self.add(name, given_in, placed)
 
+    def __contains__(self, name: str) -> bool:
+        return name in (MODEL, "world") or name in self._placed
+
     def joint_in_model(self, name: str) -> Pose:
         """Pose of a joint's frame in the model frame."""
         return self.in_model(JOINT + name)

@@ -19,6 +19,8 @@ logger = logging.getLogger(__name__)
 
 RootReader = Callable[[Element, Source], ModelDescription]
 MANIFESTS = ("model.config", "manifest.xml")
+DEEPEST = 30  # files that include each other
+MOST_FILES = 2000  # of one world: a few files that include each other twice are a million
 
 
 def read_include(
@@ -26,6 +28,9 @@ def read_include(
 ) -> ModelDescription | LightDescription | None:
     """What an include brings in; None, with one error line, where it cannot be had."""
     uri = child_text(include, "uri")
+    if len(source.files) >= MOST_FILES:
+        source.warn_once(f"more than {MOST_FILES} <include>s; the rest is left out", "includes")
+        return None
     try:
         return _read(include, uri, source, read_root)
     except ResourceNotFound as error:
@@ -38,9 +43,14 @@ def read_include(
 def _read(
     include: Element, uri: str, source: Source, read_root: RootReader
 ) -> ModelDescription | LightDescription:
+    if not uri:
+        raise FormatError("no <uri>; write <uri>model://NAME</uri>")
     file = model_file(source.resources.resolve(uri, source.folder))
     if file in source.including:
         raise FormatError(f"{file} includes itself")
+    if len(source.including) > DEEPEST:
+        raise FormatError(f"models that include models more than {DEEPEST} deep")
+    source.files.append(file)
     root = read_xml_file(file)
     inner = source.entering(file).of_root(root)
     light = root.find("light")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import JointDescription
+from bullet_sim.description import JointDescription, SecondAxis
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.sdf_frames import MODEL, Frames, end_of
 from bullet_sim.formats.source import Source
@@ -16,6 +16,7 @@ TYPES = (
     "revolute", "revolute2", "prismatic", "ball", "universal", "screw", "gearbox", "fixed",
     "continuous",
 )
+AXES = ("axis", "axis2")
 LIMITS = ("lower", "upper", "effort", "velocity")
 UNLIMITED = JointDescription("", "", "", "")
 AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the joint frame
@@ -34,20 +35,34 @@ def read_joint(
     child = _end(element, "child", links | {"world"}, where)
     if parent == child:
         raise FormatError(f"{where}: parent and child are both {parent!r}; name two links")
-    axis = element.find("axis") if element.find("axis") is not None else Element("axis")
-    if element.find("axis2") is not None:
-        source.warn_once(f"{where}: <axis2> is not supported, left out")
+    axis, axis2 = (
+        Element(tag) if element.find(tag) is None else element.find(tag) for tag in AXES
+    )
     return JointDescription(
         name=name,
         type=kind,
         parent=parent,
         child=child,
         pose=frames.in_model(child).inverse() * frames.joint_in_model(name),
-        axis=_direction(axis, name, source, frames, where),
+        axis=_direction(axis, name, source, frames, f"{where} <axis>"),
         provide_feedback=flag(element, "physics/provide_feedback", False)
         or flag(element, "physics/ode/provide_feedback", False),
         **_axis_numbers(axis, f"{where} <axis>"),
+        axis2=SecondAxis(
+            _direction(axis2, name, source, frames, f"{where} <axis2>"),
+            **_axis_numbers(axis2, f"{where} <axis2>"),
+        ),
+        thread_pitch=_not_zero(element, "thread_pitch", where),
+        gearbox_ratio=_not_zero(element, "gearbox_ratio", where),
+        gearbox_reference_body=child_text(element, "gearbox_reference_body"),
     )
+
+
+def _not_zero(element: Element, tag: str, where: str) -> float:
+    value = number(element, tag, 1.0, where)
+    if value == 0.0:
+        raise FormatError(f"{where} <{tag}>: 0 is not possible; leave it out for 1")
+    return value
 
 
 def _end(element: Element, role: str, known: set[str], where: str) -> str:
@@ -82,10 +97,10 @@ def _direction(
     axis: Element, joint: str, source: Source, frames: Frames, where: str
 ) -> Vector3:
     """Unit axis in the joint frame."""
-    written = vector(axis, "xyz", (0.0, 0.0, 1.0), f"{where} <axis>")
+    written = vector(axis, "xyz", (0.0, 0.0, 1.0), where)
     length = math.sqrt(sum(part * part for part in written))
     if length == 0.0:
-        raise FormatError(f"{where} <axis> <xyz>: the axis 0 0 0 has no direction")
+        raise FormatError(f"{where} <xyz>: the axis 0 0 0 has no direction")
     unit = tuple(part / length for part in written)
     given_in = _axis_frame(axis, source)
     if not given_in:

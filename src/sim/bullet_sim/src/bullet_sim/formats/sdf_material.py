@@ -11,9 +11,10 @@ from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats import ogre
 from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import child_text, colour, flag
+from bullet_sim.formats.xml_values import child_text, colour, flag, number
 
 BUILTIN_SCRIPT = "media/materials/scripts/gazebo.material"
+PBR_WORKFLOWS = ("metal", "specular")
 COLOURS = ("ambient", "diffuse", "specular", "emissive")
 
 
@@ -21,12 +22,30 @@ def read_material(element: Element, source: Source, where: str) -> Material | No
     """A visual's material; None where it says nothing that we know."""
     named = _scripted(element, source, where)
     written = [name for name in COLOURS if child_text(element, name)]
-    lighting = flag(element, "lighting", named.lighting if named else True)
-    if not written and lighting:
-        return named
     start = named or Material()
-    colours = {name: colour(element, name, getattr(start, name), where) for name in written}
-    return replace(start, lighting=lighting, **colours)
+    changes = {name: colour(element, name, getattr(start, name), where) for name in written}
+    if not flag(element, "lighting", start.lighting):
+        changes["lighting"] = False
+    if flag(element, "double_sided", start.double_sided):
+        changes["double_sided"] = True
+    if child_text(element, "shininess"):
+        changes["shininess"] = number(element, "shininess", 0.0, where)
+    albedo = _albedo_map(element, source, where)
+    if albedo:
+        changes["texture"] = albedo
+    return replace(start, **changes) if changes else named
+
+
+def _albedo_map(element: Element, source: Source, where: str) -> str | None:
+    """The colours of a physically based material; its other maps have no part in this light."""
+    for workflow in PBR_WORKFLOWS:
+        uri = child_text(element, f"pbr/{workflow}/albedo_map")
+        if uri:
+            try:
+                return str(source.resources.resolve(uri, source.folder))
+            except ResourceNotFound as error:
+                source.warn_once(f"{where}: albedo_map {error}; drawn without it", about=uri)
+    return None
 
 
 def _scripted(element: Element, source: Source, where: str) -> Material | None:
@@ -71,16 +90,21 @@ def _folders_and_scripts(uris: list[str], source: Source) -> tuple[list[Path], l
 def _in_scripts(name: str, places: list[Path], source: Source) -> Material | None:
     parsed: dict[str, ogre.ScriptMaterial] = {}
     home: dict[str, Path] = {}  # material -> folder of its script
-    for script in _scripts_in(places):
+    scripts = _scripts_in(places)
+    for script in scripts:
         for material in _parsed(script, source).values():
             parsed.setdefault(material.name, material)
             home.setdefault(material.name, script.parent)
+        for imported in _imports(script, source):
+            if imported not in scripts:
+                scripts.append(imported)
     if name not in parsed:
         return None
     folders = [*(place for place in places if place.is_dir()), home[name],
                home[name].parent / "textures"]
     try:
-        return ogre.to_material(name, parsed, lambda file: _texture(file, folders, name, source))
+        return ogre.to_material(
+            name, parsed, lambda file: _texture(file, folders, name, source), named_materials())
     except FormatError as error:
         source.warn_once(f"{home[name]}: {error}")
         return None
@@ -91,6 +115,12 @@ def _scripts_in(places: list[Path]) -> list[Path]:
     for place in places:
         found += sorted(place.glob("*.material")) if place.is_dir() else [place]
     return found
+
+
+def _imports(script: Path, source: Source) -> list[Path]:
+    """Scripts that a script names in `import … from FILE`, beside it."""
+    names = {name for material in _parsed(script, source).values() for name in material.imports}
+    return [script.parent / name for name in sorted(names) if (script.parent / name).is_file()]
 
 
 def _parsed(script: Path, source: Source) -> dict[str, ogre.ScriptMaterial]:

@@ -16,7 +16,7 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import flag, pose
 
 IncludeReader = Callable[[Element, Source], ModelDescription | None]
-NOT_SUPPORTED = ("gripper", "battery", "urdf", "actor")
+NOT_SUPPORTED = ("gripper", "urdf")
 
 
 def read_model(
@@ -36,8 +36,7 @@ def read_model(
     _refuse_twins(element, "link", where)
     _refuse_twins(element, "joint", where)
     links = [
-        read_link(link, source, where, frames.in_model(link.get("name", "")))
-        for link in element.findall("link")
+        read_link(link, source, where, frames) for link in element.findall("link")
     ] + [link for model in nested for link in model.links]
     if not links:
         raise FormatError(f"{where}: a model must have at least one link")
@@ -57,6 +56,7 @@ def read_model(
         joints=tuple(joints),
         plugins=read_plugins(element) + tuple(p for model in nested for p in model.plugins),
         child_models=tuple(child for model in nested for child in model.child_models),
+        child_poses={name: pose for model in nested for name, pose in model.child_poses.items()},
         lumped={child: place for model in nested for child, place in model.lumped.items()},
     )
 
@@ -100,11 +100,14 @@ def _scoped(model: ModelDescription) -> ModelDescription:
                 name=renamed[joint.name],
                 parent=ends.get(joint.parent, joint.parent),
                 child=ends.get(joint.child, joint.child),
+                gearbox_reference_body=ends.get(joint.gearbox_reference_body, ""),
             )
             for joint in model.joints
         ),
         plugins=tuple(_with_scoped_names(plugin, renamed) for plugin in model.plugins),
         child_models=(model.name, *(scope + child for child in model.child_models)),
+        child_poses={model.name: model.pose} | {
+            scope + child: model.pose * pose for child, pose in model.child_poses.items()},
         lumped={
             scope + child: (ends[survivor], place)
             for child, (survivor, place) in model.lumped.items()

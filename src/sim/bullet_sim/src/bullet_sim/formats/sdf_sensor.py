@@ -5,15 +5,13 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import (
-    CameraDescription,
-    Noise,
     PluginDescription,
     RayDescription,
     SensorDescription,
 )
-from bullet_sim.formats.xml_values import child_text, flag, integer, number, pose
-
-DISTORTION = ("k1", "k2", "p1", "p2", "k3")  # the order of OpenCV and of camera_info
+from bullet_sim.formats.sdf_camera import read_camera
+from bullet_sim.formats.sdf_noise import read_imu, read_noise
+from bullet_sim.formats.xml_values import flag, integer, number, pose
 
 
 def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
@@ -35,25 +33,11 @@ def read_sensor(element: Element, link: str) -> SensorDescription:
         pose=pose(element, where),
         update_rate=number(element, "update_rate", 0.0, where),
         always_on=flag(element, "always_on", False),
-        cameras=tuple(_camera(camera, where) for camera in element.findall("camera")),
+        cameras=tuple(read_camera(camera, where) for camera in element.findall("camera")),
         ray=None if rays is None else _ray(rays, f"{where} <{rays.tag}>"),
+        imu=read_imu(element.find("imu"), where),
         plugins=read_plugins(element),
         element=element,
-    )
-
-
-def _camera(element: Element, sensor: str) -> CameraDescription:
-    where = f"{sensor} <camera>"
-    usual = CameraDescription()
-    return CameraDescription(
-        horizontal_fov=number(element, "horizontal_fov", usual.horizontal_fov, where),
-        width=integer(element, "image/width", usual.width, where),
-        height=integer(element, "image/height", usual.height, where),
-        format=child_text(element, "image/format", usual.format),
-        near=number(element, "clip/near", usual.near, where),
-        far=number(element, "clip/far", usual.far, where),
-        noise=_noise(element.find("noise"), where),
-        distortion=tuple(number(element, f"distortion/{key}", 0.0, where) for key in DISTORTION),
     )
 
 
@@ -66,20 +50,11 @@ def _ray(element: Element, where: str) -> RayDescription:
         min_angle=number(element, across + "min_angle", usual.min_angle, where),
         max_angle=number(element, across + "max_angle", usual.max_angle, where),
         vertical_samples=integer(element, up + "samples", usual.vertical_samples, where),
+        vertical_resolution=number(element, up + "resolution", usual.vertical_resolution, where),
         vertical_min_angle=number(element, up + "min_angle", usual.vertical_min_angle, where),
         vertical_max_angle=number(element, up + "max_angle", usual.vertical_max_angle, where),
         range_min=number(element, "range/min", usual.range_min, where),
         range_max=number(element, "range/max", usual.range_max, where),
         range_resolution=number(element, "range/resolution", usual.range_resolution, where),
-        noise=_noise(element.find("noise"), where),
-    )
-
-
-def _noise(element: Element | None, where: str) -> Noise:
-    if element is None:
-        return Noise()
-    return Noise(
-        type=child_text(element, "type", element.get("type", "gaussian")),
-        mean=number(element, "mean", 0.0, f"{where} <noise>"),
-        stddev=number(element, "stddev", 0.0, f"{where} <noise>"),
+        noise=read_noise(element.find("noise"), where),
     )

@@ -9,19 +9,24 @@ from bullet_sim.description import (
     Collision,
     Cylinder,
     Geometry,
+    ImageExtrusion,
     Mesh,
     Plane,
+    Polyline,
     Sphere,
     Surface,
     Visual,
 )
 from bullet_sim.errors import ResourceNotFound
+from bullet_sim.formats.sdf_generated import read_heightmap, read_image, read_polylines
 from bullet_sim.formats.sdf_material import read_material
+from bullet_sim.formats.sdf_sensor import read_plugins
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import (
     amount,
     child_text,
     flag,
+    integer,
     not_negative,
     number,
     numbers,
@@ -31,6 +36,7 @@ from bullet_sim.formats.xml_values import (
 
 ONES = (1.0, 1.0, 1.0)
 UNLIMITED_FRICTION = 1e6
+NEVER_BOUNCES, FASTEST_BOUNCE = 1e5, 1e3  # m/s; the first is SDF's default
 
 
 def read_visual(element: Element, source: Source, link: str) -> Visual | None:
@@ -48,6 +54,7 @@ def read_visual(element: Element, source: Source, link: str) -> Visual | None:
         material=None if material is None else read_material(material, source, where),
         transparency=number(element, "transparency", 0.0, where),
         cast_shadows=flag(element, "cast_shadows", True),
+        plugins=read_plugins(element),
     )
 
 
@@ -79,6 +86,8 @@ def _is_flat(shape: Geometry) -> bool:
             return 0.0 in (radius, length)
         case Sphere(radius):
             return radius == 0.0
+        case Polyline(height=height) | ImageExtrusion(height=height):
+            return height == 0.0
     return False
 
 
@@ -102,19 +111,33 @@ def read_surface(element: Element | None, where: str) -> Surface:
         kd=number(element, contact + "kd", usual.kd, where),
         min_depth=number(element, contact + "min_depth", usual.min_depth, where),
         max_vel=number(element, contact + "max_vel", usual.max_vel, where),
-        restitution=amount(element, "bounce/restitution_coefficient", usual.restitution, where),
+        restitution=_restitution(element, where),
+        collide_bitmask=integer(
+            element, "contact/collide_bitmask", usual.collide_bitmask, where),
+        collides=not flag(element, "contact/collide_without_contact", False),
     )
+
+
+def _restitution(element: Element, where: str) -> float:
+    """At most 1; 0 where the speed from which on things bounce is out of reach, as by default."""
+    threshold = number(element, "bounce/threshold", NEVER_BOUNCES, where)
+    bounce = amount(element, "bounce/restitution_coefficient", 0.0, where)
+    return min(bounce, 1.0) if threshold < FASTEST_BOUNCE else 0.0
 
 
 def read_geometry(element: Element | None, source: Source, where: str) -> Geometry | None:
     """The first shape we know; None for `<empty>`, or with a warning."""
     for shape in () if element is None else element:
+        if shape.tag == "polyline":
+            return read_polylines(element, source, where)
         reader = READERS.get(shape.tag)
         if reader is not None:
             return reader(shape, source, where)
+        if ":" in shape.tag:
+            continue
         if shape.tag != "empty":
             source.warn_once(f"{where}: geometry <{shape.tag}> is not supported, left out; "
-                             f"there are: {', '.join(READERS)}")
+                             f"there are: {', '.join((*READERS, 'polyline'))}")
         return None
     source.warn_once(f"{where}: no shape in <geometry>, left out")
     return None
@@ -159,7 +182,10 @@ def _mesh(element: Element, source: Source, where: str) -> Mesh | None:
     )
 
 
-READERS = {"box": _box, "cylinder": _cylinder, "sphere": _sphere, "plane": _plane, "mesh": _mesh}
+READERS = {
+    "box": _box, "cylinder": _cylinder, "sphere": _sphere, "plane": _plane, "mesh": _mesh,
+    "heightmap": read_heightmap, "image": read_image,
+}
 
 
 def _friction(coefficient: float) -> float:

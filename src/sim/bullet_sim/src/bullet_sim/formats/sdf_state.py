@@ -7,8 +7,12 @@ from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
-from bullet_sim.formats.xml_values import child_text, pose
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.scaling import scaled_model
+from bullet_sim.formats.xml_values import child_text, not_negative, numbers, pose, vector
 from bullet_sim.pose import Pose
+
+LATEST = 4e9  # s; ROS counts to 2**32
 
 
 def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
@@ -18,6 +22,7 @@ def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
     lights = {light.get("name", ""): light for light in state.findall("light")}
     return replace(
         world,
+        sim_time=_sim_time(state, world.sim_time),
         models=tuple(
             _moved_model(model, models[model.name]) if model.name in models else model
             for model in world.models
@@ -31,6 +36,20 @@ def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
     )
 
 
+def _sim_time(state: Element, default: float) -> float:
+    """Seconds and nanoseconds, as two words."""
+    text = child_text(state, "sim_time")
+    if not text:
+        return default
+    where = "<state> <sim_time>"
+    count = 1 if len(text.split()) == 1 else 2
+    seconds, nanoseconds = (*not_negative(numbers(text, count, where), where), 0.0)[:2]
+    time = seconds + nanoseconds * 1e-9
+    if time > LATEST:
+        raise FormatError(f"{where}: {time:g} s is more than ROS can count; at most {LATEST:g}")
+    return time
+
+
 def _moved_light(light: LightDescription, state: Element) -> LightDescription:
     if not child_text(state, "pose"):
         return light
@@ -38,11 +57,16 @@ def _moved_light(light: LightDescription, state: Element) -> LightDescription:
 
 
 def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
+    where = f"<state> of model {model.name!r}"
     if child_text(state, "pose"):
-        model = replace(model, pose=pose(state, f"<state> of model {model.name!r}"))
+        model = replace(model, pose=pose(state, where))
+    scale = vector(state, "scale", (1.0, 1.0, 1.0), where)
+    if min(scale) <= 0.0:
+        raise FormatError(f"{where} <scale>: {min(scale):g} leaves nothing; make it larger than 0")
+    model = scaled_model(model, scale)
     if model.joints and not model.static:
         return model  # its link poses are joint positions, and those start at zero here
-    saved = dict(_link_poses(state, "", f"<state> of model {model.name!r}"))
+    saved = dict(_link_poses(state, "", where))
     to_model = model.pose.inverse()  # link poses are saved in the world frame
     return replace(
         model,

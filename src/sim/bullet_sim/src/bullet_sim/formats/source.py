@@ -24,6 +24,7 @@ class Source:
     said: set[str] = field(default_factory=set)
     scripts: dict = field(default_factory=dict)  # material script path -> parsed materials
     including: tuple[Path, ...] = ()  # files being read, outermost first
+    files: list[Path] = field(default_factory=list)  # all that were included
 
     def warn_once(self, message: str, about: str = "") -> None:
         """A warning that is given once per load, or once `about` a thing met in several places."""

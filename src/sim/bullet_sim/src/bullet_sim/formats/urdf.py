@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import JointDescription, LinkDescription, ModelDescription
@@ -119,11 +120,14 @@ def _with_robot_level(
         frames.add(link.name, MODEL, link.pose)
     add_model_frames(frames, extra, where)
     links += [
-        read_link(link, source, where, frames.in_model(link.get("name", "")))
+        read_link(link, source, where, frames)
         for link in extra.findall("link")
     ]
     names = {link.name for link in links}
-    joints += [read_joint(joint, source, where, frames, names) for joint in extra.findall("joint")]
+    joints += [
+        read_joint(_with_survivors(joint, lumped), source, where, frames, names)
+        for joint in extra.findall("joint")
+    ]
     return ModelDescription(
         name=tree.name,
         pose=read_origin(robot, where),
@@ -134,6 +138,17 @@ def _with_robot_level(
         plugins=tuple(follow_lumping(plugin, lumped) for plugin in read_plugins(extra)),
         lumped=lumped,
     )
+
+
+def _with_survivors(joint: Element, lumped: dict[str, tuple[str, Pose]]) -> Element:
+    """An SDF joint whose ends were lumped names the survivors; its pose stays, as upstream's."""
+    joint = copy.deepcopy(joint)
+    for role in ("parent", "child"):
+        end = joint.find(role)
+        name = "" if end is None else (end.text or "").strip()
+        if name in lumped:
+            end.text = lumped[name][0]
+    return joint
 
 
 def _warn_of_unknown_references(tree: UrdfTree, extensions: Extensions, source: Source) -> None:

@@ -8,6 +8,7 @@ from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.urdf_tree import read_origin
 from bullet_sim.formats.xml_values import not_negative, numbers, vector_text
+from bullet_sim.pose import Pose
 
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ()}
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -21,7 +22,7 @@ def link_as_sdf(link: Element) -> Element:
     result = Element("link", {"name": name})
     for tag in ("visual", "collision"):
         for part in link.findall(tag):
-            result.append(_part_as_sdf(part, f"link {name!r} <{tag}>"))
+            result.extend(_part_as_sdf(part, f"link {name!r} <{tag}>"))
     return result
 
 
@@ -49,22 +50,42 @@ def _attribute(element: Element | None, key: str, where: str) -> float:
     return numbers(element.get(key, ""), 1, where)[0]
 
 
-def _part_as_sdf(part: Element, where: str) -> Element:
-    result = Element(part.tag, {"name": part.get("name", "")})
-    origin = part.find("origin")
-    if origin is not None:
-        read_origin(part, where)  # complains in URDF's terms
-        xyz, rpy = origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0")
-        SubElement(result, "pose").text = f"{xyz} {rpy}"
-    result.append(_geometry_as_sdf(part.find("geometry"), where))
+def _part_as_sdf(part: Element, where: str) -> list[Element]:
+    """One SDF element; three for a capsule, which SDF 1.7 has no word for."""
+    place = read_origin(part, where)  # complains in URDF's terms
+    shapes = _plain_shapes(part.find("geometry"), where)
+    result = []
+    for shape, offset in shapes:
+        sdf = Element(part.tag, {"name": part.get("name", "")})
+        pose = place * Pose((0.0, 0.0, offset))
+        SubElement(sdf, "pose").text = vector_text((*pose.position, *pose.rpy()))
+        sdf.append(_geometry_as_sdf(shape, where))
+        result.append(sdf)
     return result
 
 
-def _geometry_as_sdf(geometry: Element | None, where: str) -> Element:
+def _plain_shapes(
+    geometry: Element | None, where: str
+) -> list[tuple[Element | None, float]]:
+    """The shapes that make up a geometry, and how far along z each stands, m."""
     shape = None if geometry is None or len(geometry) == 0 else geometry[0]
+    if shape is None or shape.tag != "capsule":
+        return [(shape, 0.0)]
+    where = f"{where} <capsule"
+    length, radius = (
+        not_negative([_attribute(shape, key, f"{where} {key}>")], f"{where} {key}>")[0]
+        for key in ("length", "radius")
+    )
+    tube = Element("cylinder", {"radius": repr(radius), "length": repr(length)})
+    end = Element("sphere", {"radius": repr(radius)})
+    return [(tube, 0.0), (end, length / 2), (end, -length / 2)]
+
+
+def _geometry_as_sdf(shape: Element | None, where: str) -> Element:
     if shape is None or shape.tag not in SHAPES:
         written = "nothing" if shape is None else f"<{shape.tag}>"
-        raise FormatError(f"{where} <geometry> holds {written}; there are: {', '.join(SHAPES)}")
+        raise FormatError(f"{where} <geometry> holds {written}; there are: "
+                          f"{', '.join(SHAPES)}, capsule")
     result = Element("geometry")
     target = SubElement(result, shape.tag)
     where = f"{where} <{shape.tag}"

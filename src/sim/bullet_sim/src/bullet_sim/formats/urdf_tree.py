@@ -11,6 +11,7 @@ from bullet_sim.formats.xml_values import numbers
 from bullet_sim.pose import Pose
 
 WORLD = "world"
+DEEPEST = 200  # joints from the root to a link
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
@@ -114,9 +115,19 @@ def _root(tree: UrdfTree) -> str:
     if len(roots) > 1:
         raise FormatError(f"robot {tree.name!r} has several root links: {', '.join(roots)}; "
                           "join them with a joint")
+    if roots and _depth(tree, roots[0]) > DEEPEST:
+        raise FormatError(f"robot {tree.name!r} has more than {DEEPEST} joints one after another")
     reached = set(tree.depth_first(roots[0])) if roots else set()
     loop = [link for link in tree.links if link not in reached]
     if loop:
         raise FormatError(f"robot {tree.name!r}: the joints go round in a circle through "
                           f"{', '.join(loop)}")
     return roots[0]
+
+
+def _depth(tree: UrdfTree, root: str) -> int:
+    """Joints from the root to the farthest link; links in a circle are not reached."""
+    depth, level = 0, [root]
+    while level := [joint.child for link in level for joint in tree.outward.get(link, ())]:
+        depth += 1
+    return depth

@@ -1,42 +1,27 @@
-"""Reads XML text, and numbers, vectors, colours and poses out of it, with errors that say where."""
+"""Numbers, vectors, colours and poses out of XML elements, with errors that say where."""
 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
-from pathlib import Path
-from xml.etree.ElementTree import Element, TreeBuilder
-from xml.parsers import expat
+from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Rgba
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.xml_text import parse_xml, read_xml_file
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
+__all__ = [
+    "amount", "bounded", "child_text", "colour", "flag", "integer", "not_negative", "number",
+    "numbers", "parse_xml", "pose", "read_xml_file", "size", "vector", "vector_text",
+]
+
 TRUE_WORDS = ("true", "1")
-
-
-def parse_xml(text: str, what: str = "XML") -> Element:
-    """Root element of a text. Prefixes such as `xacro:` stay part of the tag, declared or not."""
-    stripped = text.lstrip("\ufeff \t\r\n")
-    skipped_lines = text[:len(text) - len(stripped)].count("\n")
-    builder = TreeBuilder()
-    parser = expat.ParserCreate()
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data
-    parser.buffer_text = True
-    try:
-        parser.Parse(stripped, True)
-    except expat.ExpatError as error:
-        reason = expat.ErrorString(error.code)
-        place = f"line {error.lineno + skipped_lines}, column {error.offset + 1}"
-        raise FormatError(f"{what} is not well-formed XML: {reason} at {place}") from None
-    return builder.close()
-
-
-def read_xml_file(path: Path) -> Element:
-    """Root element of a file; letters of another encoding than UTF-8 are read as placeholders."""
-    return parse_xml(path.read_text(encoding="utf-8", errors="replace"), str(path))
+# Lengths, masses and poses beyond this are mistakes, and their squares are no numbers any more.
+# (Limits of joints may be larger: saved files write the largest number there is.)
+LARGEST = 1e12
+LONGEST_QUOTE = 80  # characters
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
@@ -48,17 +33,30 @@ def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
         values = ()
     if len(values) != count or any(math.isnan(value) for value in values):
         wanted = "a number" if count == 1 else f"{count} numbers"
-        raise FormatError(f"{where}: {text.strip()!r} is not {wanted}")
+        raise FormatError(f"{where}: {_quoted(text)} is not {wanted}")
     if any(math.isinf(value) for value in values):
-        raise FormatError(f"{where}: {text.strip()!r} is not finite")
+        raise FormatError(f"{where}: {_quoted(text)} is not finite")
     return values
 
 
+def _quoted(text: str) -> str:
+    """For an error line: one line, and not a long one."""
+    return repr(textwrap.shorten(text, LONGEST_QUOTE, placeholder="…"))
+
+
 def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
-    """The same numbers, or an error that names the first below zero."""
+    """The same numbers, or an error that names the first below zero or beyond `LARGEST`."""
     for value in values:
         if value < 0.0:
             raise FormatError(f"{where}: {value:g} is negative")
+    return bounded(values, where)
+
+
+def bounded(values: Sequence[float], where: str) -> Sequence[float]:
+    """The same numbers, or an error that names the first whose size is beyond `LARGEST`."""
+    for value in values:
+        if abs(value) > LARGEST:
+            raise FormatError(f"{where}: {value:g} is too large; at most {LARGEST:g} is possible")
     return values
 
 
@@ -78,6 +76,11 @@ def amount(parent: Element, path: str, default: float, where: str) -> float:
     return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 
+def size(parent: Element, path: str, default: float, where: str) -> float:
+    """One number at `path` that is not beyond `LARGEST`, of either sign."""
+    return bounded([number(parent, path, default, where)], f"{where} <{path}>")[0]
+
+
 def integer(parent: Element, path: str, default: int, where: str) -> int:
     """One whole number at `path`; `8.0` counts as 8, as saved files write it."""
     value = number(parent, path, float(default), where)
@@ -95,7 +98,10 @@ def flag(parent: Element, path: str, default: bool) -> bool:
 def vector(parent: Element, path: str, default: Vector3, where: str) -> Vector3:
     """Three numbers at `path`."""
     text = child_text(parent, path)
-    return numbers(text, 3, f"{where} <{path}>") if text else default
+    if not text:
+        return default
+    where = f"{where} <{path}>"
+    return bounded(numbers(text, 3, where), where)
 
 
 def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
@@ -108,11 +114,18 @@ def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
 
 
 def pose(parent: Element, where: str) -> Pose:
-    """The `<pose>` of an element in whatever frame it names; identity when absent."""
+    """The `<pose>` of an element in whatever frame it names; identity when absent.
+
+    The oldest files write it as the attribute of an `<origin>`.
+    """
     text = child_text(parent, "pose")
+    origin = None if text else parent.find("origin")
+    if origin is not None:
+        text = origin.get("pose", "").strip()
     if not text:
         return IDENTITY
-    values = numbers(text, 6, f"{where} <pose>")
+    where = f"{where} <pose>"
+    values = bounded(numbers(text, 6, where), where)
     return Pose.from_xyz_rpy(values[:3], values[3:])
 
 

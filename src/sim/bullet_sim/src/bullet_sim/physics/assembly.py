@@ -6,7 +6,6 @@ that differ in surface, and every plane, ride on a welded link of their own.
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass, field, replace
 
 from bullet_sim.description import (
@@ -17,15 +16,15 @@ from bullet_sim.description import (
     ModelDescription,
     Plane,
 )
-from bullet_sim.pose import IDENTITY, Pose
-
-log = logging.getLogger(__name__)
+from bullet_sim.physics.axes import MOVING, stages
+from bullet_sim.physics.inertia import sound_inertial
+from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 WORLD = "world"
-MOVING = ("revolute", "continuous", "prismatic")  # what the engine can move and drive
 Member = tuple[LinkDescription, JointDescription | None]  # None: nothing carries the link
 # A welded shape needs some mass to count as movable for the collision filter; this is no load.
 WELD_INERTIAL = Inertial(mass=1e-6, inertia=(1e-9, 0.0, 0.0, 1e-9, 0.0, 1e-9))
+NO_DIRECTION = (0.0, 0.0, 0.0)  # <fdir1> when nothing is said
 MASSLESS = Inertial(mass=0.0, inertia=(0.0,) * 6)
 
 
@@ -43,6 +42,8 @@ class PhysicsLink:
     pose_parent: Pose = IDENTITY  # this frame in the parent's physics frame, joint at zero
     linear_damping: float = 0.0  # <velocity_decay>
     angular_damping: float = 0.0
+    carrier: JointDescription | None = None  # the joint that holds it, moving or fixed
+    turned: bool = False  # whether the description has it as the parent of that joint
 
 
 @dataclass
@@ -50,19 +51,20 @@ class Tree:
     """One connected set of links; the first one is the base."""
 
     links: list[PhysicsLink] = field(default_factory=list)
-    fixed: bool = False
+    fixed: bool = False  # the base does not feel forces
+    kinematic: bool = False  # but moves with the velocity it is given
     self_collide: bool = False
+
+    @property
+    def held(self) -> bool:
+        """Whether the base stands still for ever."""
+        return self.fixed and not self.kinematic
 
 
 def assemble(model: ModelDescription) -> list[Tree]:
     """Trees of a model, in the order of its links. A static model is one welded tree."""
     if model.static:
         return [_welded_tree(model)] if model.links else []
-    for joint in model.joints:
-        if joint.type not in (*MOVING, "fixed"):
-            log.warning("model %s: joint %s is of type %s, which is not supported: it is held "
-                        "fixed; those that move are: %s",
-                        model.name, joint.name, joint.type, ", ".join(MOVING))
     return [_jointed_tree(model, members) for members in _components(model)]
 
 
@@ -70,7 +72,7 @@ def _components(model: ModelDescription) -> list[list[Member]]:
     """Each connected set of links, breadth first from its root."""
     joints_of: dict[str, list[JointDescription]] = {link.name: [] for link in model.links}
     for joint in model.joints:
-        for end in {joint.parent, joint.child} - {WORLD}:
+        for end in {joint.parent, joint.child} - {WORLD} if joint.type != "gearbox" else ():
             joints_of[end].append(joint)
     links = {link.name: link for link in model.links}
     carrier: dict[str, JointDescription | None] = {}  # link -> joint between it and its parent
@@ -88,20 +90,21 @@ def _components(model: ModelDescription) -> list[list[Member]]:
                     carrier[other] = _towards(other, joint, links)
                     order.append(other)
         components.append([(links[name], carrier[name]) for name in order])
-    _warn_of_loops(model, carrier)
     return components
 
 
 def _roots_first(
     model: ModelDescription, joints_of: dict[str, list[JointDescription]]
 ) -> list[LinkDescription]:
-    """Links held by the world, then those that are no joint's child, then the others."""
+    """Links held by the world, kinematic ones, those that are no joint's child, the others."""
     children = {joint.child for joint in model.joints}
 
     def rank(link: LinkDescription) -> int:
         if any(WORLD in _ends(joint) for joint in joints_of[link.name]):
             return 0
-        return 2 if link.name in children else 1
+        if link.kinematic:
+            return 1
+        return 3 if link.name in children else 2
 
     return sorted(model.links, key=rank)
 
@@ -117,37 +120,52 @@ def _towards(
     if joint.child == child:
         return joint
     old_child = IDENTITY if joint.child == WORLD else links[joint.child].pose
-    x, y, z = joint.axis
-    return replace(joint, parent=joint.child, child=child, axis=(-x, -y, -z),
+    return replace(joint, parent=joint.child, child=child, axis=_opposite(joint.axis),
+                   axis2=replace(joint.axis2, axis=_opposite(joint.axis2.axis)),
                    pose=links[child].pose.inverse() * old_child * joint.pose)
 
 
-def _warn_of_loops(
-    model: ModelDescription, carrier: dict[str, JointDescription | None]
-) -> None:
-    used = {joint.name for joint in carrier.values() if joint is not None}
-    for joint in model.joints:
-        if joint.name not in used:
-            log.warning("model %s: joint %s closes a loop; it has no effect",
-                        model.name, joint.name)
+def _opposite(axis: Vector3) -> Vector3:
+    x, y, z = axis
+    return (-x, -y, -z)
+
+
+def loose_joints(model: ModelDescription, trees: list[Tree]) -> list[JointDescription]:
+    """Joints that carry no link: they close loops, or couple others (gearbox)."""
+    carriers = {link.carrier.name for tree in trees for link in tree.links if link.carrier}
+    return [] if model.static else [
+        joint for joint in model.joints if joint.name not in carriers]
 
 
 def _jointed_tree(model: ModelDescription, members: list[Member]) -> Tree:
-    tree = Tree(self_collide=model.self_collide)
+    tree = Tree(self_collide=model.self_collide or any(link.self_collide for link, _ in members))
     frames: dict[str, Pose] = {}  # physics frame of each link in the model
+    written = {joint.name: joint for joint in model.joints}
     anchor = members[0][1]
+    tree.kinematic = tree.fixed = members[0][0].kinematic and anchor is None
     if anchor is not None:
         tree.fixed = True
-        if anchor.type in MOVING:
+        if anchor.type in MOVING or anchor.provide_feedback:
             tree.links.append(PhysicsLink(WORLD, WORLD, MASSLESS, []))
             frames[WORLD] = IDENTITY
-    for link, joint in members:
+    for described, joint in members:
+        link = replace(described, inertial=sound_inertial(
+            described.inertial, described.collisions, f"model {model.name}, link {described.name}"))
         moves = joint is not None and joint.type in MOVING
         offset = joint.pose if moves else IDENTITY
         frames[link.name] = link.pose * offset
         parent = joint.parent if joint is not None and joint.parent in frames else None
         pose = frames[parent].inverse() * frames[link.name] if parent else frames[link.name]
-        _add(tree, link, offset, parent, joint if moves else None, pose)
+        turned = joint is not None and joint.child != written[joint.name].child
+        *between, last = stages(joint, turned) if moves else [None]
+        for stage in between:
+            name = f"{link.name}__{stage.name}"
+            tree.links.append(
+                PhysicsLink(name, link.name, WELD_INERTIAL, [], offset, parent, stage, pose))
+            parent, pose = name, IDENTITY
+        first = len(tree.links)
+        _add(tree, link, offset, parent, last, pose)
+        tree.links[first].carrier, tree.links[first].turned = joint, turned
     return tree
 
 
@@ -187,4 +205,6 @@ def _add(tree: Tree, link: LinkDescription, offset: Pose, parent: str | None,
 
 def _share_link(a: Collision, b: Collision) -> bool:
     planes = isinstance(a.geometry, Plane) or isinstance(b.geometry, Plane)
+    if a.surface.fdir1 != NO_DIRECTION and a.pose.orientation != b.pose.orientation:
+        return False  # one link of the engine has one direction of friction
     return a.surface == b.surface and a.laser_retro == b.laser_retro and not planes

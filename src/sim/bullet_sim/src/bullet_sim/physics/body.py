@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
 
-from bullet_sim.description import JointDescription, LinkDescription
+from bullet_sim.description import Inertial, LinkDescription
 from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.joint_group import JointGroup
+from bullet_sim.physics.inertia import sound_inertial
+from bullet_sim.physics.joint_side import JointSide
 from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.surfaces import contact_values
 from bullet_sim.pose import IDENTITY, Pose, Vector3, normalised
 
 FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a small wheel back
@@ -27,58 +31,137 @@ class Twist:
 STILL = Twist()
 
 
-class Body:
+class Attachment(Protocol):
+    """What hangs on the engine's body itself, and has to follow when it is made anew."""
+
+    def attach(self) -> None:
+        """The body is there."""
+        ...
+
+    def detach(self) -> None:
+        """The body is about to go."""
+        ...
+
+
+class Body(JointSide):
     """A loaded tree. Link frames are those of the description, in the world."""
 
     def __init__(self, client: PhysicsClient, tree: Tree, pose_world_model: Pose):
         self.tree = tree
         self._client = client
         self.base_pose_model = tree.links[0].pose_parent
-        self.number = client.load(tree, pose_world_model * self.base_pose_model)
         self._index = {link.name: number - 1 for number, link in enumerate(tree.links)}
         self._physics_link = {link.name: link for link in tree.links}
-        self._joint_index = {
-            link.joint.name: self._index[link.name] for link in tree.links if link.joint
-        }
+        self._find_joints()
+        self.attached: list[Attachment] = []
         self._link_indices = list(range(len(tree.links) - 1))
-        inertial = self._dynamics(BASE)
-        self._pose_base_com = Pose(inertial[3], inertial[4])
-        self._set_up_contacts()
-        self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
-        for name in self._joint_index:
-            self.release(name)
+        self.put_in(pose_world_model * self.base_pose_model)
+        self.on_unload: list[Callable[[], None]] = []  # to be called before the engine loses it
         client.rest.bodies.append(self)
-        client.planes.put(self.number, tree, self.base_frame())
+
+    @property
+    def client(self) -> PhysicsClient:
+        """The engine that it is in."""
+        return self._client
 
     # --- set-up
 
-    def _call(self, function, *args, **kwargs):
-        return self._client.call(function, self.number, *args, **kwargs)
+    def _load(self, frame: Pose) -> None:
+        self.number = self._client.load(self.tree, frame)
+        inertial = self.dynamics(BASE)
+        self._pose_base_com = Pose(inertial[3], inertial[4])
+        self._set_up_contacts()
+        self._set_up_joints()
+        for link in self.tree.links:
+            if link.collisions and link.collisions[0].laser_retro:
+                seen = self.number, self._index[link.name]
+                self._client.retro[seen] = link.collisions[0].laser_retro
 
-    def _read(self, function, *args, **kwargs):
-        return self._client.read(function, self.number, *args, **kwargs)
+    def rebuild(self, links: dict[str, PhysicsLink]) -> None:
+        """Give links of these names other masses, or joints other stops, in full motion.
 
-    def _dynamics(self, index: int):
+        The engine can move no centre of mass and add no stop: it gets the body anew. Poses, rates
+        and motors stay; whoever keeps the body's number has to ask for it again.
+        """
+        frame, base = self.base_frame(), self.tree.links[0].described
+        at, twist = self.link_states()[base]
+        joints = {name: self.joint_state(name) for name in self._joint_index}
+        balls = {name: self._ball_state(name) for name in self._ball_index}
+        motors = self._motors
+        self.take_out()
+        self.tree = replace(self.tree, links=[
+            links.get(link.name, link) for link in self.tree.links])
+        self._physics_link = {link.name: link for link in self.tree.links}
+        self.put_in(frame, attach=False)
+        for name, (position, rate) in joints.items():
+            self.reset_joint(name, position, rate)
+            if name in motors:
+                self.drive_velocity(name, *motors[name])
+        for name, (turn, rate) in balls.items():
+            self.reset_ball(name, turn, rate)
+        if not self.tree.held:
+            self.set_twist(twist, at.position)
+        for attachment in self.attached:
+            attachment.attach()
+
+    def take_out(self) -> None:
+        """Out of the engine for a moment, with what hangs on it."""
+        for attachment in self.attached:
+            attachment.detach()
+        self._unload()
+
+    def put_in(self, frame: Pose, attach: bool = True) -> None:
+        """Into the engine (again), still, the base's frame standing at `frame` in the world."""
+        self._load(frame)
+        self._client.planes.put(self.number, self.tree, frame)
+        self._motors = {}
+        for name in self._joint_index:
+            self.release(name)
+        for attachment in self.attached if attach else ():
+            attachment.attach()
+
+    def change_inertial(self, link: str, inertial: Inertial) -> None:
+        """Other mass, centre of mass and inertia, in the described link's frame."""
+        held = self._physics_link[link]
+        sound = sound_inertial(inertial, held.collisions, f"link {link}")
+        moved = replace(sound, pose=held.offset.inverse() * sound.pose)
+        self.rebuild({link: replace(held, inertial=moved)})
+
+    def change_joint(self, joint: str, **changes) -> None:
+        """Other fields of its JointDescription: stops, damping, type."""
+        held = self.tree.links[self._joint_index[joint] + 1]
+        self.rebuild({held.name: replace(held, joint=replace(held.joint, **changes))})
+
+    def dynamics(self, index: int) -> tuple:
+        """PyBullet's row of a link: mass, friction, principal inertia, centre of mass ..."""
         return self._read(pybullet.getDynamicsInfo, index)
 
     def _set_up_contacts(self) -> None:
-        # PyBullet damps by default; Gazebo does so only where <velocity_decay> asks for it.
+        # PyBullet damps by default; Gazebo does so only where a model asks for it.
         self._call(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         for link in self.tree.links:
-            values = {"linearDamping": link.linear_damping,
-                      "angularDamping": link.angular_damping, "jointDamping": 0.0}
+            values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping
             if link.collisions:
-                surface = link.collisions[0].surface
-                # The engine multiplies two frictions where ODE takes the smaller one: what never
-                # moves counts as 1, so that the product is the moving part's own coefficient.
-                values["lateralFriction"] = min(surface.mu, 1.0) if self.tree.fixed else surface.mu
-                values["restitution"] = surface.restitution
-                values["rollingFriction"] = values["spinningFriction"] = 0.0
+                com = self.com_in_link(self._index[link.name])
+                values |= contact_values(link.collisions[0], self.tree.fixed, com)
             self._call(pybullet.changeDynamics, self._index[link.name], **values)
 
     # --- links
+
+    def index(self, link: str) -> int:
+        """The engine's number of a physics link; BASE for the first."""
+        return self._index[link]
+
+    def physics_link(self, name: str) -> PhysicsLink:
+        """A link as the engine has it."""
+        return self._physics_link[name]
+
+    def com_in_link(self, index: int) -> Pose:
+        """Centre of mass and principal axes in the engine's link frame."""
+        row = self.dynamics(index)
+        return Pose(row[3], row[4])
 
     def link_states(self) -> dict[str, tuple[Pose, Twist]]:
         """Pose and twist of every described link frame."""
@@ -100,8 +183,23 @@ class Body:
         pose_com = Pose(*self._read(pybullet.getBasePositionAndOrientation))
         return pose_com * self._pose_base_com.inverse()
 
+    def engine_frame(self, index: int) -> Pose:
+        """Frame of the engine's link of that number in the world."""
+        if index == BASE:
+            return self.base_frame()
+        row = self._read(pybullet.getLinkState, index, computeForwardKinematics=1)
+        return Pose(row[4], row[5])
+
+    def centre(self, link: str) -> tuple[int, Pose]:
+        """The engine's number of a link, and where its centre of mass is in the world."""
+        index = self._index[link]
+        inertial = self.dynamics(index)
+        return index, self.engine_frame(index) * Pose(inertial[3], inertial[4])
+
     def set_base_frame(self, frame: Pose) -> None:
         """Put the base link's frame somewhere at once; joints keep their positions."""
+        if not self._is_number("pose", *frame.position, *frame.orientation):
+            return
         frame = Pose(frame.position, normalised(frame.orientation))
         com = frame * self._pose_base_com
         self._call(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
@@ -109,91 +207,87 @@ class Body:
 
     def set_twist(self, twist: Twist, origin: Vector3) -> None:
         """Move as a rigid whole whose point `origin` (world) has that twist."""
+        if not self._is_number("velocity", *twist.linear, *twist.angular):
+            return
         com = self._com_position(BASE)
         arm = [c - o for c, o in zip(com, origin, strict=True)]
         spin = cross(twist.angular, arm)
         linear = [v + s for v, s in zip(twist.linear, spin, strict=True)]
         self._call(pybullet.resetBaseVelocity, linear, twist.angular)
 
+    def apply_steady_force(self, link: str, force: Vector3) -> None:
+        """As `apply_force`, of what acts in every step: it does not end the world's rest."""
+        index = self._index[link]
+        self._read(pybullet.applyExternalForce, index, force, self._com_position(index),
+                   pybullet.WORLD_FRAME)
+
     def apply_force(self, link: str, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
+        if not self._is_number("force", *force, *torque):
+            return
         index = self._index[link]
         where = self._com_position(index)
         self._call(pybullet.applyExternalForce, index, force, where, pybullet.WORLD_FRAME)
         if any(torque):
             self._call(pybullet.applyExternalTorque, index, torque, pybullet.WORLD_FRAME)
 
+    def add_twist(self, twist: Twist, origin: Vector3) -> None:
+        """Change the base's motion by that of a rigid whole, `origin` (world) being its centre."""
+        linear, angular = self._read(pybullet.getBaseVelocity)
+        arm = [c - o for c, o in zip(self._com_position(BASE), origin, strict=True)]
+        spin = cross(twist.angular, arm)
+        self._call(pybullet.resetBaseVelocity,
+                   [v + a + s for v, a, s in zip(linear, twist.linear, spin, strict=True)],
+                   [w + a for w, a in zip(angular, twist.angular, strict=True)])
+
+    def com_motion(self, index: int) -> tuple[Pose, Vector3, Vector3]:
+        """Centre of mass and principal axes in the world, their velocity and rate of turn."""
+        if index == BASE:
+            pose = Pose(*self._read(pybullet.getBasePositionAndOrientation))
+            return pose, *self._read(pybullet.getBaseVelocity)
+        row = self._read(pybullet.getLinkState, index, computeLinkVelocity=1)
+        return Pose(row[0], row[1]), row[6], row[7]
+
     def _com_position(self, index: int) -> Vector3:
         if index == BASE:
             return self._read(pybullet.getBasePositionAndOrientation)[0]
         return self._read(pybullet.getLinkState, index)[0]
 
-    # --- joints
-
-    def joint_state(self, joint: str) -> tuple[float, float]:
-        """Position and rate: rad and rad/s, or m and m/s."""
-        row = self._read(pybullet.getJointState, self._joint_index[joint])
-        return row[0], row[1]
-
-    def reset_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
-        """Put a joint somewhere at once."""
-        self._call(pybullet.resetJointState, self._joint_index[joint], position, velocity)
-
-    def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
-        """Motor that holds a rate with at most `effort` (N m or N), until told otherwise."""
-        if self._motors.get(joint) == (velocity, effort):
-            return
-        self._motors[joint] = (velocity, effort)
-        self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
-                   pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
-
-    def drive_effort(self, joint: str, effort: float) -> None:
-        """Effort (N m or N) during the next step."""
-        self._motors.pop(joint, None)
-        self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
-                   pybullet.TORQUE_CONTROL, force=effort)
-
-    def release(self, joint: str) -> None:
-        """No motor; the joint's own dry friction stays (PyBullet's default is a brake)."""
-        friction = self.joint_description(joint).friction
-        self.drive_velocity(joint, 0.0, friction)
-
-    def joint_description(self, joint: str) -> JointDescription:
-        """The joint as described."""
-        return self.tree.links[self._joint_index[joint] + 1].joint
-
-    def joint_names(self) -> list[str]:
-        """Joints that can move."""
-        return list(self._joint_index)
-
-    def joint_group(self, joints: Iterable[str]) -> JointGroup:
-        """Those of the joints that are this body's."""
-        mine = {joint: self._joint_index[joint] for joint in joints if joint in self._joint_index}
-        return JointGroup(self._client, self.number, mine)
+    # --- leaving
 
     def remove(self) -> None:
         """Take the body out of the world."""
         self._client.rest.bodies.remove(self)
+        for attachment in self.attached:
+            attachment.detach()
+        self.attached = []
+        self._unload()
+
+    def _unload(self) -> None:
+        for action in list(self.on_unload):
+            action()
         self._client.planes.remove(self.number)
+        for seen in [seen for seen in self._client.retro if seen[0] == self.number]:
+            del self._client.retro[seen]
         self._call(pybullet.removeBody)
 
     # --- rest
 
-    def wants_to_move(self) -> bool:
-        """Whether a motor is to hold a rate other than zero."""
-        return any(velocity and effort for velocity, effort in self._motors.values())
-
     def speeds(self) -> tuple[float, float]:
-        """Greatest speed, m/s, and rate of turn, rad/s, of base and joints."""
+        """Greatest speed, m/s, and rate of turn, rad/s, of base and joints; NaN if any is."""
         linear, angular = self._read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
+        total = sum(linear) + sum(angular)
         for joint, index in self._joint_index.items():
             moved = abs(self._read(pybullet.getJointState, index)[1])
+            total += moved
             if self.joint_description(joint).type == "prismatic":
                 speed = max(speed, moved)
             else:
                 rate = max(rate, moved)
-        return speed, rate
+        for joint in self._ball_index:
+            rate = max(rate, *map(abs, self._ball_state(joint)[1]))
+        return (speed, rate) if total == total else (math.nan, math.nan)
 
 
 def cross(a, b) -> Vector3:

@@ -38,6 +38,7 @@ class PhysicsClient:
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
         self.rest = Rest()
         self.planes = Planes(self._let_collide)
+        self.retro: dict[tuple[int, int], float] = {}  # laser_retro of engine links, where not 0
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
 
@@ -57,6 +58,7 @@ class PhysicsClient:
         )
         self.call(pybullet.setGravity, *gravity)
         self._tolerance = EXACT
+        self.timestep = physics.max_step_size  # s
         self.rest.set_step(physics.max_step_size)
 
     def call(self, function, *args, **kwargs):

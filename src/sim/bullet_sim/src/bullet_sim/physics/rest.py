@@ -41,6 +41,7 @@ class Rest:
         self.bodies: list[Restable] = []
         self.reached = False  # whether the next step would change nothing
         self.brisk = False  # whether anything was brisk when last looked at
+        self.broken = False  # whether a speed was no number when last looked at
         self._steps = 0
         self._motions: deque[float] = deque(maxlen=LOOKS)
         self.set_step(LOOK_PERIOD)
@@ -68,6 +69,7 @@ class Rest:
         motion, self.brisk = 0.0, False
         for body in self.bodies:
             speed, rate = body.speeds()
+            self.broken = self.broken or speed != speed
             self.brisk = self.brisk or speed > BRISK_SPEED or rate > BRISK_RATE
             motion = max(motion, _motion(speed, rate, body.wants_to_move()))
             if self.brisk:

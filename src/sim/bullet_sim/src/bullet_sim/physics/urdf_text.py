@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Mesh, Plane, Sphere
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Cylinder,
+    Generated,
+    Geometry,
+    Heightmap,
+    ImageExtrusion,
+    Inertial,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
+from bullet_sim.errors import FormatError
 from bullet_sim.meshes import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.pose import Pose
 
+log = logging.getLogger(__name__)
+
+Triangles = Mesh | Generated
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 
 
@@ -21,7 +39,7 @@ class MeshFiles:
         self._folder = folder
         self._written = 0
 
-    def __call__(self, mesh: Mesh) -> str:
+    def __call__(self, mesh: Triangles) -> str:
         vertices, faces = collision_mesh(mesh)
         lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in faces + 1]
@@ -31,7 +49,7 @@ class MeshFiles:
         return str(path)
 
 
-def urdf_text(links: Iterable[PhysicsLink], mesh_path: Callable[[Mesh], str]) -> str:
+def urdf_text(links: Iterable[PhysicsLink], mesh_path: Callable[[Triangles], str]) -> str:
     """A `<robot>` whose links keep the order given, the first being the base."""
     parts = ['<robot name="body">']
     for link in links:
@@ -60,14 +78,19 @@ def _inertial(inertial: Inertial) -> str:
             f"<inertia {tensor}/></inertial>")
 
 
-def _collision(collision: Collision, fixed: bool, mesh_path: Callable[[Mesh], str]) -> str:
+def _collision(collision: Collision, fixed: bool, mesh_path: Callable[[Triangles], str]) -> str:
     # Triangles as they are for what never moves; a convex hull otherwise (the engine has no more).
-    concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Mesh) else ""
+    concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Triangles) else ""
+    try:
+        geometry = _geometry(collision.geometry, mesh_path)
+    except FormatError as error:  # of a mesh file; the rest of the model still spawns
+        log.warning("collision %s is left out: %s", collision.name, error)
+        return ""
     return (f"<collision{concave}>{_origin(collision.pose)}"
-            f"<geometry>{_geometry(collision.geometry, mesh_path)}</geometry></collision>")
+            f"<geometry>{geometry}</geometry></collision>")
 
 
-def _geometry(geometry: Geometry, mesh_path: Callable[[Mesh], str]) -> str:
+def _geometry(geometry: Geometry, mesh_path: Callable[[Triangles], str]) -> str:
     match geometry:
         case Box(size):
             return f'<box size="{_numbers(size)}"/>'
@@ -77,7 +100,7 @@ def _geometry(geometry: Geometry, mesh_path: Callable[[Mesh], str]) -> str:
             return f'<sphere radius="{radius!r}"/>'
         case Plane(normal, _):
             return f'<plane normal="{_numbers(normal)}"/>'
-        case Mesh():
+        case Mesh() | Heightmap() | Polyline() | ImageExtrusion():
             return f'<mesh filename={quoteattr(mesh_path(geometry))}/>'
     raise TypeError(f"no engine shape for {geometry!r}")
 
@@ -87,6 +110,10 @@ def _joint(link: PhysicsLink) -> str:
     kind = "fixed" if joint is None else joint.type
     if kind == "revolute" and joint.lower <= -NO_LIMIT and joint.upper >= NO_LIMIT:
         kind = "continuous"
+    if kind in ("revolute", "prismatic") and joint.lower == joint.upper == 0.0:
+        kind = "fixed"  # stops would only nearly hold it, and hide what it bears
+    if kind == "ball":
+        kind = "spherical"
     name = f"{link.name}__weld" if joint is None else joint.name
     text = (f'<joint name={quoteattr(name)} type="{kind}"><parent link={quoteattr(link.parent)}/>'
             f"<child link={quoteattr(link.name)}/>{_origin(link.pose_parent)}")

@@ -2,7 +2,7 @@
 
 Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
 once, faces that look away and links outside the picture not drawn, near things first, light per
-corner where that is enough; no MSAA, no anisotropic filtering, no shadows, no sky. Back faces are
+corner where that is enough; no MSAA, no anisotropic filtering, no shadows. Back faces are
 not drawn, as in Gazebo: a camera inside its own housing sees out.
 """
 
@@ -25,6 +25,7 @@ from bullet_sim.rendering.projection import (
     view_matrix,
 )
 from bullet_sim.rendering.scene import Node, SceneState
+from bullet_sim.rendering.sky import Sky
 from bullet_sim.rendering.surfaces import (
     LIGHTS_BINDING,
     SURFACE_BINDING,
@@ -76,6 +77,7 @@ class EglRenderer:
             self.largest_px = min(LARGEST_PX, info["GL_MAX_RENDERBUFFER_SIZE"],
                                   *info["GL_MAX_VIEWPORT_DIMS"])
             self._store = SurfaceStore(self._context)
+            self._sky = Sky(self._context)
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int], _Target] = {}
         self._finish = _finish_without_gil() or self._context.finish
@@ -86,6 +88,7 @@ class EglRenderer:
         with self._context:
             target = self._target(view.width, view.height)
             with measure("draw"):
+                self._store.show(scene.images)
                 prepared = self._prepare(scene)
                 self._submit(scene, prepared, view, target)
                 self._finish()
@@ -121,11 +124,12 @@ class EglRenderer:
     def _build(self, scene: SceneState) -> _Prepared:
         near_lights = lights.needs_pixels(scene)
         shine = lights.strongest_highlight(scene)
+        fog = None if scene.description.fog.type == "none" else scene.description.fog
         items = []
         for node in scene.nodes.values():
             surfaces = self._store.of(node.shape)
             per_pixel = [near_lights or s.highlight * shine > _VISIBLE for s in surfaces]
-            items.append([_Item(surface, *self._store.array(surface, lit))
+            items.append([_Item(surface, *self._store.array(surface, lit, fog))
                           for surface, lit in zip(surfaces, per_pixel, strict=True)])
         outlines = Outlines([node.shape for node in scene.nodes.values()])
         block = self._context.buffer(lights.lights_block(scene), dynamic=True)
@@ -149,6 +153,9 @@ class EglRenderer:
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
             _render(node, [item for item in items if item.surface.opaque], clip_node)
             see_through.append((node, [i for i in items if not i.surface.opaque], clip_node))
+        if scene.description.sky:
+            self._context.polygon_offset = (0.0, 0.0)
+            self._sky.draw(view)
         if any(items for _, items, _ in see_through):
             target.blend(self._context)
             self._context.polygon_offset = (0.0, 0.0)

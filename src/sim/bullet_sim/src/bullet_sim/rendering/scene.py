@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from weakref import WeakValueDictionary
 
 import numpy as np
 
 from bullet_sim.description import (
+    Generated,
     LightDescription,
     Material,
     Mesh,
@@ -68,6 +69,9 @@ class SceneState:
     lights: dict[str, LightDescription]
     nodes: dict[LinkKey, Node]
     version: int
+    # Textures that are no files, by the name that materials call them: (h, w, 3) uint8 RGB, first
+    # row first, never written to. Another array under the same name has the same size.
+    images: dict[str, np.ndarray] = field(default_factory=dict)
 
     def plane_ranks(self) -> dict[float, int]:
         """Rank by size of the planes that links are made of, the smallest 0.
@@ -87,10 +91,12 @@ class Scene(SceneState):
     def __init__(self, description: SceneDescription = SceneDescription()):
         super().__init__(description, {}, {}, next(_versions))
         self._shapes: WeakValueDictionary[tuple[Visual, ...], LinkShape] = WeakValueDictionary()
+        self._visuals: dict[LinkKey, tuple[Visual, ...]] = {}
 
     def frozen(self) -> SceneState:
         """As it is now; another thread may draw it while the scene goes on."""
-        return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version)
+        return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version,
+                          dict(self.images))
 
     def add_light(self, light: LightDescription) -> None:
         """Poses and directions of lights are in the world."""
@@ -114,12 +120,18 @@ class Scene(SceneState):
         if shape is None:
             shape = self._shapes[wanted] = link_shape(wanted)
         self.nodes[key] = Node(shape, pose)
+        self._visuals[key] = wanted
         self.version = next(_versions)
+
+    def add_visual(self, key: LinkKey, visual: Visual) -> None:
+        """Show one visual more on a link that is there."""
+        pose = self.nodes.pop(key).pose
+        self.add_link(key, (*self._visuals[key], visual), pose)
 
     def remove_model(self, model: str) -> None:
         """All links of a model; a model without links in the scene is no error."""
         for key in [key for key in self.nodes if key[0] == model]:
-            del self.nodes[key]
+            del self.nodes[key], self._visuals[key]
             self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
@@ -167,7 +179,7 @@ def _visual_parts(visual: Visual) -> list[MeshPart]:
 
 
 def _surface(visual: Visual) -> tuple[MeshPart, ...]:
-    if isinstance(visual.geometry, Mesh):
+    if isinstance(visual.geometry, Mesh | Generated):
         return load_mesh(visual.geometry)
     return (primitive_part(visual.geometry),)
 
@@ -182,12 +194,18 @@ def _placed(part: MeshPart, visual: Visual) -> MeshPart:
     matrix = visual.pose.matrix()
     vertices = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     normals = part.normals @ matrix[:3, :3].T
-    return replace(
+    placed = replace(
         part,
         vertices=vertices.astype(np.float32),
         normals=normals.astype(np.float32),
         material=material,
     )
+    return _joined([placed, _turned_over(placed)]) if material.double_sided else placed
+
+
+def _turned_over(part: MeshPart) -> MeshPart:
+    """The same triangles, seen from behind."""
+    return replace(part, normals=-part.normals, faces=np.ascontiguousarray(part.faces[:, ::-1]))
 
 
 def _joined(parts: list[MeshPart]) -> MeshPart:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 MAX_LIGHTS = 8
 DIRECTIONAL, POINT, SPOT = 0, 1, 2
+LINEAR, EXP, EXP2 = 0, 1, 2
 
 _LIGHTING = f"""
 #define MAX_LIGHTS {MAX_LIGHTS}
@@ -113,6 +114,18 @@ in vec3 light;
 in vec2 uv;
 uniform sampler2D image;
 #endif
+#ifdef FOG
+uniform vec3 fog_colour;
+uniform int fog_kind;
+uniform vec3 fog_shape;  // start, end, density
+vec3 in_fog(vec3 colour) {
+    float depth = 1.0 / gl_FragCoord.w;
+    float thin = fog_shape.z * depth;
+    float seen = fog_kind == LINEAR ? (fog_shape.y - depth) / max(fog_shape.y - fog_shape.x, 1e-6)
+               : exp(fog_kind == EXP ? -thin : -thin * thin);
+    return mix(fog_colour, colour, clamp(seen, 0.0, 1.0));
+}
+#endif
 out vec4 colour;
 void main() {
 #ifdef PER_PIXEL
@@ -123,13 +136,17 @@ void main() {
 #else
     colour = vec4(light, diffuse.a);
 #endif
+#ifdef FOG
+    colour.rgb = in_fog(colour.rgb);
+#endif
 }
 """
 
 
-def sources(per_pixel: bool, textured: bool) -> dict[str, str]:
-    """Arguments of moderngl's `program` for one of the four kinds of surface."""
+def sources(per_pixel: bool, textured: bool, fog: bool = False) -> dict[str, str]:
+    """Arguments of moderngl's `program` for one kind of surface, with or without fog."""
     head = "#version 330\n"
+    head += f"#define FOG\n#define LINEAR {LINEAR}\n#define EXP {EXP}\n" if fog else ""
     head += "#define PER_PIXEL\n" if per_pixel else ""
     head += "#define TEXTURED\n" if textured else ""
     head += _LIGHTING

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary
 
+import cv2
 import moderngl
 import numpy as np
 
-from bullet_sim.description import Material
+from bullet_sim.description import Fog, Material
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
-from bullet_sim.rendering.shaders import sources
+from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
 from bullet_sim.rendering.textures import load_image
 
 LIGHTS_BINDING, SURFACE_BINDING = 0, 1
+_FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
+
+Kind = tuple[bool, Fog | None]  # of drawing: whether lit per pixel, and in what fog
 
 
 @dataclass(eq=False)
 class Program:
-    """One of the four kinds of surface shader."""
+    """One kind of surface shader."""
 
     program: moderngl.Program
     projection_model: moderngl.Uniform
@@ -36,7 +41,7 @@ class Surface:
     texture: moderngl.Texture | None
     opaque: bool
     highlight: float  # brightest specular channel, 0..1
-    arrays: dict[bool, tuple[Program, moderngl.VertexArray]]  # by whether lit per pixel
+    arrays: dict[Kind, tuple[Program, moderngl.VertexArray]]
 
 
 class SurfaceStore:
@@ -47,7 +52,21 @@ class SurfaceStore:
         self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
         self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
         self._unreadable: set[str] = set()  # images that were warned about
-        self._programs: dict[tuple[bool, bool], Program] = {}
+        self._programs: dict[tuple[bool, bool, Fog | None], Program] = {}
+        self._images: Mapping[str, np.ndarray] = {}
+        self._shown: dict[str, np.ndarray] = {}  # of the images, which is on the card
+
+    def show(self, images: Mapping[str, np.ndarray]) -> None:
+        """What the textures that are no files look like from now on; see `SceneState.images`."""
+        self._images = images
+        for name, image in images.items():
+            texture = self._textures.get(name)
+            if texture is not None and self._shown.get(name) is not image:
+                texture.write(_rgba(image))
+                texture.build_mipmaps()
+                self._shown[name] = image
+        for name in self._shown.keys() - images.keys():
+            del self._shown[name]
 
     def of(self, shape: LinkShape) -> list[Surface]:
         """The shape's surfaces, uploaded when first asked for."""
@@ -56,23 +75,28 @@ class SurfaceStore:
             surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]
         return surfaces
 
-    def array(self, surface: Surface, per_pixel: bool) -> tuple[Program, moderngl.VertexArray]:
+    def array(self, surface: Surface, per_pixel: bool,
+              fog: Fog | None = None) -> tuple[Program, moderngl.VertexArray]:
         """How to draw a surface, lit per pixel or per corner."""
-        found = surface.arrays.get(per_pixel)
+        found = surface.arrays.get((per_pixel, fog))
         if found is None:
-            program = self._program(per_pixel, surface.texture is not None)
+            program = self._program(per_pixel, surface.texture is not None, fog)
             layout = "3f 3f 2f" if surface.texture is not None else "3f 3f 2x4"
             names = ["in_position", "in_normal", "in_uv"][:3 if surface.texture is not None else 2]
             array = self._context.vertex_array(
                 program.program, [(surface.vertices, layout, *names)], surface.indices
             )
-            found = surface.arrays[per_pixel] = (program, array)
+            found = surface.arrays[per_pixel, fog] = (program, array)
         return found
 
-    def _program(self, per_pixel: bool, textured: bool) -> Program:
-        kind = (per_pixel, textured)
+    def _program(self, per_pixel: bool, textured: bool, fog: Fog | None) -> Program:
+        kind = (per_pixel, textured, fog)
         if kind not in self._programs:
-            program = self._context.program(**sources(per_pixel, textured))
+            program = self._context.program(**sources(per_pixel, textured, fog is not None))
+            if fog is not None:
+                program["fog_colour"] = fog.colour[:3]
+                program["fog_kind"] = _FOGS[fog.type]
+                program["fog_shape"] = fog.start, fog.end, fog.density
             program["Lights"].binding = LIGHTS_BINDING
             program["Surface"].binding = SURFACE_BINDING
             self._programs[kind] = Program(program, program["projection_model"], program["model"])
@@ -100,7 +124,11 @@ class SurfaceStore:
         texture = self._textures.get(path)
         if texture is not None or path in self._unreadable:
             return texture
-        image = load_image(path, self._context.info["GL_MAX_TEXTURE_SIZE"])
+        if path in self._images:
+            self._shown[path] = self._images[path]
+            image = _rgba(self._images[path])
+        else:
+            image = load_image(path, self._context.info["GL_MAX_TEXTURE_SIZE"])
         if image is None:
             self._unreadable.add(path)
             return None
@@ -108,7 +136,13 @@ class SurfaceStore:
         texture = self._textures[path] = self._context.texture((width, height), 4, image)
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        texture.repeat_x = texture.repeat_y = path not in self._images
         return texture
+
+
+def _rgba(rgb: np.ndarray) -> np.ndarray:
+    """(h, w, 3) uint8, first row first, as OpenGL wants it: with alpha, last row first."""
+    return np.ascontiguousarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2RGBA)[::-1])
 
 
 def _material_block(material: Material) -> bytes:

@@ -1,6 +1,7 @@
 """The fallback where OpenGL does not start: PyBullet's TinyRenderer, slow, with the same cameras.
 
-One directional light, no filtering of textures, no blending; what glows only has the colour of it.
+One directional light, no filtering of textures, no blending, no fog, no sky, no textures but files;
+what glows only has the colour of it.
 It has a physics client of its own that never steps: bodies without mass stand where links are.
 """
 

@@ -13,8 +13,12 @@ from bullet_sim.model import Link
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.rendering.scene import SceneState
+from bullet_sim.sensors.distortion import Distortion
 from bullet_sim.sensors.image_noise import ImageNoise
+from bullet_sim.sensors.wide_lens import WideLens, mistake_in_lens
 from bullet_sim.world import World
+
+WIDE_ANGLE = "wideanglecamera"  # the type of sensors that look through their <lens>
 
 
 @dataclass(frozen=True)
@@ -37,10 +41,13 @@ class CameraReading:
 
 
 class Camera:
-    """Gazebo's camera sensor: looks along +x of its sensor frame, z up."""
+    """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
+
+    A `<distortion>` bends the colours, not the depth, which stays a pinhole's as in Gazebo.
+    """
 
     def __init__(self, world: World, link: Link, sensor: SensorDescription, renderer: Renderer,
-                 number: int = 0):
+                 number: int = 0, border_crop: bool = True):
         if not sensor.cameras:
             raise FormatError(f"sensor {sensor.name} of {link.scoped_name} has no <camera>")
         self.description: CameraDescription = sensor.cameras[number]
@@ -49,16 +56,20 @@ class Camera:
         self._sensor = sensor
         self._renderer = renderer
         self._name = f"{link.scoped_name}::{sensor.name}::{number}"
-        mistake = _mistake(self.description, renderer)
+        self.wide_angle = sensor.type == WIDE_ANGLE
+        self._border_crop = border_crop
+        mistake = _mistake(self.description, renderer, self.wide_angle)
         if mistake:
             raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: {mistake}")
         self._noise: ImageNoise | None = None
+        self._distortion: Distortion | None = None
+        self._lens: WideLens | None = None
 
     def view(self) -> CameraView:
         """The pinhole as it stands now."""
         camera = self.description
         return CameraView(camera.width, camera.height, camera.horizontal_fov, camera.near,
-                          camera.far, self._link.pose * self._sensor.pose)
+                          camera.far, self._link.pose * self._sensor.pose * camera.pose)
 
     def sample(self, depth: bool = False) -> CameraReading:
         """Draw what the camera sees."""
@@ -71,9 +82,31 @@ class Camera:
             return Exposure(world.time, world.tick, world.update_scene().frozen(), self.view())
 
     def develop(self, exposure: Exposure, depth: bool = False) -> CameraReading:
-        """Draw an exposure. Any thread may do it, one at a time, while the world goes on."""
-        frame = self._renderer.draw(exposure.scene, exposure.view, depth)
-        return CameraReading(exposure.time, self._with_noise(frame.rgb, exposure), frame.depth)
+        """Draw an exposure. Any thread may do it, one at a time, while the world goes on.
+
+        A wide-angle camera has no depth.
+        """
+        if self.wide_angle:
+            rgb, metres = self._through_lens(exposure), None
+        else:
+            frame = self._renderer.draw(exposure.scene, exposure.view, depth)
+            rgb, metres = self._bent(frame.rgb, exposure), frame.depth
+        return CameraReading(exposure.time, self._with_noise(rgb, exposure), metres)
+
+    def _through_lens(self, exposure: Exposure) -> np.ndarray:
+        if self._lens is None:
+            self._lens = WideLens(self.description)
+        return self._lens.draw(exposure.view.pose,
+                               lambda view: self._renderer.draw(exposure.scene, view).rgb)
+
+    def _bent(self, rgb: np.ndarray, exposure: Exposure) -> np.ndarray:
+        if not any(self.description.distortion):
+            return rgb
+        with self._world.stages.measure("distortion"):
+            if self._distortion is None:
+                self._distortion = Distortion(self.description, exposure.view.focal_length_px,
+                                              self._border_crop)
+            return self._distortion.apply(rgb)
 
     def _with_noise(self, rgb: np.ndarray, exposure: Exposure) -> np.ndarray:
         noise = self.description.noise
@@ -85,14 +118,17 @@ class Camera:
             return self._noise.add(rgb, self._world.random(self._name, exposure.tick))
 
 
-def _mistake(camera: CameraDescription, renderer: Renderer) -> str | None:
+def _mistake(camera: CameraDescription, renderer: Renderer, wide_angle: bool) -> str | None:
     """What of a camera nobody can draw."""
     size = f"an image of {camera.width}x{camera.height} px"
     if min(camera.width, camera.height) < 1:
         return size
     if max(camera.width, camera.height) > renderer.largest_px:
         return f"{size}; {renderer.name} draws at most {renderer.largest_px} a side"
-    if not 0 < camera.horizontal_fov < math.pi:
+    wrong_lens = mistake_in_lens(camera, renderer.largest_px) if wide_angle else None
+    if wrong_lens:
+        return wrong_lens
+    if not wide_angle and not 0 < camera.horizontal_fov < math.pi:
         return f"<horizontal_fov> is {camera.horizontal_fov}, which is not between 0 and pi"
     if not 0 < camera.near < camera.far < math.inf:
         return (f"<clip> is from {camera.near} to {camera.far} m; it needs a <near> of more than 0 "

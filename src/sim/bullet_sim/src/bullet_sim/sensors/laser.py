@@ -1,4 +1,4 @@
-"""Planar laser range finder: rays against collision shapes."""
+"""Laser range finder: rays against collision shapes, with REP 117's infinities."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.errors import FormatError
 from bullet_sim.model import Link
+from bullet_sim.sensors.noise import SensorNoise
+from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim.world import World
 
 
@@ -23,45 +24,31 @@ class LaserReading:
     angle_max: float  # rad, direction of the last beam
     range_min: float  # m
     range_max: float  # m
+    rows: int = 1  # of n / rows beams each, the lowest first
 
 
 class Laser:
-    """Gazebo's ray sensor: each ray starts at range_min, so the housing around it is not seen."""
+    """Gazebo's ray sensor; its noise does not turn a hit into a miss, nor a miss into a hit."""
 
     def __init__(self, world: World, link: Link, description: SensorDescription):
-        if description.ray is None:
-            raise FormatError(f"sensor {description.name} of {link.scoped_name} has no <ray>")
+        self.fan = RayFan(world, link, description)
+        self.ray = self.fan.ray
         self._world = world
-        self._link = link
-        self._description = description
-        self.ray = description.ray
-        count = max(1, round(self.ray.samples * self.ray.resolution))
-        angles = np.linspace(self.ray.min_angle, self.ray.max_angle, count)
-        self._beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(count)], axis=1)
-        self._name = f"{link.scoped_name}::{description.name}"
+        self._noise = SensorNoise(
+            world, f"{link.scoped_name}::{description.name}", [self.ray.noise])
+
+    def measure(self) -> tuple[np.ndarray, np.ndarray]:
+        """Ranges in m with noise and infinities, and laser_retro, both (rows, columns)."""
+        ray = self.ray
+        distances, retro = self.fan.cast()
+        ranges = np.clip(self._noise.apply(distances), ray.range_min, ray.range_max)
+        ranges = np.where(distances >= ray.range_max, np.inf, ranges)
+        return np.where(distances <= ray.range_min, -np.inf, ranges), retro
 
     def sample(self) -> LaserReading:
         """Cast all beams from where the sensor is now."""
         ray = self.ray
-        matrix = (self._link.pose * self._description.pose).matrix()
-        beams = self._beams @ matrix[:3, :3].T
-        starts = matrix[:3, 3] + beams * ray.range_min
-        ends = matrix[:3, 3] + beams * ray.range_max
-        hits = self._world.cast_rays(starts, ends)
-        ranges = ray.range_min + hits.fraction * (ray.range_max - ray.range_min)
-        ranges = self._with_noise(ranges)
-        limited = np.where(ranges >= ray.range_max, np.inf, ranges)
-        limited[ranges <= ray.range_min] = -np.inf
-        return LaserReading(self._world.time, limited.astype(np.float32),
-                            hits.retro.astype(np.float32), ray.min_angle, ray.max_angle,
-                            ray.range_min, ray.range_max)
-
-    def _with_noise(self, ranges: np.ndarray) -> np.ndarray:
-        noise = self.ray.noise
-        if noise.type != "gaussian":
-            return ranges
-        # Gazebo draws for every ray, hit or not; a miss stays a miss.
-        random = self._world.random(self._name)
-        noisy = ranges + random.normal(noise.mean, noise.stddev, ranges.shape)
-        noisy = np.clip(noisy, self.ray.range_min, self.ray.range_max)
-        return np.where(ranges >= self.ray.range_max, ranges, noisy)
+        ranges, retro = self.measure()
+        return LaserReading(
+            self._world.time, ranges.ravel().astype(np.float32), retro.ravel().astype(np.float32),
+            ray.min_angle, ray.max_angle, ray.range_min, ray.range_max, self.fan.shape[0])

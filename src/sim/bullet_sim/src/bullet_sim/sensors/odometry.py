@@ -32,8 +32,9 @@ def true_odometry(world: World, model: Model) -> OdometryReading:
 class WheelOdometry:
     """Dead reckoning of a differential drive from its wheel rates, planar, starting at zero."""
 
-    def __init__(self, wheel_separation: float, wheel_diameter: float):
+    def __init__(self, wheel_separation: float, wheel_diameter: float, signed: bool = False):
         self._separation = wheel_separation
+        self._signed = signed
         self._radius = wheel_diameter / 2
         self.restart(0.0)
 
@@ -54,8 +55,9 @@ class WheelOdometry:
         self._x += way * math.cos(self._yaw + turn / 2)
         self._y += way * math.sin(self._yaw + turn / 2)
         self._yaw += turn
-        # Upstream reports the length of the way, so driving back is positive too.
-        self._speed, self._yaw_rate = abs(way) / elapsed, turn / elapsed
+        # gazebo_ros_diff_drive reports the length of the way, so driving back is positive too.
+        self._speed = (way if self._signed else abs(way)) / elapsed
+        self._yaw_rate = turn / elapsed
 
     def sample(self) -> OdometryReading:
         """The estimate as it stands."""

@@ -1,0 +1,31 @@
+"""Which of a round robot's three bumpers is pressed, from what touches it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from bullet_sim.physics.contacts import Contact
+from bullet_sim.pose import Pose
+
+# kobuki's: contacts lower than this are the floor, higher ones are what stands on the base
+LOWEST, HIGHEST = 0.01, 0.13  # m above the model frame
+SECTORS = {"left": (math.pi / 6, math.pi / 2), "center": (-math.pi / 6, math.pi / 6),
+           "right": (-math.pi / 2, -math.pi / 6)}  # rad from straight ahead, counter-clockwise
+
+
+def pressed_bumpers(contacts: Iterable[Contact], link: str, robot: Pose) -> set[str]:
+    """Names of `SECTORS`; `link` is the bumper's scoped name, `robot` the model frame."""
+    pressed = set()
+    heading = robot.rpy()[2]
+    for contact in contacts:
+        ends = [name.rpartition("::")[0] for name in (contact.collision1, contact.collision2)]
+        if link not in ends:
+            continue
+        sign = -1.0 if ends[0] == link else 1.0  # from the robot outwards
+        if not LOWEST <= contact.position[2] - robot.position[2] <= HIGHEST:
+            continue
+        angle = math.remainder(
+            math.atan2(sign * contact.normal[1], sign * contact.normal[0]) - heading, math.tau)
+        pressed |= {name for name, (low, high) in SECTORS.items() if low <= angle <= high}
+    return pressed

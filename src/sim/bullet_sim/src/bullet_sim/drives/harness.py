@@ -1,0 +1,39 @@
+"""A winch that holds a link in the air, raises or lowers it, and lets go once."""
+
+from __future__ import annotations
+
+import math
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.model import Link
+from bullet_sim.pose import Pose, Vector3
+from bullet_sim.world import World
+
+
+class Harness:
+    """`update` at every step."""
+
+    def __init__(self, world: World, link: Link, axis: Vector3):
+        """`axis` in the world: where the winch goes at a positive speed."""
+        length = math.hypot(*axis)
+        if length == 0.0:
+            raise SimulationError("the harness has a joint without axis: it is 0 0 0")
+        self._world = world
+        self._axis = tuple(part / length for part in axis)
+        self._speed = 0.0
+        self._hook = link.attach()
+
+    def command(self, speed: float) -> None:
+        """Speed along the axis, m/s; held until the next command."""
+        self._speed = speed
+
+    def detach(self) -> None:
+        """Let go for good."""
+        self._speed = 0.0
+        self._hook.release()
+
+    def update(self) -> None:
+        """Wind on by one step."""
+        if self._speed:
+            step = self._speed * self._world.timestep
+            self._hook.shift(Pose(tuple(part * step for part in self._axis)))

@@ -1,0 +1,80 @@
+"""Kobuki's base: two wheels with a time-out, odometry from wheels and gyroscope."""
+
+from __future__ import annotations
+
+import math
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.model import Joint
+from bullet_sim.pose import Pose, quaternion_from_rpy
+from bullet_sim.sensors.imu import ImuReading
+from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim.sensors.odometry import OdometryReading
+from bullet_sim.world import World
+
+
+class Kobuki:
+    """`update` at every step. As the real base does, it takes the turn from the gyroscope."""
+
+    def __init__(self, world: World, left: Joint, right: Joint, imu: ImuSensor, torque: float,
+                 wheel_separation: float, wheel_diameter: float, timeout: float):
+        """Torque in N m, separation and diameter in m, `timeout` of a command in s."""
+        if wheel_diameter <= 0 or wheel_separation <= 0:
+            raise SimulationError(f"wheel diameter {wheel_diameter} and separation "
+                                  f"{wheel_separation} must both be more than 0 m")
+        self.wheels = (left, right)
+        self._world, self._imu = world, imu
+        self._torque, self._timeout = torque, timeout
+        self._separation, self._radius = wheel_separation, wheel_diameter / 2
+        self.reset()
+
+    def command(self, forward: float, yaw_rate: float) -> None:
+        """Wanted speed (m/s) and rate of yaw (rad/s), until the time-out."""
+        half = yaw_rate * self._separation / 2
+        self._speeds = (forward - half, forward + half)
+        self._commanded = self._world.time
+
+    def switch(self, on: bool) -> None:
+        """Motors on or off; without power the wheels are held still."""
+        self._powered = on
+
+    def reset(self) -> None:
+        """As just switched on."""
+        self._speeds = (0.0, 0.0)
+        self._commanded = self._updated = self._world.time
+        self._powered = True
+        self._imu.restart()
+        self._reading: ImuReading | None = None
+        self._forward = 0.0
+        self.reset_odometry()
+
+    def reset_odometry(self) -> None:
+        """Here and now is the origin."""
+        self._x = self._y = self._yaw = 0.0
+
+    def update(self) -> None:
+        """Count the way of the last step, then drive."""
+        time = self._world.time
+        elapsed, self._updated = time - self._updated, time
+        self._reading = self._imu.sample()
+        left, right = (joint.velocity * self._radius for joint in self.wheels)
+        self._forward = (left + right) / 2
+        self._x += self._forward * elapsed * math.cos(self._yaw)
+        self._y += self._forward * elapsed * math.sin(self._yaw)
+        self._yaw += self._reading.angular_velocity[2] * elapsed
+        if time - self._commanded > self._timeout or not self._powered:
+            self._speeds = (0.0, 0.0)
+        for joint, speed in zip(self.wheels, self._speeds, strict=True):
+            joint.drive_velocity(speed / self._radius, self._torque)
+
+    def odometry(self) -> OdometryReading:
+        """The estimate as it stands."""
+        pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
+        return OdometryReading(self._updated, pose, self._forward, 0.0,
+                               self.imu_reading().angular_velocity[2])
+
+    def imu_reading(self) -> ImuReading:
+        """What the gyroscope and the accelerometer said in the last step."""
+        if self._reading is None:
+            self._reading = self._imu.sample()
+        return self._reading

@@ -1,0 +1,56 @@
+"""A joint that follows another one: `multiplier` times its position, plus `offset`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.control.pid import Pid
+from bullet_sim.model import Joint
+
+FOLLOWING_EFFORT = 1e3  # N m or N: more than any finger; the joint is to be where it belongs
+CATCH_UP = 5  # steps in which a gap is closed
+SETTLED = 1e-4  # rad or m: nearer than this the joint is only held, so that a world comes to rest
+
+
+@dataclass(frozen=True)
+class MimicParameters:
+    """Defaults are those of roboticsgroup's plugin."""
+
+    multiplier: float = 1.0
+    offset: float = 0.0  # rad or m
+    sensitiveness: float = 0.0  # rad or m: gaps below it are left alone
+    max_effort: float = 1.0  # N m or N, with a PID
+
+
+class MimicJoint:
+    """Without a PID the follower is held at its place; with one, it is pushed there."""
+
+    def __init__(self, leader: Joint, follower: Joint, parameters: MimicParameters,
+                 pid: Pid | None = None):
+        self._leader, self._follower = leader, follower
+        self._parameters = parameters
+        self._pid = pid
+
+    def update(self, timestep: float) -> None:
+        """Call at every step (s)."""
+        p = self._parameters
+        gap = self._target() - self._follower.position
+        if self._pid is not None:
+            if abs(gap) >= p.sensitiveness:
+                effort = self._pid.compute(gap, timestep)
+                self._follower.drive_effort(max(-p.max_effort, min(p.max_effort, effort)))
+            return
+        rate = 0.0
+        if abs(gap) >= max(p.sensitiveness, SETTLED):
+            rate = gap / (CATCH_UP * timestep) + p.multiplier * self._leader.velocity
+        self._follower.drive_velocity(rate, FOLLOWING_EFFORT)
+
+    def _target(self) -> float:
+        p, limits = self._parameters, self._follower.description
+        wanted = p.multiplier * self._leader.position + p.offset
+        return max(limits.lower, min(limits.upper, wanted))
+
+    def reset(self) -> None:
+        """Forget the errors of the past."""
+        if self._pid is not None:
+            self._pid.reset()

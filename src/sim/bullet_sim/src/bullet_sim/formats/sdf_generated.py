@@ -1,0 +1,118 @@
+"""Reads the shapes that are made, not loaded: `<heightmap>`, `<polyline>`, `<image>`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import (
+    Heightmap,
+    ImageExtrusion,
+    Material,
+    Polyline,
+    Rgba,
+    TerrainLayer,
+)
+from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import amount, bounded, child_text, integer, numbers, vector
+
+IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
+# What a texture of Gazebo's media folder stands for, by a word in its file name: we have none.
+GROUNDS: dict[str, Rgba] = {
+    "dirt": (0.42, 0.33, 0.24, 1.0),
+    "grass": (0.25, 0.42, 0.16, 1.0),
+    "fungus": (0.36, 0.38, 0.2, 1.0),
+    "sand": (0.76, 0.68, 0.5, 1.0),
+    "rock": (0.45, 0.44, 0.42, 1.0),
+    "gravel": (0.5, 0.48, 0.45, 1.0),
+    "asphalt": (0.25, 0.25, 0.26, 1.0),
+    "snow": (0.92, 0.93, 0.95, 1.0),
+}
+SOIL: Rgba = (0.45, 0.4, 0.3, 1.0)
+
+
+def read_heightmap(element: Element, source: Source, where: str) -> Heightmap:
+    """Ground; flat, with a warning, where its image cannot be had."""
+    where = f"{where} <heightmap>"
+    path = _image(element, source, where, "flat ground of its size is taken")
+    return Heightmap(
+        path=path,
+        size=vector(element, "size", Heightmap(None).size, where),
+        position=vector(element, "pos", Heightmap(None).position, where),
+        layers=_layers(element, source, where),
+    )
+
+
+def read_polylines(geometry: Element, source: Source, where: str) -> Polyline:
+    """All `<polyline>` of a `<geometry>` as one solid; the height is that of the first."""
+    where = f"{where} <polyline>"
+    elements = geometry.findall("polyline")
+    outlines = tuple(
+        tuple(bounded(numbers(point.text or "", 2, f"{where} <point>"), f"{where} <point>")
+              for point in element.findall("point"))
+        for element in elements
+    )
+    if any(len(outline) < 3 for outline in outlines):
+        raise FormatError(f"{where}: an outline needs three <point>s or more")
+    return Polyline(outlines, amount(elements[0], "height", 1.0, where))
+
+
+def read_image(element: Element, source: Source, where: str) -> ImageExtrusion | None:
+    """A floor plan; None, with a warning, where the picture cannot be had."""
+    where = f"{where} <image>"
+    path = _image(element, source, where, "left out")
+    if path is None:
+        return None
+    return ImageExtrusion(
+        path=path,
+        scale=amount(element, "scale", 1.0, where),
+        threshold=integer(element, "threshold", 200, where),
+        height=amount(element, "height", 1.0, where),
+    )
+
+
+def _image(element: Element, source: Source, where: str, otherwise: str) -> str | None:
+    """Path of the image that `<uri>` names."""
+    uri = child_text(element, "uri") or child_text(element, "filename")
+    try:
+        path = source.resources.resolve(uri, source.folder)
+        if not path.is_file():
+            raise ResourceNotFound(f"image {uri!r}", [str(path)])
+        if path.suffix.lower() not in IMAGE_KINDS:
+            raise FormatError(f"{path.name} is of no kind that can be read; there are: "
+                              f"{', '.join(IMAGE_KINDS)}")
+    except (ResourceNotFound, FormatError) as error:
+        source.warn_once(f"{where}: {error}; {otherwise}", about=f"{where} {uri}")
+        return None
+    return str(path)
+
+
+def _layers(element: Element, source: Source, where: str) -> tuple[TerrainLayer, ...]:
+    """Textures with the heights from which they show; where they fade into each other is an edge.
+    """
+    lowest = [0.0] + [amount(blend, "min_height", 0.0, f"{where} <blend>")
+                      for blend in element.findall("blend")]
+    layers = []
+    for number, texture in enumerate(element.findall("texture")):
+        tile = amount(texture, "size", 10.0, f"{where} <texture>")
+        layers.append(TerrainLayer(
+            material=_ground(child_text(texture, "diffuse"), source),
+            tile=tile or 10.0,
+            lowest=lowest[min(number, len(lowest) - 1)],
+        ))
+    return tuple(layers)
+
+
+def _ground(uri: str, source: Source) -> Material:
+    try:
+        path = source.resources.resolve(uri, source.folder)
+        if path.is_file():
+            return Material(texture=str(path))
+    except ResourceNotFound:
+        pass  # Gazebo's own textures are not here: their colour is
+    name = Path(uri).name.lower()
+    colour = next((rgba for word, rgba in GROUNDS.items() if word in name), None)
+    if colour is None:
+        source.warn_once(f"heightmap texture {uri!r} not found; brown ground is drawn")
+    return Material(ambient=colour or SOIL, diffuse=colour or SOIL)

@@ -1,0 +1,43 @@
+"""Reads the `<scene>` of an SDF world: ambient light, background, sky and fog."""
+
+from __future__ import annotations
+
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import Fog, SceneDescription
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.xml_values import child_text, colour, flag, number
+
+FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
+        "constant": "exp", "quadratic": "exp2"}  # the last two are how SDF's own text calls them
+
+
+def read_scene(element: Element | None, world: str) -> SceneDescription:
+    """Everything that is the same wherever a camera looks."""
+    usual = SceneDescription()
+    if element is None:
+        return usual
+    where = f"{world} <scene>"
+    return SceneDescription(
+        ambient=colour(element, "ambient", usual.ambient, where),
+        background=colour(element, "background", usual.background, where),
+        shadows=flag(element, "shadows", usual.shadows),
+        sky=element.find("sky") is not None,
+        fog=_fog(element.find("fog"), f"{where} <fog>"),
+    )
+
+
+def _fog(element: Element | None, where: str) -> Fog:
+    usual = Fog()
+    if element is None:
+        return usual
+    kind = child_text(element, "type", usual.type)
+    if kind not in FOGS:
+        raise FormatError(f"{where} <type>: no fog named {kind!r}; there are: {', '.join(FOGS)}")
+    return Fog(
+        type=FOGS[kind],
+        colour=colour(element, "color", usual.colour, where),
+        start=number(element, "start", usual.start, where),
+        end=number(element, "end", usual.end, where),
+        density=number(element, "density", usual.density, where),
+    )

@@ -1,0 +1,59 @@
+"""Says which elements of an SDF text nobody knows: most often they are misspelt."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterator
+from functools import cache
+from xml.etree.ElementTree import Element
+
+from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.source import Source
+
+MOST_WARNINGS = 20  # of one file; a file of another kind has thousands of strange elements
+ALIKE = 0.75  # of a misspelt tag to the one that was meant, 0..1
+
+
+@cache
+def known_children() -> dict[str, frozenset[str]]:
+    """What may stand in an element, by its tag or by `parent/tag`."""
+    with (DATA_FOLDER / "sdf_elements.toml").open("rb") as file:
+        table = tomllib.load(file)
+    return {parent: frozenset(names.split()) for parent, names in table.items()}
+
+
+def warn_of_unknown_elements(root: Element, source: Source, file: str = "") -> None:
+    """One warning for each kind of unknown element, with the name that was probably meant.
+
+    A tag with a colon is somebody's extension and silently accepted.
+    """
+    prefix = f"{file}: " if file else ""
+    first: dict[tuple[str, str], str] = {}  # (parent, tag) -> where it was first met
+    for parent, tag, place in _strange(root, "", ""):
+        first.setdefault((parent, tag), place)
+    for (parent, tag), place in list(first.items())[:MOST_WARNINGS]:
+        known = known_children()
+        siblings = sorted(known.get(parent) or known[parent.rpartition("/")[2]])
+        meant = difflib.get_close_matches(tag, siblings, n=1, cutoff=ALIKE)
+        hint = f"; did you mean <{meant[0]}>?" if meant else ""
+        source.warn_once(f"{prefix}{place}: <{tag}> is not known, left out{hint}")
+
+
+def _strange(element: Element, parent: str, place: str) -> Iterator[tuple[str, str, str]]:
+    """Unknown elements with `parent/tag` of what they stand in, and the names on the way there."""
+    tables = known_children()
+    path = f"{parent}/{element.tag}"
+    known = tables.get(path, tables.get(element.tag))
+    if known is None or parent == "state":
+        return
+    name = element.get("name")
+    if name:
+        place = f"{place}, {element.tag} {name!r}" if place else f"{element.tag} {name!r}"
+    else:
+        place = f"{place} <{element.tag}>" if parent else ""
+    for child in element:
+        if child.tag in known:
+            yield from _strange(child, element.tag, place)
+        elif ":" not in child.tag:
+            yield path, child.tag, place

@@ -1,0 +1,94 @@
+"""What went wrong in a xacro file, as one line for people: where, what, what to type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.parsers.expat import ExpatError
+
+import xacro
+from xacro import substitution_args
+
+from bullet_sim.errors import FormatError
+
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+REPEATED = 20  # a file this often in the stack of includes includes itself
+LONGEST = 600  # letters of a line
+
+
+def located(error: BaseException, path: str) -> str:
+    """Place and reason; `path` is the file that was asked for."""
+    where, reason = place(path), _reason(error)
+    text = reason if reason.startswith(where) else f"{where}: {reason}"
+    return text if len(text) <= LONGEST else text[:LONGEST] + " …"
+
+
+def place(default: str) -> str:
+    """The file being read, and the macro being expanded in it."""
+    place = xacro.filestack[-1] if xacro.filestack else default
+    if xacro.macrostack:
+        place += f": macro {xacro.macrostack[-1].body.getAttribute('name')}"
+    return place
+
+
+def root_of(error: BaseException) -> BaseException:
+    """The exception at the bottom of xacro's wrapping ones."""
+    while getattr(error, "exc", None) is not None:
+        error = error.exc
+    return error
+
+
+def _reason(error: BaseException) -> str:
+    """What to tell people of an exception."""
+    root = root_of(error)
+    if isinstance(root, FormatError):
+        return one_line(str(root))
+    if isinstance(root, RecursionError):
+        return _endless()
+    if isinstance(root, MemoryError):
+        return "an expression or macro needs more memory than there is; make it smaller"
+    if isinstance(root, OSError) and isinstance(error, xacro.XacroException):
+        return one_line(error.args[0] or str(root))
+    if isinstance(root, substitution_args.ArgException):
+        return f"argument {root} has no value: pass {root}:=VALUE or give its xacro:arg a default"
+    if isinstance(root, ExpatError):
+        return f"XML error: {root}{_xml_hint(root)}"
+    text = one_line(str(error))
+    if not text or text.startswith("<class"):  # xacro's wording for what it did not expect
+        text = f"{type(root).__name__}: {one_line(str(root))}"
+    if text.startswith("unknown macro name: xacro:"):
+        name = text.rpartition("xacro:")[2]
+        return f'{text}; include the file with <xacro:macro name="{name}"> before it is called'
+    return text.replace("name '", "property '", 1) if isinstance(root, NameError) else text
+
+
+def _endless() -> str:
+    files = xacro.filestack or []
+    if files and files.count(files[-1]) > REPEATED:
+        return "the file includes itself without end; put the <xacro:include> into an <xacro:if>"
+    if len(files) > REPEATED and files.count(files[-2]) > REPEATED:
+        return f"this file and {files[-2]} include each other without end; take one include out"
+    return ("macros call each other without end, or elements are nested too deep; end the calls "
+            "with an <xacro:if>")
+
+
+def _xml_hint(error: ExpatError) -> str:
+    """What to do about the two usual mistakes."""
+    text = str(error)
+    if text.startswith("unbound prefix"):
+        return f"; declare it in the <robot> tag, such as {NAMESPACE}"
+    if text.startswith("not well-formed") and not _is_utf8():
+        return "; the file is not UTF-8, save it as UTF-8"
+    return ""
+
+
+def _is_utf8() -> bool:
+    try:
+        Path(xacro.filestack[-1]).read_bytes().decode()
+    except (UnicodeDecodeError, OSError):
+        return False
+    return True
+
+
+def one_line(text: str) -> str:
+    """With single spaces for any white space."""
+    return " ".join(text.split())

@@ -1,0 +1,43 @@
+"""`$(…)` in xacro files: what ROS 1's knows and PyPI's does not."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+import socket
+from collections.abc import Callable
+from typing import Any
+
+import xacro
+
+_COUNT = itertools.count()
+ANON = re.compile(r"\$\(anon\s+([^\s)]+)\s*\)")
+# As xacro's own, but $(eval …) may hold calls such as arg('x').
+LEXER = xacro.QuickLexer(
+    DOLLAR_DOLLAR_BRACE=r"^\$\$+(\{|\()",
+    EXPR=r"^\$\{[^\}]*\}",
+    EXTENSION=r"^\$\(eval\s[^()]*(?:\([^()]*\)[^()]*)*\)|^\$\([^\)]*\)",
+    TEXT=r"[^$]+|\$[^{($]+|\$$",
+)
+
+
+def directory(_filename: str) -> str:
+    """`$(dirname)`: the folder of the file being read."""
+    return os.path.abspath(os.path.dirname(xacro.filestack[-1]))
+
+
+def resolver(resolve: Callable[..., str]) -> Callable[..., str]:
+    """PyPI's `resolve_args`, with `$(anon NAME)` besides: one name for each NAME and expansion."""
+    names: dict[str, str] = {}
+
+    def anonymous(match: re.Match) -> str:
+        # The form of rosgraph's: name, host, process, and a number for its milliseconds.
+        host = re.sub(r"\W", "_", socket.gethostname())
+        made = f"{match[1]}_{host}_{os.getpid()}_{next(_COUNT)}"
+        return names.setdefault(match[1], made)
+
+    def resolve_args(text: str, context: Any = None, **options: Any) -> str:
+        return resolve(ANON.sub(anonymous, text), context, **options)
+
+    return resolve_args

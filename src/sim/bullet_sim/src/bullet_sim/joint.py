@@ -1,0 +1,221 @@
+"""Joints of a model: those the engine drives, those held fixed, and those that close a loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from bullet_sim.description import JointDescription
+from bullet_sim.physics.axes import TRAVEL
+from bullet_sim.physics.body import Body
+from bullet_sim.physics.reaction import joint_reaction
+from bullet_sim.physics.urdf_text import NO_LIMIT
+from bullet_sim.pose import Pose, Vector3, rotate
+
+if TYPE_CHECKING:
+    from bullet_sim.model import Model
+
+
+class Joint:
+    """A joint that can move; positions in rad or m."""
+
+    def __init__(self, description: JointDescription, body: Body, touched: Callable[[], None]):
+        self.description = description
+        self.name = description.name
+        self.second_axis: Joint | None = None  # of a universal or revolute2 joint
+        self._body = body
+        self._touched = touched
+
+    @property
+    def position(self) -> float:
+        """Angle or travel from the described pose."""
+        return self._body.joint_state(self.name)[0]
+
+    @property
+    def velocity(self) -> float:
+        """Rate of `position`."""
+        return self._body.joint_state(self.name)[1]
+
+    def reset(self, position: float, velocity: float = 0.0) -> None:
+        """Put the joint there at once; a screw travels with its turn."""
+        self._body.reset_joint(self.name, position, velocity)
+        if self.name + TRAVEL in self._body.joint_names():
+            pitch = -self.description.thread_pitch
+            self._body.reset_joint(self.name + TRAVEL, position / pitch, velocity / pitch)
+        self._touched()
+
+    def drive_velocity(self, velocity: float, effort: float) -> None:
+        """Hold a rate with at most `effort` (N m or N), until told otherwise."""
+        self._body.drive_velocity(self.name, velocity, effort)
+
+    def drive_effort(self, effort: float) -> None:
+        """Effort (N m or N) during the next step, cut to the joint's limit as upstream does."""
+        self._body.drive_effort(self.name, self._within_limit(effort))
+
+    def add_effort(self, effort: float) -> None:
+        """Effort (N m or N) during the next step, beside what drives it; cut to the limit."""
+        self._body.add_effort(self.name, self._within_limit(effort))
+
+    def _within_limit(self, effort: float) -> float:
+        """Cut to the effort limit; nothing that would speed it up beyond the velocity limit."""
+        limit, fastest = self.description.effort, self.description.velocity
+        if fastest >= 0 and effort:
+            rate = self.velocity
+            if abs(rate) > fastest and rate * effort > 0:
+                return 0.0
+        return effort if limit < 0 else max(-limit, min(limit, effort))
+
+    @property
+    def motor(self) -> tuple[float, float]:
+        """The rate that it is held at, and the effort at most for it."""
+        return self._body.motor(self.name)
+
+    def release(self) -> None:
+        """Let it turn freely, but for its own friction."""
+        self._body.release(self.name)
+
+    def change(self, lower: float, upper: float, damping: float) -> None:
+        """Other stops, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
+        stops = {"lower": lower, "upper": upper, "damping": damping}
+        kind = self.description.type
+        if kind == "continuous" and min(abs(lower), abs(upper)) < NO_LIMIT:
+            kind = "revolute"
+        self.description = replace(self.description, type=kind, **stops)
+        self._body.change_joint(self.name, type=kind, **stops)
+        self._touched()
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        return joint_reaction(self._body, self._body.carried_by(self.name))
+
+
+class HeldJoint:
+    """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
+
+    second_axis: Joint | None = None
+
+    def __init__(self, description: JointDescription, body: Body):
+        self.description = description
+        self.name = description.name
+        self._body = body
+
+    @property
+    def position(self) -> float:
+        """Always 0, as upstream has it."""
+        return 0.0
+
+    @property
+    def velocity(self) -> float:
+        """Always 0."""
+        return 0.0
+
+    @property
+    def motor(self) -> tuple[float, float]:
+        """It has none."""
+        return 0.0, 0.0
+
+    def reset(self, position: float, velocity: float = 0.0) -> None:
+        """A ball goes back to the described pose; what is fixed stays."""
+        if self.description.type == "ball":
+            self._body.reset_ball(self.name)
+
+    def drive_velocity(self, velocity: float, effort: float) -> None:
+        """No effect."""
+
+    def drive_effort(self, effort: float) -> None:
+        """No effect."""
+
+    add_effort = drive_effort
+
+    def release(self) -> None:
+        """No effect."""
+
+    def change(self, lower: float, upper: float, damping: float) -> None:
+        """No effect."""
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        return joint_reaction(self._body, self._body.carried_by(self.name))
+
+
+class LoopJoint(HeldJoint):
+    """A joint that closes a loop: read from where its links are, driven by pushing at both."""
+
+    def __init__(self, description: JointDescription, model: Model):
+        self.description = description
+        self.name = description.name
+        self._model = model
+        child = self._described(description.child)
+        self._frame = child * description.pose  # of the joint, in the model
+        self._in_parent = self._described(description.parent).inverse() * self._frame
+
+    def _described(self, link: str) -> Pose:
+        return next((d.pose for d in self._model.description.links if d.name == link), Pose())
+
+    def _ends(self) -> tuple[Pose, Pose]:
+        """The joint's frame in the world, as the parent has it and as the child has it."""
+        model, joint = self._model, self.description
+        parent, child = (model.links[end].pose if end in model.links else model.initial_pose
+                         for end in (joint.parent, joint.child))
+        return parent * self._in_parent, child * joint.pose
+
+    @property
+    def position(self) -> float:
+        """Angle within half a turn of the described pose, rad, or travel, m."""
+        parent, child = self._ends()
+        axis = self.description.axis
+        apart = parent.inverse() * child
+        if self.description.type == "prismatic":
+            return _dot(apart.position, axis)
+        angle = 2.0 * math.atan2(_dot(apart.orientation[:3], axis), apart.orientation[3])
+        return math.remainder(angle, 2.0 * math.pi)
+
+    @property
+    def velocity(self) -> float:
+        """Rate of `position`."""
+        joint, links = self.description, self._model.links
+        axis = rotate(self._ends()[0].orientation, joint.axis)
+        part = "linear" if joint.type == "prismatic" else "angular"
+        rates = [_dot(getattr(links[end].twist, part), axis) if end in links else 0.0
+                 for end in (joint.parent, joint.child)]
+        return rates[1] - rates[0]
+
+    def drive_effort(self, effort: float) -> None:
+        """Effort (N m or N) during the next step."""
+        joint, links = self.description, self._model.links
+        axis = rotate(self._ends()[0].orientation, joint.axis)
+        for end, sign in ((joint.child, effort), (joint.parent, -effort)):
+            if end in links:
+                push = tuple(sign * part for part in axis)
+                still = (0.0, 0.0, 0.0)
+                links[end].apply_force(
+                    *((push, still) if joint.type == "prismatic" else (still, push)))
+
+    add_effort = drive_effort
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Zeros: the engine does not say what a loop's last joint bears."""
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+
+
+class OddGroup:
+    """A joint that is not the engine's own, in the place of a JointGroup."""
+
+    def __init__(self, joint: HeldJoint):
+        self.names = [joint.name]
+        self._joint = joint
+
+    def states(self) -> Sequence[tuple]:
+        """A row: position, rate, (not used), effort of the motor that it has not."""
+        return [(self._joint.position, self._joint.velocity, None, 0.0)]
+
+    def drive_efforts(self, efforts: Sequence[float]) -> None:
+        """Effort (N m or N) during the next step."""
+        if any(efforts):
+            self._joint.drive_effort(efforts[0])
+
+
+def _dot(a, b) -> float:
+    return sum(x * y for x, y in zip(a, b, strict=True))

@@ -1,0 +1,31 @@
+"""Joints with two degrees of freedom, as chains of two joints with one: what the engine has."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+
+from bullet_sim.description import JointDescription
+
+MOVING = (
+    "revolute", "continuous", "prismatic", "ball", "universal", "revolute2", "screw",
+)  # types that the engine moves; gearbox only couples others
+SECOND = "::axis2"  # after a joint's name: its second axis, as the engine has it
+TRAVEL = "::travel"  # after a screw's name: how far it has gone, m
+UNLIMITED = JointDescription("", "", "", "")
+
+
+def stages(joint: JointDescription, turned: bool) -> list[JointDescription]:
+    """The engine's joints from parent to child; the one with the joint's own name is axis one.
+
+    A tiny link comes between two of them. `turned`: parent and child have changed places.
+    """
+    if joint.type in ("universal", "revolute2"):
+        first = replace(joint, type="revolute")
+        second = replace(first, name=joint.name + SECOND, **asdict(joint.axis2))
+        return [second, first] if turned else [first, second]
+    if joint.type == "screw":
+        travel = replace(joint, name=joint.name + TRAVEL, type="prismatic", damping=0.0,
+                         lower=UNLIMITED.lower, upper=UNLIMITED.upper, friction=0.0,
+                         spring_stiffness=0.0)
+        return [travel, replace(joint, type="revolute")]
+    return [joint]

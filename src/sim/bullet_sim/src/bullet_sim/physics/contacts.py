@@ -1,0 +1,64 @@
+"""What touches what: the engine's contacts under the names of the description's collisions.
+
+Conventions are those of ODE, as Gazebo reports them: the normal points into body 1, the force is
+the one on body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from bullet_sim.physics.body import Body
+from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.nearest import nearest_collision
+from bullet_sim.physics.quiet import pybullet
+from bullet_sim.pose import Pose, Vector3
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One point in which two collisions touch, after the last step; world axes."""
+
+    collision1: str  # model::link::collision
+    collision2: str
+    position: Vector3  # m, on the surface of body 2
+    normal: Vector3  # unit, from body 2 into body 1
+    depth: float  # m, how far they are in each other; 0 or more
+    force: Vector3  # N, of this point on body 1, friction included
+
+
+class Touched:
+    """Names the collision that a point of an engine's link belongs to."""
+
+    def __init__(self, bodies: Iterable[tuple[str, Body]]):
+        self._bodies = {body.number: (model, body) for model, body in bodies}
+        self._frames: dict[tuple[int, int], Pose] = {}  # engine links in the world
+
+    def name(self, number: int, index: int, point: Vector3) -> str:
+        """Scoped name of the collision at a point in the world."""
+        model, body = self._bodies[number]
+        link = body.tree.links[index + 1]
+        if len(link.collisions) > 1:
+            key = number, index
+            if key not in self._frames:
+                self._frames[key] = body.engine_frame(index).inverse()
+            point = (self._frames[key] * Pose(point)).position
+        return f"{model}::{link.described}::{nearest_collision(link.collisions, point).name}"
+
+
+def read_contacts(client: PhysicsClient, bodies: Iterable[tuple[str, Body]]) -> list[Contact]:
+    """All contacts of the last step; `bodies` are model names and their bodies."""
+    touched = Touched(bodies)
+    contacts = []
+    for row in client.read(pybullet.getContactPoints):
+        _, body1, body2, link1, link2, on1, on2, normal, distance, push = row[:10]
+        if distance > 0.0 and push == 0.0:
+            continue  # near, but not there: the engine looks ahead
+        rub1, along1, rub2, along2 = row[10:14]
+        force = tuple(
+            push * n + rub1 * a + rub2 * b for n, a, b in zip(normal, along1, along2, strict=True))
+        contacts.append(Contact(
+            touched.name(body1, link1, on1), touched.name(body2, link2, on2),
+            tuple(on2), tuple(normal), max(-distance, 0.0), force))
+    return contacts

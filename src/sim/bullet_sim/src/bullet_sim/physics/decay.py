@@ -1,0 +1,52 @@
+"""`<velocity_decay>`: of its speed a link loses a part in every step, as ODE has it.
+
+The engine's own damping is one for all links of a body and grows with the square of the speed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from bullet_sim.physics.quiet import pybullet
+from bullet_sim.pose import Vector3, conjugate, rotate
+
+if TYPE_CHECKING:
+    from bullet_sim.physics.body import Body
+
+SLOWEST = 0.01  # m/s and rad/s below which ODE lets things be
+
+
+class Decay:
+    """Of one body; `apply` before each step."""
+
+    def __init__(self, body: Body):
+        self._body = body
+        self._links = [
+            (link.name, min(link.linear_damping, 1.0), min(link.angular_damping, 1.0))
+            for link in body.tree.links if link.linear_damping or link.angular_damping
+            if not body.tree.fixed or link.parent is not None]
+
+    def __bool__(self) -> bool:
+        return bool(self._links)
+
+    def apply(self) -> None:
+        """Forces and torques that take that part in the next step."""
+        step = self._body.client.timestep
+        for name, linear, angular in self._links:
+            index = self._body.index(name)
+            com, velocity, rate = self._body.com_motion(index)
+            mass, _, moments = self._body.dynamics(index)[:3]
+            if math.hypot(*velocity) > SLOWEST:
+                self._push(pybullet.applyExternalForce, index,
+                           [-linear * mass / step * v for v in velocity],
+                           com.position)
+            if math.hypot(*rate) > SLOWEST:
+                own = rotate(conjugate(com.orientation), rate)
+                torque = [-angular / step * i * w for i, w in zip(moments, own, strict=True)]
+                self._push(pybullet.applyExternalTorque, index, rotate(com.orientation, torque))
+
+    def _push(self, function, index: int, vector: Vector3, *where: Vector3) -> None:
+        # As a read: what acts in every step does not end the world's rest.
+        self._body.client.read(function, self._body.number, index, vector, *where,
+                               pybullet.WORLD_FRAME)

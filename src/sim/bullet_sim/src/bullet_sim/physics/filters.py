@@ -1,0 +1,72 @@
+"""Which of a model's collisions meet: bit masks, and Gazebo's rules for links of one model.
+
+Links of one model collide only where both say so with `<self_collide>`, and never when a joint
+holds them together.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+from bullet_sim.description import ModelDescription
+from bullet_sim.physics.body import Body
+from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.quiet import pybullet
+
+ALL_BITS = 0xFFFF  # SDF's collide_bitmask when nothing is said
+SHIFT = 8  # of these bits in the engine's masks, whose lowest ones say what moves
+MOVING, STILL = 1, 2  # the engine's own groups
+Part = tuple[Body, int, str]  # body, engine's number of a link with collisions, described link
+
+
+class Filters:
+    """Of one model; made anew whenever one of its bodies is."""
+
+    def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body]):
+        self._client = client
+        self._bodies = bodies
+        self._pairs: list[tuple[int, int, int, int]] = []
+        self._colliding = set() if model.static else {
+            link.name for link in model.links if model.self_collide or link.self_collide}
+        self._joined = {frozenset((joint.parent, joint.child)) for joint in model.joints
+                        if joint.type != "gearbox"}
+        self.attach()
+        if self._pairs or self._masked:
+            for body in bodies:
+                body.attached.append(self)
+
+    def attach(self) -> None:
+        """Tell the engine."""
+        parts = [(body, index, link.described) for body in self._bodies
+                 for index, link in enumerate(body.tree.links, start=-1) if link.collisions]
+        self._masked = False
+        for body, index, _ in parts:
+            self._mask(body, index)
+        for one, other in itertools.combinations(parts, 2):
+            if self._has_to_be_told(one, other):
+                pair = one[0].number, other[0].number, one[1], other[1]
+                self._client.call(pybullet.setCollisionFilterPair, *pair, 0)
+                self._pairs.append(pair)
+
+    def detach(self) -> None:
+        """Undo it: the engine gives numbers of bodies again, and would filter the next ones."""
+        for pair in self._pairs:
+            self._client.call(pybullet.setCollisionFilterPair, *pair, 1)
+        self._pairs = []
+
+    def _mask(self, body: Body, index: int) -> None:
+        surface = body.tree.links[index + 1].collisions[0].surface
+        bits = surface.collide_bitmask & ALL_BITS if surface.collides else 0
+        if bits == ALL_BITS:
+            return
+        self._masked = True
+        group = bits << SHIFT
+        others = 0 if bits == 0 else group | MOVING | (0 if body.tree.fixed else STILL)
+        self._client.call(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
+
+    def _has_to_be_told(self, one: Part, other: Part) -> bool:
+        """Whether the engine would let them meet although they must not."""
+        names = {one[2], other[2]}
+        if one[0] is other[0] and not one[0].tree.self_collide:
+            return False
+        return len(names) == 1 or not names <= self._colliding or names in self._joined

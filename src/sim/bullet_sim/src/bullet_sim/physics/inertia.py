@@ -1,0 +1,79 @@
+"""Masses and inertias that the engine can take: what files say is not always a body's.
+
+The engine stops a link from turning at all when its principal moments break the triangle rule
+(each at most the sum of the others), and lets it fall through the ground when they are far too
+small for its size: contacts then turn it round within a step. ODE takes both as they are.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Plane, Sphere
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes import collision_mesh
+
+log = logging.getLogger(__name__)
+
+THINNEST = 0.01  # least radius of gyration in parts of the size; half of it falls through
+SMALLEST = 1e-4  # m, the size of what has no shape
+HEAVIEST = 1e12  # kg
+LIGHTEST = 1e-9  # kg
+ROUNDING = 1e-6
+
+
+def sound_inertial(inertial: Inertial, collisions: Sequence[Collision], where: str) -> Inertial:
+    """The same where it is possible; else with the least moments that are, and a line in the log.
+    """
+    mass = min(max(inertial.mass, LIGHTEST), HEAVIEST)
+    xx, xy, xz, yy, yz, zz = inertial.inertia
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    moments, axes = np.linalg.eigh(tensor)
+    least = mass * (THINNEST * max(_size(collisions), SMALLEST)) ** 2
+    sound = _possible(moments, least)
+    if mass == inertial.mass and np.allclose(sound, moments, rtol=ROUNDING, atol=0.0):
+        return inertial
+    log.info("%s: no body of %g kg has principal moments of inertia of %s kg m^2; %s are taken",
+             where, inertial.mass, *(", ".join(f"{m:.3g}" for m in row)
+                                     for row in (moments, sound)))
+    fixed = axes @ np.diag(sound) @ axes.T
+    return replace(inertial, mass=mass, inertia=tuple(
+        float(fixed[i, j]) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))))
+
+
+def _possible(moments: np.ndarray, least: float) -> np.ndarray:
+    """Three moments in rising order, none below `least`, the two small ones up to the triangle."""
+    low, middle, high = np.maximum(moments, least)
+    missing = high * (1.0 + ROUNDING) - (low + middle)
+    if missing <= 0.0:
+        return np.array([low, middle, high])
+    low = min(middle, low + missing)
+    share = max(0.0, high * (1.0 + ROUNDING) - (low + middle)) / 2
+    return np.array([low + share, middle + share, high])
+
+
+def _size(collisions: Sequence[Collision]) -> float:
+    """Half of what the largest collision measures, m."""
+    return max((_reach(collision.geometry) for collision in collisions), default=0.0)
+
+
+def _reach(geometry: Geometry) -> float:
+    match geometry:
+        case Sphere(radius):
+            return radius
+        case Box(size):
+            return math.hypot(*size) / 2
+        case Cylinder(radius, length):
+            return math.hypot(radius, length / 2)
+        case Plane():
+            return 0.0
+    try:
+        vertices, _ = collision_mesh(geometry)
+    except FormatError:  # said where the shape is made
+        return 0.0
+    return float(np.linalg.norm(np.ptp(vertices, axis=0))) / 2 if len(vertices) else 0.0

@@ -1,0 +1,51 @@
+"""What happens when a motion is no number any more: the model starts again, the world goes on.
+
+In the engine one body without a place (NaN) takes the ground from all others: they fall through.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from bullet_sim.physics.body import Body
+from bullet_sim.physics.client import PhysicsClient
+
+if TYPE_CHECKING:
+    from bullet_sim.model import Model
+
+log = logging.getLogger(__name__)
+
+
+def mend(client: PhysicsClient, models: Iterable[Model]) -> None:
+    """Put what has no place back to where it was spawned, and all others in anew, as they move."""
+    client.rest.broken = False
+    models = list(models)
+    broken = [model for model in models
+              if not model.static and any(_is_broken(body) for body in model.bodies)]
+    for model in broken:
+        log.log(logging.DEBUG if model.was_mended else logging.WARNING,
+                "model %s: its motion is no number any more; it starts again where it was "
+                "spawned. Look for forces, speeds or gains that are far too large, or masses that "
+                "are far too small", model.name)
+        model.was_mended = True
+    lost = {model.name: model.initial_pose for model in broken}
+    lost |= {model.name: model.pose for model in models if model.static}  # hit by what is no number
+    for model in models:
+        for body in model.bodies if model.name in lost else ():
+            body.take_out()
+    for model in models:
+        for body in model.bodies:
+            if model.name in lost:
+                body.put_in(lost[model.name] * body.base_pose_model)
+            else:
+                body.rebuild({})
+    for model in models:
+        model.reset() if model in broken else model.forget()
+
+
+def _is_broken(body: Body) -> bool:
+    frame = body.base_frame()
+    return math.isnan(sum((*body.speeds(), *frame.position, *frame.orientation)))

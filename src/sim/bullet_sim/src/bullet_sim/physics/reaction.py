@@ -1,0 +1,52 @@
+"""Force and torque in a joint, as Gazebo gives them to a force-torque sensor."""
+
+from __future__ import annotations
+
+from bullet_sim.physics.assembly import PhysicsLink
+from bullet_sim.physics.body import Body, cross
+from bullet_sim.pose import Vector3, conjugate, multiply, rotate
+
+
+def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
+    """What the joint that carries `link` bears: force (N) and torque (N m) about its anchor.
+
+    As upstream: of the joint's child on the joint, in the child link's frame, effort of the
+    joint's motor included; a weight hanging below is a force downwards. The effort of a stop that
+    is being pressed against is missing along the axis. Zero until the step after the first call,
+    unless the joint asked for feedback.
+    """
+    index = body.index(link.name)
+    body.enable_feedback(index)
+    effort, row = body.joint_effort(index)
+    # The engine: of the parent on the child, about its centre of mass, in its principal axes.
+    com = body.com_in_link(index)
+    force = rotate(com.orientation, row[:3])
+    torque = rotate(com.orientation, row[3:])
+    joint = link.carrier
+    moves = link.joint is not None
+    if moves:
+        along = tuple(effort * part for part in link.joint.axis)
+        if link.joint.type == "prismatic":
+            force = _sum(force, along)
+        elif link.joint.type != "ball":
+            torque = _sum(torque, along)
+    anchor = (0.0, 0.0, 0.0) if moves or joint is None else joint.pose.position
+    arm = tuple(c - a for c, a in zip(com.position, anchor, strict=True))
+    torque = _sum(torque, cross(arm, force))
+    if not link.turned:
+        out = link.offset.orientation
+        return _negative(rotate(out, force)), _negative(rotate(out, torque))
+    # The engine's child is the described parent: the described child feels the opposite of this.
+    parent = next(other for other in body.tree.links if other.name == link.parent)
+    here, there = (body.engine_frame(body.index(name)) for name in (link.name, parent.name))
+    turn = multiply(conjugate(there.orientation), here.orientation)
+    out = multiply(parent.offset.orientation, turn)
+    return rotate(out, force), rotate(out, torque)
+
+
+def _sum(a, b) -> Vector3:
+    return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def _negative(vector) -> Vector3:
+    return tuple(-x for x in vector)

@@ -1,0 +1,75 @@
+"""Contact sensor: what the collisions of a link touch, pair by pair."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+
+from bullet_sim.description import SensorDescription
+from bullet_sim.model import Link
+from bullet_sim.physics.body import cross
+from bullet_sim.physics.contacts import Contact
+from bullet_sim.pose import Vector3
+from bullet_sim.world import World
+
+log = logging.getLogger(__name__)
+
+ALL = ("", "__default__")  # of a sensor that names no collision
+
+
+@dataclass
+class TouchingPair:
+    """Two collisions that touch; the lists run in parallel, world axes, one entry a point."""
+
+    own: str  # model::link::collision
+    other: str
+    positions: list[Vector3] = field(default_factory=list)  # m
+    normals: list[Vector3] = field(default_factory=list)  # unit, into the own one
+    depths: list[float] = field(default_factory=list)  # m
+    forces: list[Vector3] = field(default_factory=list)  # N, on the own one
+    torques: list[Vector3] = field(default_factory=list)  # N m, about its link's centre of mass
+
+
+class ContactSensor:
+    """`<contact><collision>` names the collisions; a sensor that names none feels all of its link.
+
+    Where several are named they need not be of this link: `model::link::collision` is any.
+    """
+
+    def __init__(self, world: World, link: Link, description: SensorDescription):
+        self._world, self._link = world, link
+        element = description.element
+        written = [] if element is None else [
+            (child.text or "").strip() for child in element.findall("contact/collision")]
+        known = {shape.name: f"{link.scoped_name}::{shape.name}"
+                 for shape in link.description.collisions}
+        wanted = [name for name in written if name not in ALL]
+        for name in wanted:
+            if name not in known and "::" not in name:
+                log.error("sensor %s of %s feels nothing at collision %r, which is not there; "
+                          "there are: %s", description.name, link.scoped_name, name,
+                          ", ".join(known) or "none")
+        self._own = {known.get(name, name) for name in wanted} if wanted else set(known.values())
+
+    def sample(self) -> list[TouchingPair]:
+        """The pairs that touched in the last step."""
+        pairs: dict[tuple[str, str], TouchingPair] = {}
+        for contact in self._world.contacts():
+            if contact.collision1 in self._own:
+                self._note(pairs, contact, contact.collision1, contact.collision2, 1.0)
+            elif contact.collision2 in self._own:
+                self._note(pairs, contact, contact.collision2, contact.collision1, -1.0)
+        return list(pairs.values())
+
+    def _note(self, pairs: dict[tuple[str, str], TouchingPair], contact: Contact, own: str,
+              other: str, sign: float) -> None:
+        pair = pairs.setdefault((own, other), TouchingPair(own, other))
+        force = tuple(sign * part for part in contact.force)
+        link = self._world.link(own.rpartition("::")[0])
+        centre = (link.pose * link.description.inertial.pose).position
+        arm = tuple(p - c for p, c in zip(contact.position, centre, strict=True))
+        pair.positions.append(contact.position)
+        pair.normals.append(tuple(sign * part for part in contact.normal))
+        pair.depths.append(contact.depth)
+        pair.forces.append(force)
+        pair.torques.append(cross(arm, force))

@@ -1,0 +1,67 @@
+"""Bends the picture of a pinhole as a real lens does: Brown's model, as in OpenCV and camera_info.
+
+With x, y the pinhole's coordinates over the focal length and r^2 = x^2 + y^2, a point is seen at
+x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y likewise with p1, p2 swapped.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from bullet_sim.description import CameraDescription
+
+_ITERATIONS = 40
+_CLOSE_PX = 0.5  # where going there and back ends farther away, the model has no way back
+_OUTSIDE = -2.0  # px; a place that shows nothing
+
+
+class Distortion:
+    """What `<distortion>` does to pictures of one camera."""
+
+    def __init__(self, camera: CameraDescription, focal_length_px: float, crop: bool):
+        """With `crop` a barrel picture (k1 < 0) is enlarged until its black border is gone.
+
+        Cropped, it no longer agrees with its coefficients, as in Gazebo.
+        """
+        size = np.array([camera.width, camera.height], float)
+        self._centre = np.array(camera.distortion_centre) * size - 0.5  # index of a pixel
+        self._focal_px = focal_length_px
+        self._coefficients = np.array(camera.distortion)
+        scale = self._cropped(size) if crop and camera.distortion[0] < 0 else np.ones(2)
+        self._maps = self._source_of_each_pixel(camera.width, camera.height, scale)
+
+    def apply(self, rgb: np.ndarray) -> np.ndarray:
+        """A bent copy of an (h, w, 3) uint8 picture; black where it shows nothing."""
+        return cv2.remap(rgb, *self._maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
+
+    def seen_at(self, pixels: np.ndarray) -> np.ndarray:
+        """Where points are seen: (n, 2) columns and rows of the pinhole's picture, and of ours."""
+        x, y = ((pixels - self._centre) / self._focal_px).T
+        k1, k2, p1, p2, k3 = self._coefficients
+        square = x * x + y * y
+        radial = 1 + square * (k1 + square * (k2 + square * k3))
+        bent = np.stack([x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x),
+                         y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y], axis=1)
+        return bent * self._focal_px + self._centre
+
+    def _cropped(self, size: np.ndarray) -> np.ndarray:
+        """How much of width and height lies between the bent corners of the picture."""
+        first, last = self.seen_at(np.array([[-0.5, -0.5], size - 0.5]))
+        return np.clip((last - first) / size, 0.05, 1.0)
+
+    def _source_of_each_pixel(self, width: int, height: int, scale: np.ndarray) -> tuple:
+        grid = np.stack(np.meshgrid(np.arange(width), np.arange(height)), axis=-1)
+        wanted = (grid.reshape(-1, 2) - self._centre) * scale + self._centre
+        matrix = np.array([[self._focal_px, 0, self._centre[0]],
+                           [0, self._focal_px, self._centre[1]], [0, 0, 1]])
+        ends = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, _ITERATIONS, 1e-4)
+        source = cv2.undistortPointsIter(wanted[:, None], matrix, self._coefficients, None, matrix,
+                                         ends)[:, 0]
+        with np.errstate(all="ignore"):
+            found = np.abs(self.seen_at(source) - wanted).max(axis=1) < _CLOSE_PX
+            last = np.array([width, height]) - 1
+            found &= ((source > -1) & (source < last + 1)).all(axis=1)
+        source = np.where(found[:, None], np.clip(source, 0, last), _OUTSIDE)
+        source = source.reshape(height, width, 2).astype(np.float32)
+        return cv2.convertMaps(source, None, cv2.CV_16SC2)

@@ -1,0 +1,90 @@
+"""How hector_gazebo's sensors err: a scale, a constant offset, a slow drift, and white noise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bullet_sim.world import World
+
+HOUR = 3600.0  # s, time constant of a drift unless a file says otherwise
+
+
+@dataclass(frozen=True)
+class ErrorParameters:
+    """One value for each component, in the reading's own unit unless said."""
+
+    offset: tuple[float, ...]
+    drift: tuple[float, ...]  # standard deviation of the drift
+    drift_frequency: tuple[float, ...]  # 1/s, reciprocal of the drift's time constant
+    gaussian_noise: tuple[float, ...]  # standard deviation of the white noise
+    scale_error: tuple[float, ...]  # factor on the true value, 1 for none
+
+    @staticmethod
+    def none(size: int) -> ErrorParameters:
+        """A sensor of so many components that makes no error."""
+        zeros = (0.0,) * size
+        return ErrorParameters(zeros, zeros, (1.0 / HOUR,) * size, zeros, (1.0,) * size)
+
+
+class ErrorModel:
+    """value x scale + offset + drift + noise; all drawn by seed, name and tick.
+
+    The drift is a Gauss-Markov process whose deviation stays `drift` at any rate of updates (that
+    of upstream shrinks with the rate). It starts with a value drawn with that deviation.
+    """
+
+    def __init__(self, world: World, name: str, parameters: ErrorParameters):
+        self._world, self._name = world, name
+        self.parameters = parameters
+        self.restart()
+
+    def restart(self) -> None:
+        """Draw a new drift to begin with."""
+        random = self._world.random(f"{self._name} start")
+        self.drift = random.normal(0.0, self.parameters.drift)
+
+    def set_drift(self, drift: np.ndarray) -> None:
+        """Go on from this drift, (components,)."""
+        self.drift = np.array(drift, dtype=float)
+
+    @property
+    def drifts(self) -> bool:
+        """Whether it goes on changing while nobody looks."""
+        return any(self.parameters.drift) or bool(self.drift.any())
+
+    @property
+    def bias(self) -> np.ndarray:
+        """Offset and drift as they are now, (components,)."""
+        return self.drift + self.parameters.offset
+
+    def update(self, elapsed: float) -> np.ndarray:
+        """Go on by some time (s) and return the additive error of this tick, (components,)."""
+        p = self.parameters
+        drifts, noisy = self.drifts, any(p.gaussian_noise)
+        if drifts:
+            keep = np.exp(-elapsed * np.array(p.drift_frequency))
+            self.drift = keep * self.drift
+        if noisy or drifts:
+            white = self._world.random(self._name).standard_normal((2, len(self.drift)))
+        if drifts:
+            self.drift += np.sqrt(1.0 - keep ** 2) * p.drift * white[0]
+        return self.bias + white[1] * p.gaussian_noise if noisy else self.bias
+
+    def apply(self, value: np.ndarray, elapsed: float) -> np.ndarray:
+        """A true reading, (components,), as the sensor would tell it."""
+        return np.multiply(value, self.parameters.scale_error) + self.update(elapsed)
+
+
+def attitude_error(bias: np.ndarray, yaw: float, gravity: float) -> tuple[float, ...]:
+    """Unit quaternion, in world axes, by which an accelerometer's bias misleads about level.
+
+    `bias` is in world axes and m/s^2, `gravity` a length in m/s^2 (0: no error), `yaw` in rad.
+    """
+    tilt = (0.0, 0.0) if gravity == 0.0 else (0.5 * bias[1] / gravity, -0.5 * bias[0] / gravity)
+    length = math.hypot(1.0, *tilt)
+    x, y, w = tilt[0] / length, tilt[1] / length, 1.0 / length
+    s, c = math.sin(yaw / 2), math.cos(yaw / 2)
+    return (c * x - s * y, c * y + s * x, s * w, c * w)

@@ -1,0 +1,50 @@
+"""Gazebo's IMU sensor: an accelerometer that feels gravity, a gyroscope, and its orientation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bullet_sim.description import SensorDescription
+from bullet_sim.model import Link, shifted_twist
+from bullet_sim.pose import IDENTITY, Vector3, conjugate, multiply, rotate
+from bullet_sim.sensors.imu import ImuReading
+from bullet_sim.sensors.noise import SensorNoise
+from bullet_sim.world import World
+
+
+class ImuSensor:
+    """Everything in the sensor's own axes, at the place it is mounted, with the noise of SDF.
+
+    At rest it reads +g upwards. The orientation is that of the sensor in the world, or, if wanted,
+    seen from the one that it had first.
+    """
+
+    def __init__(self, world: World, link: Link, description: SensorDescription,
+                 from_first: bool = False):
+        self._world, self._link, self._mount = world, link, description.pose
+        first = (link.pose * description.pose).orientation
+        self._reference = conjugate(first) if from_first else IDENTITY.orientation
+        name = f"{link.scoped_name}::{description.name}"
+        self._gyroscope = SensorNoise(world, f"{name} rate", description.imu.angular_velocity)
+        self._accelerometer = SensorNoise(
+            world, f"{name} acceleration", description.imu.linear_acceleration)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the last velocity."""
+        self._last: tuple[float, Vector3] | None = None
+
+    def sample(self) -> ImuReading:
+        """The acceleration is the mean one since the last sample; of the first, gravity alone."""
+        link_pose = self._link.pose
+        pose, time = link_pose * self._mount, self._world.time
+        twist = shifted_twist(self._link.twist, link_pose.position, pose.position)
+        felt = -np.array(self._world.description.gravity)
+        if self._last is not None and time > self._last[0]:
+            felt += np.subtract(twist.linear, self._last[1]) / (time - self._last[0])
+        self._last = (time, twist.linear)
+        back = conjugate(pose.orientation)
+        rate = self._gyroscope.apply(np.array(rotate(back, twist.angular)))
+        acceleration = self._accelerometer.apply(np.array(rotate(back, felt)))
+        return ImuReading(time, multiply(self._reference, pose.orientation),
+                          tuple(rate.tolist()), tuple(acceleration.tolist()))

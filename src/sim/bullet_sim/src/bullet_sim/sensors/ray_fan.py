@@ -1,0 +1,57 @@
+"""Rows of rays from a sensor: what laser scanners, range finders and 3D lidars have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bullet_sim.description import SensorDescription
+from bullet_sim.errors import FormatError
+from bullet_sim.model import Link
+from bullet_sim.world import World
+
+MOST_RAYS = 1_000_000  # more than any scanner has; a slip of the keyboard must not fill the memory
+
+
+class RayFan:
+    """Rays against collision shapes, as Gazebo's ray sensor lays them out.
+
+    A row has `samples` x `resolution` rays. A single ray looks straight ahead, whatever the angles.
+    Rays begin at range_min, so the housing around the sensor is not seen.
+    """
+
+    def __init__(self, world: World, link: Link, description: SensorDescription):
+        if description.ray is None:
+            raise FormatError(f"sensor {description.name} of {link.scoped_name} has no <ray>")
+        self._world, self._link, self._pose = world, link, description.pose
+        self.ray = ray = description.ray
+        columns, rows = count(ray.samples, ray.resolution), count(
+            ray.vertical_samples, ray.vertical_resolution)
+        if columns * rows > MOST_RAYS:
+            raise FormatError(f"sensor {description.name} of {link.scoped_name} has "
+                              f"{columns} x {rows} rays; more than {MOST_RAYS} are not cast")
+        self.shape = rows, columns
+        self.azimuths = angles(ray.min_angle, ray.max_angle, columns)  # rad, (columns,)
+        self.elevations = angles(ray.vertical_min_angle, ray.vertical_max_angle, rows)  # up is +
+        across, up = np.meshgrid(self.azimuths, self.elevations)
+        self.directions = np.stack(  # (rows, columns, 3) unit vectors in the sensor's frame
+            [np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)], axis=-1)
+
+    def cast(self) -> tuple[np.ndarray, np.ndarray]:
+        """Distances, m (range_max: nothing was hit), and laser_retro, both (rows, columns)."""
+        ray = self.ray
+        matrix = (self._link.pose * self._pose).matrix()
+        beams = self.directions.reshape(-1, 3) @ matrix[:3, :3].T
+        hits = self._world.cast_rays(matrix[:3, 3] + beams * ray.range_min,
+                                     matrix[:3, 3] + beams * ray.range_max)
+        distances = ray.range_min + hits.fraction * (ray.range_max - ray.range_min)
+        return distances.reshape(self.shape), hits.retro.reshape(self.shape)
+
+
+def count(samples: int, resolution: float) -> int:
+    """Rays of one row or column; at least one."""
+    return max(1, int(samples * resolution))
+
+
+def angles(first: float, last: float, number: int) -> np.ndarray:
+    """Directions of so many rays from the first angle to the last, rad."""
+    return np.linspace(first, last, number) if number > 1 else np.zeros(1)

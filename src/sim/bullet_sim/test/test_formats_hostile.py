@@ -1,0 +1,81 @@
+"""Texts that are broken on purpose: one clear line each, and little memory."""
+
+import tracemalloc
+
+import pytest
+
+from bullet_sim.errors import FormatError
+from bullet_sim.formats import Resources, load_model, load_world, xml_text
+from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.xml_text import LARGEST_TEXT
+
+RESOURCES = Resources([DATA_FOLDER / "models"], [DATA_FOLDER])
+MODEL = '<sdf version="1.6"><model name="m"><link name="l">{}</link></model></sdf>'
+BOMB = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "lol"}">' for n in range(10))
+
+
+@pytest.mark.parametrize("text, message", [
+    (f"<!DOCTYPE sdf [{BOMB}]><sdf>&e9;</sdf>", "line 1: the entity 'e0' is declared"),
+    ('<!DOCTYPE sdf [<!ENTITY x SYSTEM "file:///etc/passwd">]><sdf>&x;</sdf>',
+     "the entity 'x' is declared"),
+    ("<sdf>" + "<model>" * 250, "nested more than 200 deep"),
+    ('<sdf version="1.6"><model name="m"><link', "not well-formed XML: unclosed token"),
+    ("", "not well-formed XML: no element found"),
+    ("\x00\x01\x02", "not well-formed XML"),
+    (MODEL.format("<pose>nan 0 0 0 0 0</pose>"), "<pose>: 'nan 0 0 0 0 0' is not 6 numbers"),
+    (MODEL.format("<pose>1e308 0 0 0 0 0</pose>"), "<pose>: 1e+308 is too large"),
+    (MODEL.format("<pose>1,2,3,0,0,0</pose>"), "'1,2,3,0,0,0' is not 6 numbers"),
+    (MODEL.format("<inertial><mass>1e300</mass></inertial>"), "<mass>: 1e+300 is too large"),
+    (MODEL.format("<pose>" + "9 " * 100_000 + "</pose>"), "…' is not 6 numbers"),
+    (MODEL.format('<collision name="c"><geometry><box><size>1 inf 1</size></box></geometry>'
+                  "</collision>"), "'1 inf 1' is not finite"),
+])
+def test_one_line_and_little_memory(text, message):
+    # conforms: SDF 1.2 to 1.7/entities of one's own
+    tracemalloc.start()
+    with pytest.raises(FormatError) as raised:
+        load_model(text, RESOURCES)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert message in str(raised.value)
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 500
+    assert peak < 300e6
+
+
+def test_the_number_of_elements_is_bounded(monkeypatch):
+    monkeypatch.setattr(xml_text, "MOST_ELEMENTS", 1000)
+    with pytest.raises(FormatError, match="line 1: more than 1000 elements; split the file"):
+        load_model("<a>" + "<b/>" * 2000 + "</a>", RESOURCES)
+
+
+def test_a_huge_file_is_not_read(tmp_path):
+    huge = tmp_path / "huge.world"
+    with huge.open("wb") as file:
+        file.truncate(LARGEST_TEXT + 1)
+    with pytest.raises(FormatError, match=r"huge\.world is too large: 32 MiB, more than 32"):
+        load_world(huge, RESOURCES)
+
+
+@pytest.mark.parametrize("content, name", [
+    (b"\xef\xbb\xbf" + '<sdf><world name="赛道"/></sdf>'.encode(), "赛道"),
+    ('<sdf><world name="赛道"/></sdf>'.encode("utf-16"), "赛道"),
+    ('<?xml version="1.0" encoding="GBK"?><sdf><world name="赛道"/></sdf>'.encode("gbk"), "赛道"),
+    (b'<?xml version="1.0" encoding="nonsense"?><sdf><world name="w"/></sdf>', "w"),
+    ('<?xml version="1.0" encoding="utf-8"?><sdf><world name="w\xe9"/></sdf>'.encode("latin-1"),
+     "w\ufffd"),
+])
+def test_encodings(tmp_path, content, name):
+    # conforms: SDF 1.2 to 1.7/encodings
+    file = tmp_path / "x.world"
+    file.write_bytes(content)
+    assert load_world(file, RESOURCES).name == name
+
+
+def test_a_folder_or_a_locked_file_is_one_line(tmp_path, monkeypatch):
+    file = tmp_path / "x.world"
+    file.write_text("<sdf/>")
+    def locked(_self):
+        raise PermissionError(13, "Permission denied")
+    monkeypatch.setattr(type(file), "read_bytes", locked)
+    with pytest.raises(FormatError, match=r"x\.world cannot be read: Permission denied"):
+        load_world(file, RESOURCES)
