@@ -58,6 +58,9 @@ class SpawnModelStory(unittest.TestCase):
         return self.gazebo.calls.queue[number][1]
 
     def test_spawn_from_a_parameter(self):
+        # conforms: spawn_model, spawn_model/-urdf, spawn_model/-param, spawn_model/-model
+        # conforms: spawn_model/-x, spawn_model/-z, spawn_model/-Y, spawn_model/log lines
+        # conforms: spawn_model/exit codes, gazebo_ros.gazebo_interface/spawn_urdf_model_client
         code, said = self.run_to_end(*PLAIN, "-x", "1", "-z", "-0.5", "-Y", str(math.pi / 2))
         self.assertEqual((code, self.gazebo.names()), (0, ["spawn_urdf_model"]))
         request = self.request()
@@ -74,10 +77,14 @@ class SpawnModelStory(unittest.TestCase):
             self.assertIn(line, said)
 
     def test_in_a_namespace(self):
+        # conforms: spawn_model/-robot_namespace
         code, _ = self.run_to_end(*PLAIN, namespace="/tb3_0")
         self.assertEqual((code, self.request().robot_namespace), (0, "/tb3_0/"))
 
     def test_sdf_from_stdin_and_from_the_model_path(self):
+        # conforms: spawn_model/-sdf, spawn_model/-stdin, spawn_model/-database
+        # conforms: spawn_model/-reference_frame, spawn_model/-robot_namespace
+        # conforms: gazebo_ros.gazebo_interface/spawn_sdf_model_client
         code, _ = self.run_to_end("-sdf", "-stdin", "-model", "box", text="<sdf/>")
         self.assertEqual((code, self.gazebo.names()), (0, ["spawn_sdf_model"]))
         code, _ = self.run_to_end("-sdf", "-database", "coke_can", "-model", "can",
@@ -88,6 +95,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((request.reference_frame, request.robot_namespace), ("car", "r"))
 
     def test_the_simulator_refuses(self):
+        # conforms: spawn_model/log lines, spawn_model/exit codes
         self.gazebo.failing.add("spawn_urdf_model")
         code, said = self.run_to_end(*PLAIN, "-unpause", "-J", "wheel", "1")
         self.assertEqual((code, self.gazebo.names()), (1, ["spawn_urdf_model"]))
@@ -95,6 +103,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Spawn service failed. Exiting.", said)
 
     def test_the_service_breaks(self):
+        # conforms: spawn_model/log lines, spawn_model/exit codes
         self.gazebo.broken.add("spawn_urdf_model")
         code, said = self.run_to_end(*PLAIN)
         self.assertEqual(code, 1)
@@ -102,6 +111,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Spawn service failed. Exiting.", said)
 
     def test_a_missing_parameter(self):
+        # conforms: spawn_model/-param
         code, said = self.run_to_end("-urdf", "-param", "robot_descripton", "-model", "car")
         self.assertEqual((code, self.gazebo.names()), (1, []))
         self.assertIn("/robot_descripton is not set; there are: "
@@ -109,6 +119,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertNotIn("Traceback", said)
 
     def test_a_missing_file_and_a_broken_one(self):
+        # conforms: spawn_model/-file, spawn_model/log lines, spawn_model/exit codes
         code, said = self.run_to_end("-urdf", "-file", "/none.urdf", "-model", "car")
         self.assertEqual(code, 1)
         self.assertIn("FATAL", said)
@@ -118,10 +129,13 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Invalid XML: ", said)
 
     def test_a_joint_position_that_is_no_number(self):
+        # conforms: spawn_model/-J
         code, said = self.run_to_end(*PLAIN, "-J", "wheel", "up")
         self.assertEqual((code, said), (1, "Error: -J wheel up: up is not a number\n"))
 
     def test_joints_then_unpause(self):
+        # conforms: spawn_model/-J, spawn_model/-unpause
+        # conforms: gazebo_ros.gazebo_interface/set_model_configuration_client
         code, said = self.run_to_end(*PLAIN, "-unpause", "-J", "left", "0.5", "-J", "right", "-1")
         self.assertEqual((code, self.gazebo.names()),
                          (0, ["spawn_urdf_model", "set_model_configuration", "unpause_physics"]))
@@ -133,6 +147,8 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Unpausing physics", said)
 
     def test_joints_or_unpause_fail(self):
+        # conforms: spawn_model/-J, spawn_model/-unpause, spawn_model/log lines
+        # conforms: spawn_model/exit codes
         self.gazebo.failing.add("set_model_configuration")
         code, said = self.run_to_end(*PLAIN, "-unpause", "-J", "left", "0.5")
         self.assertEqual((code, self.gazebo.names()[1:]), (1, ["set_model_configuration"]))
@@ -143,6 +159,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Unpause physics service call failed: ", said)
 
     def test_wait_for_another_model(self):
+        # conforms: spawn_model/-wait
         process = self.start(*PLAIN, "-wait", "table")
         until(self.gazebo.states.get_num_connections, "the subscription to model_states")
         self.gazebo.states.publish(ModelStates(name=["ground_plane"]))
@@ -162,6 +179,7 @@ class SpawnModelStory(unittest.TestCase):
         return process
 
     def test_a_simulator_that_comes_later(self):
+        # conforms: spawn_model/-gazebo_namespace
         process = self.start_before_the_simulator("/late")
         late = FakeGazebo("/late")
         said, _ = process.communicate(timeout=LIMIT)
@@ -175,6 +193,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("spawn_model: stopped before it was done", said)
 
     def test_stopped_while_waiting(self):
+        # conforms: spawn_model/-wait, spawn_model/exit codes
         process = self.start(*PLAIN, "-wait", "table")
         until(self.gazebo.states.get_num_connections, "the subscription to model_states")
         process.send_signal(signal.SIGINT)
@@ -182,6 +201,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((process.returncode, self.gazebo.names()), (0, []))
 
     def test_bond_deletes_at_the_end(self):
+        # conforms: spawn_model/-b
         process = self.start(*PLAIN, "-b")
         line = next(line for line in process.stdout if "Waiting for shutdown" in line)
         self.assertIn("Waiting for shutdown to delete model car", line)

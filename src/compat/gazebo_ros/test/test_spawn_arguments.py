@@ -16,6 +16,7 @@ def parse(*words):
 
 
 def test_defaults(monkeypatch):
+    # conforms: spawn_model, spawn_model/-robot_namespace
     monkeypatch.setattr(rospy, "get_namespace", lambda: "/tb3_0/")
     options = parse(*NEEDED)
     assert (options.urdf, options.sdf, options.param, options.model) \
@@ -28,6 +29,8 @@ def test_defaults(monkeypatch):
 
 
 def test_pose_and_negative_numbers():
+    # conforms: spawn_model/-x, spawn_model/-y, spawn_model/-z, spawn_model/-R, spawn_model/-P
+    # conforms: spawn_model/-Y
     pose = spawning.pose_from(parse(*NEEDED, "-x", "-1.5", "-y", "2", "-Y", str(math.pi / 2)))
     assert (pose.position.x, pose.position.y, pose.position.z) == (-1.5, 2.0, 0.0)
     assert math.isclose(pose.orientation.z, math.sqrt(0.5))
@@ -39,6 +42,7 @@ def test_pose_and_negative_numbers():
 
 
 def test_prefixes_of_flags_are_enough():
+    # conforms: spawn_model/prefixes of flags
     options = parse(*NEEDED, "-gazebo", "/sim", "-ref", "map", "-robot", "r1")
     assert (options.gazebo_namespace, options.reference_frame, options.robot_namespace) \
         == ("/sim", "map", "r1")
@@ -50,12 +54,14 @@ def test_prefixes_of_flags_are_enough():
     [*NEEDED, "-x", "-1e-3"], [*NEEDED, "-J", "wheel"],
 ])
 def test_a_wrong_command_line_is_exit_code_2(words, capsys):
+    # conforms: spawn_model/exit codes
     with pytest.raises(SystemExit) as caught:
         parse(*words)
     assert caught.value.code == 2 and "usage: spawn_model" in capsys.readouterr().err
 
 
 def test_joint_positions():
+    # conforms: spawn_model/-J
     options = parse(*NEEDED, "-J", "a", "1.5", "-J", "b", "-0.5")
     assert spawn_arguments.joint_positions(options.joints) == [1.5, -0.5]
     options = parse(*NEEDED, "-J", "a", "1", "-J", "b", "up")
@@ -68,6 +74,7 @@ def load(*source):
 
 
 def test_a_file_keeps_its_meaning(tmp_path):
+    # conforms: spawn_model/-file
     path = tmp_path / "car.urdf"
     path.write_bytes('<?xml version="1.0" encoding="utf-8"?><!-- 注 --><robot name="车"/>'.encode())
     text = load("-file", str(path))
@@ -79,6 +86,7 @@ def test_a_file_keeps_its_meaning(tmp_path):
      " a file"), (b"", "Error: file {} is empty"), (b"<robot>", "Invalid XML: no element found"),
 ])
 def test_files_that_cannot_be_used(tmp_path, content, said):
+    # conforms: spawn_model/-file, spawn_model/log lines
     path = tmp_path / "car.urdf"
     if content == "folder":
         path.mkdir()
@@ -91,6 +99,7 @@ def test_files_that_cannot_be_used(tmp_path, content, said):
 
 
 def test_standard_input(monkeypatch):
+    # conforms: spawn_model/-stdin
     monkeypatch.setattr("sys.stdin", io.StringIO('<robot name="r"/>'))
     assert load("-stdin") == '<robot name="r" />'
     with pytest.raises(model_source.SourceError, match="Error: stdin buffer was empty"):
@@ -98,11 +107,13 @@ def test_standard_input(monkeypatch):
 
 
 def test_the_model_database_is_an_include():
+    # conforms: spawn_model/-database
     root = ElementTree.fromstring(load("-database", "coke_can"))
     assert root.find("world[@name='default']/include/uri").text == "model://coke_can"
 
 
 def test_package_to_model(monkeypatch):
+    # conforms: spawn_model/-package_to_model
     text = '<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://"/></robot>'
     monkeypatch.setattr(rospy, "get_param", lambda name: text)
     meshes = ElementTree.fromstring(load("-param", "d", "-package_to_model")).findall("mesh")
@@ -111,6 +122,7 @@ def test_package_to_model(monkeypatch):
 
 
 def test_a_missing_parameter_names_those_there_are(monkeypatch):
+    # conforms: spawn_model/-param
     def missing(name):
         raise KeyError(name)
 
@@ -123,6 +135,7 @@ def test_a_missing_parameter_names_those_there_are(monkeypatch):
 
 
 def test_an_empty_parameter(monkeypatch):
+    # conforms: spawn_model/-param
     monkeypatch.setattr(rospy, "get_param", lambda name: "")
     with pytest.raises(model_source.SourceError, match="param does not exist or is empty"):
         load("-param", "robot_description")

@@ -90,6 +90,13 @@ def test_a_mistake_is_one_line_and_exit_code_2(folder, inside, said):
     assert result.stderr.count("\n") == 1
 
 
+def test_an_expression_without_end_is_one_line_that_quotes_it(folder):
+    (folder / "robot.xacro").write_text('<robot><link name="${9 ** 9 ** 9 ** 9}"/></robot>')
+    result = run(folder, "robot.xacro")
+    assert result.returncode == 2 and "${9 ** 9 ** 9 ** 9} takes longer" in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
 @pytest.mark.parametrize("words", [[], ["none.xacro"], ["a", "b"], ["robot.xacro", "a:=b:=c"]])
 def test_wrong_use_is_exit_code_2(folder, words):
     result = run(folder, *words)

@@ -108,6 +108,9 @@ class ArmControllers(unittest.TestCase):
     # --- reaching
 
     def test_a_trajectory_succeeds_by_each_interface(self):
+        # conforms: controllers/effort_controllers/JointTrajectoryController
+        # conforms: controllers/velocity_controllers/JointTrajectoryController
+        # conforms: controllers/position_controllers/JointTrajectoryController
         path = trajectory((0.6, (0.4, -0.3), (0.3, -0.2)), (1.2, (0.6, -0.6), (0.0, 0.0)))
         for arm in self.arms.values():
             arm.send(path)
@@ -235,6 +238,8 @@ class ArmControllers(unittest.TestCase):
         return arm.grip.get_state(), arm.grip.get_result()
 
     def test_grippers_reach(self):
+        # conforms: controllers/effort_controllers/GripperActionController
+        # conforms: controllers/position_controllers/GripperActionController
         for name in ("effort_arm", "position_arm"):
             for position in (0.05, 0.01):
                 status, result = self.grip(self.arms[name], position)

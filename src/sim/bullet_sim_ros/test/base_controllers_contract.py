@@ -76,6 +76,7 @@ class BaseControllers(unittest.TestCase):
             base.come_to_rest()
 
     def test_a_metre_forward_and_odometry_within_one_percent(self):
+        # conforms: controllers/diff_drive_controller/DiffDriveController
         base = self.diff
         x, y, _ = base.pose()
         true_x, true_y, *_ = truth(base.name)
@@ -193,6 +194,7 @@ class BaseControllers(unittest.TestCase):
         wait_until(lambda: base.pose()[0] > 0.1, "some way again")
 
     def test_ackermann_drives_the_circle_of_its_angle(self):
+        # conforms: controllers/ackermann_steering_controller/AckermannSteeringController
         base = self.bases["tricycle"]
         base.send(0.5, 0.3)
         pass_time(STEADY + 0.7)
@@ -204,6 +206,7 @@ class BaseControllers(unittest.TestCase):
         self.assertAlmostEqual(counted[0] / counted[2], radius, delta=0.03 * radius)
 
     def test_four_wheels_drive_the_twist(self):
+        # conforms: controllers/four_wheel_steering_controller/FourWheelSteeringController
         base = self.bases["four_wheels"]
         base.send(0.4, 0.5)
         pass_time(STEADY + 0.7)

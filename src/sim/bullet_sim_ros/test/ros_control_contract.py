@@ -84,11 +84,17 @@ class RosControl(unittest.TestCase):
     # --- the manager
 
     def test_types_are_listed(self):
+        # conforms: controller_manager services/list_controller_types
         types = call("/bench/controller_manager/list_controller_types", ListControllerTypes)
         self.assertIn("effort_controllers/JointPositionController", types.types)
         self.assertEqual(len(types.types), len(types.base_classes))
 
     def test_a_controller_lives_as_upstreams(self):
+        # conforms: libgazebo_ros_control.so/robotNamespace, libgazebo_ros_control.so/robotParam
+        # conforms: controller_manager services/load_controller
+        # conforms: controller_manager services/unload_controller
+        # conforms: controller_manager services/switch_controller
+        # conforms: controller_manager services/list_controllers
         manager, name = self.manager, "left_velocity"
         self.assertEqual(manager.load(name), [True])
         self.assertEqual(manager.load(name), [False])
@@ -146,6 +152,7 @@ class RosControl(unittest.TestCase):
     # --- controllers
 
     def test_joint_states_come_at_their_rate_in_alphabetical_order(self):
+        # conforms: controllers/joint_state_controller/JointStateController
         self.start()
         first = rospy.wait_for_message("/bench/joint_states", JointState, LIMIT)
         second = rospy.wait_for_message("/bench/joint_states", JointState, LIMIT)
@@ -155,6 +162,7 @@ class RosControl(unittest.TestCase):
         self.assertGreater(periods, 0.5)
 
     def test_velocity_by_effort_and_its_state_topics(self):
+        # conforms: controllers/effort_controllers/JointVelocityController
         self.start("left_velocity")
         self.send("left_velocity", 6.0)
         self.velocity_reaches("left_wheel", 6.0)
@@ -167,6 +175,7 @@ class RosControl(unittest.TestCase):
         self.rosout.wait_for("/bench/left_velocity", "not finite")
 
     def test_gains_change_while_it_runs(self):
+        # conforms: controllers/effort_controllers/JointPositionController
         self.start("pendulum_position")
         self.assertIn("'p': 30.0", dynparam("get", "/bench/pendulum_position/pid"))
         self.send("pendulum_position", 0.5)
@@ -176,17 +185,20 @@ class RosControl(unittest.TestCase):
         self.assertEqual(rospy.get_param("/bench/pendulum_position/pid/p"), 0.0)
 
     def test_a_command_beyond_the_limits_goes_to_the_limit(self):
+        # conforms: controllers/position_controllers/JointPositionController
         self.start("hinge_position", "right_velocity")
         self.send("hinge_position", 2.0)
         self.position_reaches("hinge", 0.6, within=1e-3)
 
     def test_a_command_times_out_where_the_parameter_says_so(self):
+        # conforms: controllers/velocity_controllers/JointVelocityController
         self.start("right_velocity")
         self.send("right_velocity", 9.0)
         self.velocity_reaches("right_wheel", 9.0)
         self.velocity_reaches("right_wheel", 0.0)
 
     def test_a_group_takes_a_number_for_each_joint(self):
+        # conforms: controllers/effort_controllers/JointGroupEffortController
         self.start("both_efforts")
         self.send("both_efforts", [0.0, 0.5, 1.0])
         self.rosout.wait_for("Dimension of command (3) does not match number of joints (2)")
@@ -194,6 +206,7 @@ class RosControl(unittest.TestCase):
         self.reaches("pendulum", 2, 0.5, within=1e-9)
 
     def test_a_stopped_controller_leaves_no_effort_behind(self):
+        # conforms: controllers/effort_controllers/JointEffortController
         self.start("left_effort")
         self.send("left_effort", 0.2)
         self.reaches("left_wheel", 2, 0.2, within=1e-9)
@@ -201,6 +214,7 @@ class RosControl(unittest.TestCase):
         self.reaches("left_wheel", 2, 0.0, within=1e-9)
 
     def test_emergency_stop_and_its_release(self):
+        # conforms: libgazebo_ros_control.so/eStopTopic
         self.start("right_velocity", "hinge_position", "left_velocity")
         stop = rospy.Publisher("/bench/stop", Bool, queue_size=1)
         self.addCleanup(stop.unregister)
@@ -249,6 +263,7 @@ class RosControl(unittest.TestCase):
         self.assertEqual(self.manager.list(), [])
 
     def test_the_control_period_is_what_controllers_see(self):
+        # conforms: libgazebo_ros_control.so/controlPeriod
         self.addCleanup(self.respawn)
         self.delete()
         self.spawn("<eStopTopic>", "<controlPeriod>0.01</controlPeriod><eStopTopic>")

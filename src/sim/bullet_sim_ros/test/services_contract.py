@@ -4,6 +4,7 @@
 import math
 import unittest
 
+import dynamic_reconfigure.client
 import rospy
 import rostest
 from gazebo_msgs.msg import LinkStates, ModelState, ModelStates
@@ -11,12 +12,14 @@ from gazebo_msgs.srv import (
     DeleteModel,
     GetModelProperties,
     GetModelState,
+    GetPhysicsProperties,
     GetWorldProperties,
     SetModelConfiguration,
     SetModelState,
     SpawnModel,
 )
 from geometry_msgs.msg import Pose, Twist
+from roscpp.srv import GetLoggers, SetLoggerLevel
 from rosgraph_msgs.msg import Clock, Log
 from std_srvs.srv import Empty
 
@@ -216,6 +219,27 @@ class Services(unittest.TestCase):
         links = rospy.wait_for_message("/gazebo/link_states", LinkStates, LIMIT)
         self.assertEqual(links.name, ["ground_plane::link", "arm::base", "arm::tip"])
         self.assertIsInstance(models.twist[0], Twist)
+
+    # --- what every node offers, and reconfigure
+
+    def test_loggers(self):
+        # conforms: /gazebo/get_loggers, /gazebo/set_logger_level
+        level = service("set_logger_level", SetLoggerLevel)
+        for wanted in ("warn", "info"):
+            level("rosout", wanted)
+            loggers = service("get_loggers", GetLoggers)().loggers
+            self.assertIn(("rosout", wanted.upper()), [(one.name, one.level) for one in loggers])
+
+    def test_a_client_of_dynamic_reconfigure(self):
+        # conforms: /gazebo reconfigure/set_parameters, /gazebo reconfigure/gravity_z
+        client = dynamic_reconfigure.client.Client("/gazebo", timeout=LIMIT)
+        self.addCleanup(client.close)
+        self.assertEqual(client.get_configuration(LIMIT)["gravity_z"], -9.8)
+        self.assertEqual(client.update_configuration({"gravity_z": -1.6})["gravity_z"], -1.6)
+        physics = service("get_physics_properties", GetPhysicsProperties)()
+        self.assertEqual((physics.gravity.z, physics.time_step), (-1.6, 0.001))
+        self.assertEqual(rospy.get_param("/gazebo/gravity_z"), -1.6)
+        client.update_configuration({"gravity_z": -9.8})
 
     # --- the world
 

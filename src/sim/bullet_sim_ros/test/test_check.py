@@ -96,9 +96,9 @@ def test_a_launch_file_with_its_robot_and_its_nodes(check, tmp_path):
 
 
 def test_a_package_is_looked_through(capsys):
-    assert main(["turtlebot3_gazebo"]) == 0
+    assert main(["learning_topic"]) == 0
     said = capsys.readouterr().out
-    assert "turtlebot3_world.world" in said and "turtlebot3_empty_world.launch" in said
+    assert "course.world" in said and "0course.launch, parameter /robot_description" in said
 
 
 def test_nothing_to_check_and_a_wrong_launch_file(capsys):

@@ -245,6 +245,7 @@ def test_after_an_emergency_stop_what_runs_starts_anew():
 
 
 def test_reloading_needs_force_while_there_are_controllers():
+    # conforms: controller_manager services/reload_controller_libraries
     with Bench("wheel", "arm") as bench:
         bench.switch(["wheel"])
         with pytest.raises(ManagerError, match="still 2 controllers"):

@@ -116,8 +116,9 @@ def test_a_plugin_that_cannot_load_is_one_error_and_the_others_load(
     with caplog.at_level(logging.WARNING):
         loaded, _ = load(world, described(filename, body), described("libgood.so"))
     assert len(loaded) == 1
-    assert [record.levelname for record in caplog.records] == ["ERROR"]
-    assert f"({filename}) is not loaded: {said}" in caplog.text
+    errors = [record for record in caplog.records if record.levelno >= logging.ERROR]
+    assert len(errors) == 1
+    assert f"({filename}) is not loaded: {said}" in errors[0].getMessage()
 
 
 @pytest.mark.parametrize("body", ["<broken/>", "<broken/><stepwise/>"])

@@ -43,12 +43,21 @@ class Agenda:
         self._longest = min(factor * LONGEST, UNPACED) if factor > 0 else UNPACED
 
     def add(self, rate_hz: float, action: Callable[[], None],
-            wanted: Callable[[], bool] = always) -> Duty:
-        """Do something `rate_hz` times a simulated second from now on; 0: every step."""
+            wanted: Callable[[], bool] = always, whole_steps: bool = False) -> Duty:
+        """Do something `rate_hz` times a simulated second from now on; 0: every step.
+
+        `whole_steps` as a `Schedule` has it.
+        """
         tick = self._world.tick
-        schedule = Schedule(rate_hz, self._world.timestep, tick)
+        schedule = Schedule(rate_hz, self._world.timestep, tick, whole_steps)
         self._duties.append(Duty(schedule, tick, action, wanted))
         return self._duties[-1]
+
+    def change_rate(self, duty: Duty, rate_hz: float) -> None:
+        """Do it at another rate, counted from now on."""
+        tick = self._world.tick
+        duty.schedule = Schedule(rate_hz, self._world.timestep, tick)
+        duty.next_tick = duty.schedule.next_tick(tick)
 
     def remove(self, duty: Duty) -> None:
         """Not any more."""

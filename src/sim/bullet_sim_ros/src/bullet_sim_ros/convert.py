@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import cv2
 import numpy as np
 import rospy
 from geometry_msgs.msg import Point, TransformStamped, Vector3
@@ -23,8 +22,10 @@ from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.stages import Stages
 from bullet_sim_ros.array_image import ArrayImage
+from bullet_sim_ros.cameras.encodings import encode
 
 UNKNOWN_VARIANCE = 1e12
+DRIVE_VARIANCES = (1e-5, 1e-5, 1e-3)  # of x, y, yaw: what gazebo_ros_diff_drive says of itself
 # m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
 LARGEST = 1e6
 
@@ -75,18 +76,24 @@ def transform_to_msg(pose: Pose, time: float, parent: str, child: str) -> Transf
     return msg
 
 
-def odometry_to_msg(reading: OdometryReading, frame: str, child: str) -> Odometry:
-    """nav_msgs/Odometry with the covariances of gazebo_ros_diff_drive."""
+def odometry_to_msg(reading: OdometryReading, frame: str, child: str,
+                    variances: tuple[float, float, float] = DRIVE_VARIANCES) -> Odometry:
+    """nav_msgs/Odometry; the variances are those of x, y (m^2) and yaw (rad^2)."""
     msg = Odometry()
     msg.header.stamp, msg.header.frame_id = stamp(reading.time), frame
     msg.child_frame_id = child
     msg.pose.pose = pose_to_msg(reading.pose)
-    diagonal = (1e-5, 1e-5, UNKNOWN_VARIANCE, UNKNOWN_VARIANCE, UNKNOWN_VARIANCE, 1e-3)
-    msg.pose.covariance = np.diag(diagonal).ravel().tolist()
+    msg.pose.covariance = planar_covariance(*variances)
     msg.twist.twist.linear.x = reading.forward
     msg.twist.twist.linear.y = reading.leftward
     msg.twist.twist.angular.z = reading.yaw_rate
     return msg
+
+
+def planar_covariance(x: float, y: float, yaw: float) -> list[float]:
+    """36 numbers, row by row, of something that knows nothing of height, roll and pitch."""
+    unknown = (UNKNOWN_VARIANCE,) * 3
+    return np.diag((x, y, *unknown, yaw)).ravel().tolist()
 
 
 def joints_to_msg(reading: JointReading, velocities: bool = True) -> JointState:
@@ -99,11 +106,11 @@ def joints_to_msg(reading: JointReading, velocities: bool = True) -> JointState:
 
 
 def laser_to_msg(reading: LaserReading, frame: str) -> LaserScan:
-    """sensor_msgs/LaserScan; the last beam points to angle_max."""
+    """sensor_msgs/LaserScan; the last beam of a row points to angle_max. Rows follow each other."""
     msg = LaserScan()
     msg.header.stamp, msg.header.frame_id = stamp(reading.time), frame
     msg.angle_min, msg.angle_max = reading.angle_min, reading.angle_max
-    gaps = max(1, len(reading.ranges) - 1)
+    gaps = max(1, len(reading.ranges) // reading.rows - 1)
     msg.angle_increment = (reading.angle_max - reading.angle_min) / gaps
     msg.range_min, msg.range_max = reading.range_min, reading.range_max
     msg.ranges, msg.intensities = reading.ranges.tolist(), reading.intensities.tolist()
@@ -124,20 +131,10 @@ def imu_to_msg(reading: ImuReading, frame: str, variance: float) -> Imu:
     return msg
 
 
-ENCODINGS = {  # SDF <format>, and what image consumers call it
-    "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
-    "L8": "mono8", "L_INT8": "mono8",
-}
-
-
 def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8",
                  stages: Stages | None = None) -> ArrayImage:
-    """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture as rgb8, bgr8 or mono8."""
-    if encoding == "bgr8":
-        rgb = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR)
-    elif encoding == "mono8":  # ITU-R BT.601 luma
-        rgb = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
-    return _image(rgb, time, frame, encoding, stages)
+    """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture in any encoding of cameras."""
+    return _image(encode(rgb, encoding), time, frame, encoding, stages)
 
 
 def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:

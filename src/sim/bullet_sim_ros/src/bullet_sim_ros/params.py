@@ -64,6 +64,11 @@ def find_upwards(namespace: str, name: str) -> str | None:
     return None
 
 
+def own_tf_prefix(namespace: str) -> str:
+    """`tf_prefix` exactly in a plugin's namespace, else empty."""
+    return str(below(names.join(namespace, "tf_prefix")) or "")
+
+
 def tf_prefix(namespace: str) -> str:
     """`tf_prefix` as found from a plugin's namespace upwards, else empty."""
     name = find_upwards(namespace, "tf_prefix")

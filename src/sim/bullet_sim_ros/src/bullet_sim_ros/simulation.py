@@ -17,7 +17,7 @@ from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugins import load_plugins
+from bullet_sim_ros.plugins import load_plugins, load_world_plugins
 from bullet_sim_ros.plugins.host import Host, Shared
 from bullet_sim_ros.speed import Speed
 from bullet_sim_ros.state_topics import StateTopics
@@ -47,6 +47,7 @@ class Simulation:
             self._metrics = MetricsTopic(self)
         for model in world.models.values():
             self._load_plugins(model)
+        self._world_plugins = load_world_plugins(self._shared)
         self._lockstep.listen()
 
     # --- the loop
@@ -138,7 +139,7 @@ class Simulation:
         self._lockstep.cancel()
         self.world.reset_simulation()
         self.agenda.restart()
-        for hosts in self._plugins.values():
+        for hosts in (*self._plugins.values(), self._world_plugins):
             for host in hosts:
                 host.reset()
         self._publish_clock()

@@ -1,15 +1,19 @@
-"""model_states and link_states out, set_model_state in."""
+"""model_states and link_states out, set_model_state and set_link_state in."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import rospy
-from gazebo_msgs.msg import LinkStates, ModelState, ModelStates
+from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
 
 from bullet_sim.errors import SimulationError
+from bullet_sim.nested import Part
+from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.params import NodeParameters
+from bullet_sim_ros.services.links import set_link_state
 from bullet_sim_ros.services.states import set_model_state
 
 if TYPE_CHECKING:
@@ -23,7 +27,8 @@ class StateTopics:
         self._simulation = simulation
         self._models = rospy.Publisher(names.MODEL_STATES, ModelStates, queue_size=10)
         self._links = rospy.Publisher(names.LINK_STATES, LinkStates, queue_size=10)
-        rospy.Subscriber(names.SET_MODEL_STATE, ModelState, self._on_set, queue_size=10)
+        self._obey(names.SET_MODEL_STATE, ModelState, set_model_state)
+        self._obey(names.SET_LINK_STATE, LinkState, set_link_state)
         rate_hz = parameters.pub_state_frequency
         simulation.agenda.add(rate_hz, self._publish_models, self._models.get_num_connections)
         simulation.agenda.add(rate_hz, self._publish_links, self._links.get_num_connections)
@@ -34,18 +39,20 @@ class StateTopics:
 
     def _publish_links(self) -> None:
         models = self._simulation.world.models.values()
-        links = (link for model in models for link in model.links.values())
+        links = (link for model in models for link in Part(model).links())
         self._links.publish(_states(
             LinkStates(), ((link.scoped_name, link.pose, link.twist) for link in links)))
 
-    def _on_set(self, msg: ModelState) -> None:
-        self._simulation.mailbox.leave(lambda: self._set(msg))
+    def _obey(self, topic: str, kind: type, put: Callable[[World, Any], None]) -> None:
+        """Have `put(world, message)` run in the loop for each message; errors are logged."""
+        def take(msg) -> None:
+            try:
+                put(self._simulation.world, msg)
+            except SimulationError as error:
+                rospy.logerr("topic %s: %s", rospy.resolve_name(topic), error)
 
-    def _set(self, msg: ModelState) -> None:
-        try:
-            set_model_state(self._simulation.world, msg)
-        except SimulationError as error:
-            rospy.logerr("topic %s: %s", rospy.resolve_name(names.SET_MODEL_STATE), error)
+        rospy.Subscriber(topic, kind, lambda msg: self._simulation.mailbox.leave(lambda: take(msg)),
+                         queue_size=10)
 
 
 def _states(msg: ModelStates | LinkStates, rows) -> ModelStates | LinkStates:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import logging
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from xml.etree.ElementTree import ParseError, fromstring
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
 from bullet_sim.formats.xacro_files import expand_file
+from bullet_sim.formats.xacro_limits import run_bounded
 from bullet_sim.world import World
 from bullet_sim_ros.check.elements import Lookup, problem
 from bullet_sim_ros.check.findings import WORKS, Finding
@@ -53,14 +55,31 @@ class TextChecker:
         where = str(path)
         try:
             if path.suffix == ".xacro":
-                with _heard() as lines:
-                    expansion = expand_file(path, arguments,
-                                            find_package=self._find_package)
-                return self.model_text(expansion.text, where) + [
-                    problem(where, "xacro", line) for line in lines]
+                return self.model_text(self._expanded(path, arguments), where)
             return self.model_text(path.read_text(encoding="utf-8-sig"), where)
         except (SimulationError, OSError, UnicodeDecodeError) as error:
             return [problem(where, "robot", error)]
+
+    def _expanded(self, path: Path, arguments: dict[str, str]) -> str:
+        """The URDF of a xacro file; its expressions may want any time or memory."""
+        with tempfile.TemporaryDirectory(prefix="check-") as folder:
+            result = Path(folder) / "result"
+
+            def expand_into_file() -> int:
+                try:
+                    text = expand_file(path, arguments, find_package=self._find_package).text
+                except SimulationError as error:
+                    result.write_text(str(error), encoding="utf-8")
+                    return 1
+                result.write_text(text, encoding="utf-8")
+                return 0
+
+            with _heard():
+                code = run_bounded(expand_into_file, str(path))
+            said = result.read_text(encoding="utf-8") if result.exists() else "it failed"
+        if code:
+            raise FormatError(said)
+        return said
 
     def _find_package(self, name: str) -> str:
         return str(self._resources.package_folder(name))

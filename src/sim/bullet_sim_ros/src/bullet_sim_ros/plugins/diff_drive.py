@@ -15,6 +15,7 @@ from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.logged_parameters import LoggedParameters
 from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -25,9 +26,9 @@ class DiffDrivePlugin:
     """Publishes first, then moves the wheels, as upstream does; there is no command time-out."""
 
     def __init__(self, host: Host):
-        p = host.parameters
         self._host = host
-        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+        namespace = host.parameters.namespace(missing=host.model.name, empty=host.model.name)
+        p = LoggedParameters(host.parameters, "DiffDrive", namespace)
         self._joints = self._wheels(p.text("leftJoint", "left_joint"),
                                     p.text("rightJoint", "right_joint"))
         geometry = DiffDriveParameters(
@@ -36,7 +37,7 @@ class DiffDrivePlugin:
         )
         self._drive = DiffDrive(*self._joints, geometry)
         self._wheel_odometry = WheelOdometry(geometry.wheel_separation, geometry.wheel_diameter)
-        self._true = self._source(p.text("odometrySource", "world")) == "world"
+        self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
         self._updated = host.world.time
         self._publish_tf = p.flag("publishTf", True)
         self._publish_odom_tf = p.flag("publishOdomTF", True)
@@ -47,6 +48,7 @@ class DiffDrivePlugin:
         self._odom_frame = names.frame(prefix, p.text("odometryFrame", "odom"))
         self._base_frame = names.frame(prefix, p.text("robotBaseFrame", "base_footprint"))
         self._prefix = prefix
+        self._label = p.label
         self._open_topics(namespace, p.text("commandTopic", "cmd_vel"),
                           p.text("odometryTopic", "odom"), p.flag("publishWheelJointState", False))
         if not self._true:
@@ -57,21 +59,17 @@ class DiffDrivePlugin:
     def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
         return self._host.model.joint(left), self._host.model.joint(right)
 
-    @staticmethod
-    def _source(text: str) -> str:
-        if text not in ("world", "encoder"):
-            log.warning("<odometrySource> is %r; there are world and encoder; world is used", text)
-            return "world"
-        return text
-
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
         host = self._host
+        log.info("%s: Try to subscribe to %s", self._label, command)
         self._odometry = host.advertise(names.join(namespace, odometry), Odometry, queue_size=10)
         self._states = host.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if joints else None
         host.subscribe(names.join(namespace, command), Twist, self._take_command, queue_size=1,
                        tcp_nodelay=True)
+        log.info("%s: Subscribe to %s", self._label, command)
+        log.info("%s: Advertise odom on %s", self._label, odometry)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
         if not convert.is_sane(msg):
@@ -117,9 +115,10 @@ class DiffDrivePlugin:
             self._host.shared.send_transforms(transforms)
 
     def _wheel_transform(self, joint: Joint, time: float):
-        links = self._host.model.links
+        """The wheel seen from the model, and told as if seen from its parent link: upstream's."""
+        model = self._host.model
         parent, child = joint.description.parent, joint.description.child
-        pose = links[parent].pose.inverse() * links[child].pose
+        pose = model.pose.inverse() * model.links[child].pose
         return convert.transform_to_msg(pose, time, names.frame(self._prefix, parent),
                                         names.frame(self._prefix, child))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 from concurrent.futures import Future
 
@@ -11,7 +12,7 @@ import tf2_ros
 from geometry_msgs.msg import TransformStamped
 from rosgraph.names import is_legal_name
 
-from bullet_sim.description import PluginDescription, SensorDescription
+from bullet_sim.description import PluginDescription, SensorDescription, Visual
 from bullet_sim.model import Link, Model
 from bullet_sim.world import World
 from bullet_sim_ros.agenda import Agenda, Duty, always
@@ -34,6 +35,7 @@ class Shared:
         self.agenda = agenda
         self.drawing = drawing
         self.lockstep = lockstep
+        self.warned: set[tuple[str, str]] = set()  # unknown plugins: where they are, file name
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
     def announce_transforms(self) -> None:
@@ -53,15 +55,17 @@ class Shared:
 class Host:
     """One plugin's view of the simulation. Made and used in the loop's thread."""
 
-    def __init__(self, shared: Shared, model: Model, description: PluginDescription,
-                 sensor: SensorDescription | None = None, link: Link | None = None):
+    def __init__(self, shared: Shared, model: Model | None, description: PluginDescription,
+                 sensor: SensorDescription | None = None, link: Link | None = None,
+                 visual: Visual | None = None):
         self.shared = shared
         self.world = shared.world
-        self.model = model
         self.description = description
-        self.parameters = PluginParameters(model.name, description)
+        self.parameters = PluginParameters(model.name if model else "(world)", description)
+        self._model = model
         self._sensor = sensor
         self._link = link
+        self._visual = visual
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
         self._drawn: Future | None = None
@@ -70,9 +74,33 @@ class Host:
         self._duty: Duty | None = None  # the last that `every` was asked for
 
     @property
+    def model(self) -> Model:
+        """The model that the plugin is in."""
+        if self._model is None:
+            raise PluginError("it belongs inside a <model>, not in the world")
+        return self._model
+
+    @property
+    def in_world(self) -> bool:
+        """Whether the plugin is in the world itself."""
+        return self._model is None
+
+    @property
     def has_sensor(self) -> bool:
         """Whether the plugin is in a sensor."""
         return self._sensor is not None
+
+    @property
+    def in_visual(self) -> bool:
+        """Whether the plugin is in a visual."""
+        return self._visual is not None
+
+    @property
+    def visual(self) -> Visual:
+        """The visual that the plugin is in; `link` is the one that it is on."""
+        if self._visual is None:
+            raise PluginError("it belongs inside a <visual>")
+        return self._visual
 
     @property
     def updates(self) -> int:
@@ -94,19 +122,47 @@ class Host:
         return self._link
 
     def describe(self) -> str:
-        """Model, sensor and plugin, for log lines."""
+        """Model, sensor or visual, and plugin, for log lines."""
         sensor = f" sensor {self._sensor.name}:" if self._sensor else ""
+        if self._visual is not None:
+            sensor = f" visual {self._visual.name}:"
         name = self.description.name or "(no name)"
-        return f"model {self.model.name}:{sensor} plugin {name} ({self.description.filename})"
+        place = f"model {self._model.name}:" if self._model else \
+            f"world {self.world.description.name}:"
+        return f"{place}{sensor} plugin {name} ({self.description.filename})"
 
     # --- when the loop calls
 
     def every(self, rate_hz: float, action: Callable[[], None],
-              wanted: Callable[[], bool] = always) -> None:
-        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step."""
+              wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
+        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step.
+
+        `whole_steps` is for plugins that count the period from the last time (see `Schedule`). As
+        upstream has it, a rate below zero is none, too.
+        """
         agenda = self.shared.agenda
-        self._duty = duty = agenda.add(rate_hz, self._guarded(action), wanted)
+        self._duty = duty = agenda.add(
+            max(rate_hz, 0.0), self._guarded(action), wanted, whole_steps)
         self._closers.append(lambda: agenda.remove(duty))
+
+    def change_rate(self, rate_hz: float) -> None:
+        """Do what `every` was last asked for at another rate, from now on."""
+        if self._duty is not None and not self._closed:
+            self.shared.agenda.change_rate(self._duty, rate_hz)
+
+    def every_reading(self, rate_hz: float, action: Callable[[], None],
+                      wanted: Callable[[], bool] = always) -> None:
+        """Call `action` at the sensor's own rate, thinned to `rate_hz`; 0: at each reading.
+
+        As upstream has it, a reading is left out until so much time has gone by since the last one
+        that was taken, so 100 Hz thinned to 30 Hz is 25 Hz.
+        """
+        sensor_rate = self.sensor.update_rate
+        if sensor_rate <= 0 or rate_hz <= 0:
+            self.every(max(sensor_rate, rate_hz), action, wanted, whole_steps=sensor_rate <= 0)
+        else:
+            every = max(1, math.ceil(sensor_rate / rate_hz - 1e-9))
+            self.every(sensor_rate / every, action, wanted)
 
     def each_step(self, action: Callable[[], None]) -> None:
         """Call `action` after each single physics step."""

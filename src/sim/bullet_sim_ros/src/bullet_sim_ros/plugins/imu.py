@@ -7,36 +7,40 @@ import dataclasses
 from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
+from bullet_sim.errors import UnknownName
+from bullet_sim.model import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.imu import Imu, ImuReading
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.registry import plugin
 
 
 @plugin("libgazebo_ros_imu.so")
 class ImuPlugin:
-    """Rates and accelerations are in the link's axes (upstream turns them the wrong way round)."""
+    """Rates and accelerations are in the link's axes (upstream turns them the wrong way round).
+
+    `xyzOffset` moves nothing in upstream either. No tf_prefix.
+    """
 
     def __init__(self, host: Host):
         p = host.parameters
         namespace = p.namespace(missing="/", empty="/")
-        link = host.model.link(p.required("bodyName"))
+        link = _find_link(host, p.required("bodyName"))
         self._world = host.world
         self._imu = Imu(host.world, link)
         self._frame = names.frame("", p.text("frameName", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
-        self._noise = p.number("gaussianNoise", 0.0)
-        if self._noise < 0:
-            raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
+        self._noise = p.deviation("gaussianNoise")
         self._random_name = f"{link.scoped_name}::{host.description.name}"
-        topic = names.join(namespace, p.text("topicName", "/default_imu"))
         service = names.join(namespace, p.text("serviceName", "/default_imu"))
-        self._readings = host.advertise(topic, ImuMsg, queue_size=1)
         host.serve(service, Empty, lambda _request: EmptyResponse())
-        host.every(p.number("updateRate", 0.0), self._measure, self._readings.get_num_connections)
-        host.on_reset(self._imu.restart)
+        topic = p.topic("/default_imu")
+        if topic:
+            self._readings = host.advertise(names.join(namespace, topic), ImuMsg, queue_size=1)
+            host.every(p.number("updateRate", 0.0), self._measure,
+                       self._readings.get_num_connections, whole_steps=True)
+            host.on_reset(self._imu.restart)
 
     def _measure(self) -> None:
         reading = self._with_noise(self._in_link_axes(self._imu.sample()))
@@ -60,3 +64,14 @@ class ImuPlugin:
             angular_velocity=tuple(reading.angular_velocity + noise[:3]),
             linear_acceleration=tuple(reading.linear_acceleration + noise[3:]),
         )
+
+
+def _find_link(host: Host, name: str) -> Link:
+    """A link of the model, else of any model in the world, as upstream looks it up."""
+    try:
+        return host.model.link(name)
+    except UnknownName as here:
+        try:
+            return host.world.link(name)
+        except UnknownName:
+            raise here from None

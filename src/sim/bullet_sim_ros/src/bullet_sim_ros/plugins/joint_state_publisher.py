@@ -6,6 +6,8 @@ import logging
 
 from sensor_msgs.msg import JointState
 
+from bullet_sim.errors import SimulationError
+from bullet_sim.joint import HeldJoint, Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugins.host import Host
@@ -16,21 +18,29 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_joint_state_publisher.so")
 class JointStatePublisherPlugin:
-    """A name that is no joint is left out with an error line (upstream crashes on it)."""
+    """A name that is no joint is left out with an error line (upstream crashes on it).
+
+    Without `jointName` the messages are empty, as upstream's are.
+    """
 
     def __init__(self, host: Host):
         p = host.parameters
         self._world = host.world
         namespace = p.namespace(missing=host.model.name, empty=host.model.name)
-        wanted = [name.strip() for name in p.text("jointName").split(",") if name.strip()]
-        self._joints = [host.model.joints[name] for name in wanted if name in host.model.joints]
-        for name in wanted:
-            if name not in host.model.joints:
-                log.error("model %s: joint_state_publisher: no joint named %r; there are: %s",
-                          host.model.name, name, ", ".join(host.model.joints))
+        wanted = p.text("jointName").replace(" ", "").split(",")
+        found = [_find_joint(host, name.strip()) for name in wanted if name.strip()]
+        self._joints = [joint for joint in found if joint is not None]
         self._states = host.advertise(names.join(namespace, "joint_states"), JointState,
                                       queue_size=1000)
         host.every(p.number("updateRate", 100.0), self._publish, self._states.get_num_connections)
 
     def _publish(self) -> None:
         self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))
+
+
+def _find_joint(host: Host, name: str) -> Joint | HeldJoint | None:
+    try:
+        return host.model.joint(name)
+    except SimulationError as error:
+        log.error("%s: %s", host.describe(), error)
+        return None

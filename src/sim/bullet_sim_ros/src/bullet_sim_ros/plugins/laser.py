@@ -12,15 +12,20 @@ from bullet_sim_ros.plugins.registry import plugin
 
 @plugin("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 class LaserPlugin:
-    """The rate is the sensor's `<update_rate>`; the plugin has none."""
+    """The rate is the sensor's `<update_rate>`; the plugin has none.
+
+    Both see collision shapes (upstream's GPU twin sees visuals).
+    """
 
     def __init__(self, host: Host):
         p = host.parameters
         self._laser = Laser(host.world, host.link, host.sensor)
+        topic = p.topic("/world")
+        if not topic:
+            return
         namespace = p.namespace(missing="/", empty=host.model.name)
         self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
-        topic = names.join(namespace, p.text("topicName", "/world"))
-        self._scans = host.advertise(topic, LaserScan, queue_size=1)
+        self._scans = host.advertise(names.join(namespace, topic), LaserScan, queue_size=1)
         host.every(host.sensor.update_rate, self._sweep, self._scans.get_num_connections)
 
     def _sweep(self) -> None:

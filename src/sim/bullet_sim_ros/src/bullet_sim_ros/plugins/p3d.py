@@ -8,7 +8,6 @@ from nav_msgs.msg import Odometry
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.registry import plugin
 
@@ -17,7 +16,11 @@ INERTIAL = ("world", "/world", "map", "/map")
 
 @plugin("libgazebo_ros_p3d.so")
 class P3dPlugin:
-    """Seen from another link, the twist is truly that (upstream turns it the wrong way round)."""
+    """Seen from another link, the twist is truly that (upstream turns it the wrong way round).
+
+    The offsets are in the link's axes, so that a lumped link's are right in any pose (upstream adds
+    them in the world's).
+    """
 
     def __init__(self, host: Host):
         p = host.parameters
@@ -29,14 +32,12 @@ class P3dPlugin:
         offset = Pose(p.vector("xyzOffset"), quaternion_from_rpy(*p.vector("rpyOffset")))
         self._truth = GroundTruth(host.world, link, offset, reference)
         self._world, self._child = host.world, link.name
-        prefix = params.below(names.join(namespace, "tf_prefix"))
-        self._frame = names.frame(str(prefix or ""), frame)
-        self._noise = p.number("gaussianNoise", 0.0)
-        if self._noise < 0:
-            raise PluginError(f"<gaussianNoise> is {self._noise}, and a deviation is not negative")
+        self._frame = names.frame(params.own_tf_prefix(namespace), frame)
+        self._noise = p.deviation("gaussianNoise")
         self._random_name = f"{link.scoped_name}::{host.description.name}"
         self._poses = host.advertise(topic, Odometry, queue_size=1)
-        host.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections)
+        host.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections,
+                   whole_steps=True)
 
     def _measure(self) -> None:
         reading = self._truth.sample()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 
 from bullet_sim.description import PluginDescription
 from bullet_sim_ros.errors import PluginError
@@ -42,9 +43,23 @@ class PluginParameters:
         if not text:
             return default
         try:
-            return float(text)
+            value = float(text)
         except ValueError:
-            raise PluginError(f"<{tag}> is {text!r}, which is no number") from None
+            value = math.nan
+        if math.isnan(value):
+            raise PluginError(f"<{tag}> is {text!r}, which is no number")
+        return value
+
+    def deviation(self, tag: str) -> float:
+        """A standard deviation; 0 if absent."""
+        value = self.number(tag, 0.0)
+        if value < 0:
+            raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")
+        return value
+
+    def topic(self, default: str, tag: str = "topicName") -> str:
+        """A topic's name; empty, for no topic at all, where the tag is there and empty."""
+        return self.text(tag) if self.has(tag) else default
 
     def flag(self, tag: str, default: bool) -> bool:
         """true/1/false/0 in any case; anything else is a warning and the default."""

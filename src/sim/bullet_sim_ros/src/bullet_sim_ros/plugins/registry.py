@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import logging
 from collections.abc import Callable
 from pathlib import PurePosixPath
@@ -10,6 +9,8 @@ from pathlib import PurePosixPath
 from bullet_sim.model import Model
 from bullet_sim_ros.errors import told
 from bullet_sim_ros.plugins.host import Host, Shared
+from bullet_sim_ros.plugins.sensor_types import warn_of_sensor
+from bullet_sim_ros.plugins.unknown import warn_of_unknown
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -28,11 +29,21 @@ def plugin(*filenames: str) -> Callable[[type], type]:
 
 
 def load_plugins(shared: Shared, model: Model) -> list[Host]:
-    """All plugins of a model and its sensors; one that fails is an error line, the rest goes on."""
+    """All plugins of a model, its sensors and visuals; one that fails is one error line."""
     hosts = [Host(shared, model, description) for description in model.description.plugins]
     for link in model.links.values():
         for sensor in link.description.sensors:
+            warn_of_sensor(model.name, sensor)
             hosts += [Host(shared, model, made, sensor, link) for made in sensor.plugins]
+        for visual in link.description.visuals:
+            hosts += [Host(shared, model, made, link=link, visual=visual)
+                      for made in visual.plugins]
+    return [host for host in hosts if _load(host)]
+
+
+def load_world_plugins(shared: Shared) -> list[Host]:
+    """The plugins that stand in the `<world>` itself."""
+    hosts = [Host(shared, None, plugin) for plugin in shared.world.description.plugins]
     return [host for host in hosts if _load(host)]
 
 
@@ -43,9 +54,7 @@ def _load(host: Host) -> bool:
         return False
     made = _registry.get(filename)
     if made is None:
-        close = difflib.get_close_matches(filename, _registry, 1, cutoff=0.85)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        log.warning("%s is not known here and has no effect%s", host.describe(), hint)
+        warn_of_unknown(host, filename, _registry)
         return False
     try:
         made(host)

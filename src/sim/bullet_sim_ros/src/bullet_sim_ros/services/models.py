@@ -12,11 +12,13 @@ from gazebo_msgs.srv import DeleteModel, SpawnModel
 from bullet_sim.description import ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_light, load_model
+from bullet_sim.pose import IDENTITY
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer
-from bullet_sim_ros.services.states import spawn_pose
+from bullet_sim_ros.services.states import is_turnless, spawn_pose
 
 SPAWNED = "SpawnModel: Successfully spawned entity"
+TAKEN = "SpawnModel: Failure - entity already exists."
 UNKNOWN_PACKAGE = "urdf reference package name does not exist"
 URDF_ROOT = re.compile(r"<robot[\s>/]")
 
@@ -29,12 +31,16 @@ def offer_model_services(simulation, resources: Resources) -> None:
         pose = spawn_pose(simulation.world, request)
         light = load_light(request.model_xml, resources, name or None)
         if light is not None:
+            if light.name in simulation.world.lights:
+                raise ServiceError(TAKEN)
             simulation.world.add_light(light)
             done(response, SPAWNED)
             return
         description = load_model(request.model_xml, resources, name or None)
         if description.name in simulation.world.models:
-            raise ServiceError("SpawnModel: Failure - entity already exists.")
+            raise ServiceError(TAKEN)
+        if is_turnless(request.initial_pose):
+            description = dataclasses.replace(description, pose=IDENTITY)
         if request.robot_namespace:
             description = with_namespace(description, request.robot_namespace)
         simulation.spawn(description, pose, description.name)
@@ -75,7 +81,11 @@ def with_namespace(description: ModelDescription, namespace: str) -> ModelDescri
             dataclasses.replace(sensor, plugins=tuple(map(named, sensor.plugins)))
             for sensor in link.sensors
         )
-        return dataclasses.replace(link, sensors=sensors)
+        visuals = tuple(
+            dataclasses.replace(visual, plugins=tuple(map(named, visual.plugins)))
+            for visual in link.visuals
+        )
+        return dataclasses.replace(link, sensors=sensors, visuals=visuals)
 
     return dataclasses.replace(description, plugins=tuple(map(named, description.plugins)),
                                links=tuple(map(in_link, description.links)))

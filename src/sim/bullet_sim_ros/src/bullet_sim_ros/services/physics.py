@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 # Fields of gazebo_msgs/ODEPhysics and of our PhysicsDescription.
 ODE = {
+    "auto_disable_bodies": "auto_disable_bodies",
     "sor_pgs_precon_iters": "precon_iterations",
     "sor_pgs_iters": "iterations",
     "sor_pgs_w": "sor",

@@ -6,14 +6,16 @@ from collections import Counter
 
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
+from geometry_msgs.msg import Pose as PoseMsg
 
-from bullet_sim.errors import UnknownName
-from bullet_sim.model import twist_in
+from bullet_sim.model import twist_difference, twist_in
+from bullet_sim.nested import find_part
 from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.lookup import find_frame
 
 
 def offer_state_services(simulation) -> None:
@@ -21,8 +23,8 @@ def offer_state_services(simulation) -> None:
     world, calls = simulation.world, Counter()
 
     def get(request, response):
-        calls[request.model_name] += 1
         get_model_state(world, request, response)
+        calls[request.model_name] += 1
         response.header.seq = calls[request.model_name]
 
     def set_(request, response):
@@ -42,18 +44,16 @@ def get_model_state(world: World, request, response) -> None:
     """Pose and twist of a model, in the world or relative to another entity."""
     response.header.stamp = convert.stamp(world.time)
     response.header.frame_id = request.relative_entity_name
-    if request.model_name not in world.models:
+    model = find_part(world.models.values(), request.model_name)
+    if model is None:
         raise ServiceError("GetModelState: model does not exist")
-    model = world.models[request.model_name]
-    try:
-        frame, frame_twist = world.frame(request.relative_entity_name)
-    except UnknownName:
-        raise ServiceError("GetModelState: reference relative_entity_name not found, did you "
-                           "forget to scope the body by model name?") from None
-    difference = Twist(_minus(model.twist.linear, frame_twist.linear),
-                       _minus(model.twist.angular, frame_twist.angular))
+    frame, frame_twist = find_frame(
+        world, request.relative_entity_name,
+        "GetModelState: reference relative_entity_name not found, did you forget to scope the "
+        "body by model name?")
     response.pose = convert.pose_to_msg(frame.inverse() * model.pose)
-    response.twist = convert.twist_to_msg(twist_in(frame, difference))
+    response.twist = convert.twist_to_msg(
+        twist_in(frame, twist_difference(model.twist, frame_twist)))
     done(response, "GetModelState: got properties")
 
 
@@ -65,11 +65,8 @@ def set_model_state(world: World, state: ModelState) -> None:
         raise ServiceError(
             f"SetModelState: pose and twist must be finite and not beyond {convert.LARGEST:g}")
     model = world.models[state.model_name]
-    try:
-        frame, _ = world.frame(state.reference_frame)
-    except UnknownName:
-        raise ServiceError("SetModelState: specified reference frame entity does not exist") \
-            from None
+    frame, _ = find_frame(world, state.reference_frame,
+                          "SetModelState: specified reference frame entity does not exist")
     twist = convert.twist_from_msg(state.twist)
     model.set_pose(frame * convert.pose_from_msg(state.pose))
     model.set_twist(Twist(rotate(frame.orientation, twist.linear),
@@ -83,14 +80,13 @@ def set_model_configuration(world: World, request) -> None:
     if len(request.joint_names) != len(request.joint_positions):
         raise ServiceError(
             "SetModelConfiguration: joint name and position list have different lengths")
+    if not all(abs(position) <= convert.LARGEST for position in request.joint_positions):
+        raise ServiceError("SetModelConfiguration: joint_positions must be finite and not beyond "
+                           f"{convert.LARGEST:g}")
     joints = world.models[request.model_name].joints
     for name, position in zip(request.joint_names, request.joint_positions, strict=True):
         if name in joints:
             joints[name].reset(position)
-
-
-def _minus(a, b):
-    return tuple(x - y for x, y in zip(a, b, strict=True))
 
 
 def spawn_pose(world: World, request) -> Pose:
@@ -98,9 +94,19 @@ def spawn_pose(world: World, request) -> Pose:
     if not convert.is_sane(request.initial_pose):
         raise ServiceError(
             f"SpawnModel: initial_pose must be finite and not beyond {convert.LARGEST:g}")
-    try:
-        frame, _ = world.frame(request.reference_frame)
-    except UnknownName:
-        raise ServiceError("SpawnModel: reference reference_frame not found, did you forget to "
-                           "scope the link by model name?") from None
-    return frame * convert.pose_from_msg(request.initial_pose)
+    frame, _ = find_frame(
+        world, request.reference_frame,
+        "SpawnModel: reference reference_frame not found, did you forget to scope the link by "
+        "model name?")
+    pose = frame * convert.pose_from_msg(request.initial_pose)
+    return Pose(pose.position) if is_turnless(request.initial_pose) else pose
+
+
+def is_turnless(pose: PoseMsg) -> bool:
+    """Whether the orientation is (0, 0, 0, 0), as in a message that nobody filled in.
+
+    In the arithmetic of upstream's spawn services such a turn makes all others vanish: that of the
+    reference frame, and the model's own pose.
+    """
+    turn = pose.orientation
+    return not any((turn.x, turn.y, turn.z, turn.w))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
+from bullet_sim.nested import find_part
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
@@ -42,13 +43,14 @@ def get_world_properties(world: World, response) -> None:
 
 def get_model_properties(world: World, name: str, response) -> None:
     """Names of what a model consists of, unscoped."""
-    if name not in world.models:
+    part = find_part(world.models.values(), name)
+    if part is None:
         raise ServiceError("GetModelProperties: model does not exist")
-    description = world.models[name].description
-    response.body_names = [link.name for link in description.links]
-    response.geom_names = [
-        collision.name for link in description.links for collision in link.collisions]
-    response.joint_names = [joint.name for joint in description.joints]
-    response.child_model_names = list(description.child_models)
-    response.is_static = description.static
+    response.parent_model_name = part.parent_name
+    response.body_names = [part.unscoped(link.name) for link in part.links()]
+    response.geom_names = [collision.name for link in part.links()
+                           for collision in link.description.collisions]
+    response.joint_names = [part.unscoped(joint.name) for joint in part.joints()]
+    response.child_model_names = part.child_names
+    response.is_static = part.model.static
     done(response, "GetModelProperties: got properties")

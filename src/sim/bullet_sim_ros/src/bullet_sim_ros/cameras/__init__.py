@@ -1,0 +1,1 @@
+"""What all camera plugins share: tags, topics, encodings, CameraInfo."""

@@ -1,0 +1,89 @@
+"""The tags that all camera plugins know."""
+
+from __future__ import annotations
+
+import logging
+import math
+from typing import TYPE_CHECKING
+
+from sensor_msgs.msg import CameraInfo
+
+from bullet_sim.description import CameraDescription
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.plugins.host import Host
+
+log = logging.getLogger("bullet_sim.plugins")
+
+_DISTORTION = ("K1", "K2", "T1", "T2", "K3")  # the order of CameraInfo's D
+_SAME_FOCAL_PX = 1e-3
+_SAME_DISTORTION = 1e-6  # many files write 1e-8 for none
+
+
+class CameraSettings:
+    """What a `<plugin>` says of one camera.
+
+    `suffix` is a camera's own part of the namespace in a pair, `baseline` (m) its distance from the
+    other one; without it `<hackBaseline>` counts. `<CxPrime>` is read by nobody, as upstream.
+    """
+
+    def __init__(self, host: Host, description: CameraDescription, suffix: str = "",
+                 baseline: float | None = None):
+        p = host.parameters
+        self._host = host
+        self._description = description
+        self.camera_name = p.text("cameraName") + suffix
+        self.namespace = names.join(p.namespace(missing="/", empty=host.model.name),
+                                    self.camera_name)
+        self.frame = names.frame(params.tf_prefix(self.namespace), p.text("frameName"))
+        self.image_topic = self.topic("imageTopicName", "image_raw")
+        self.info_topic = self.topic("cameraInfoTopicName", "camera_info")
+        self.rate_hz = p.number("updateRate", 0.0)
+        self.encoding = self._encoding()
+        self._info = convert.camera_info_to_msg(
+            description, 0.0, self.frame, centre_x=p.number("Cx", 0.0),
+            centre_y=p.number("Cy", 0.0), focal_length=self._focal_length_px(),
+            baseline=p.number("hackBaseline", 0.0) if baseline is None else baseline,
+            distortion=self._distortion())
+
+    def topic(self, tag: str, default: str) -> str:
+        """The topic that a tag names, in the camera's namespace."""
+        return names.join(self.namespace, self._host.parameters.text(tag, default))
+
+    def info(self) -> CameraInfo:
+        """The calibration, without a stamp."""
+        return self._info
+
+    def _encoding(self) -> str:
+        format = self._description.format
+        if format not in ENCODINGS:
+            log.error("%s: image format %s is not supported; there are %s; %s is used",
+                      self._host.describe(), format, ", ".join(ENCODINGS), UNKNOWN_FORMAT)
+        return ENCODINGS.get(format, UNKNOWN_FORMAT)
+
+    def _focal_length_px(self) -> float:
+        """As written, 0 for the picture's own."""
+        written = self._host.parameters.number("focalLength", 0.0)
+        camera = self._description
+        drawn = camera.width / (2 * math.tan(camera.horizontal_fov / 2))
+        if written and abs(written - drawn) > _SAME_FOCAL_PX:
+            log.warning(
+                "%s: <focalLength> is %g, but pictures of %d px with a <horizontal_fov> of %g rad "
+                "have %g; only camera_info tells the former: leave the tag out", self._host.
+                describe(), written, camera.width, camera.horizontal_fov, drawn)
+        return written
+
+    def _distortion(self) -> tuple[float, ...]:
+        p, drawn = self._host.parameters, self._description.distortion
+        if p.flag("autoDistortion", False):
+            return drawn
+        written = tuple(p.number(f"distortion{tag}", 0.0) for tag in _DISTORTION)
+        if max(abs(a - b) for a, b in zip(written, drawn, strict=True)) > _SAME_DISTORTION:
+            log.warning(
+                "%s: camera_info says D = %s by <distortionK1> and the like, but the picture is "
+                "drawn by the <distortion> of the sensor's <camera>, %s; "
+                "<autoDistortion>true</autoDistortion> makes them agree", self._host.describe(),
+                list(written), list(drawn))
+        return written

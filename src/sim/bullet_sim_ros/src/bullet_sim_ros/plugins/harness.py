@@ -1,0 +1,65 @@
+"""libgazebo_ros_harness.so: a model hangs on a winch until it is let go."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from xml.etree.ElementTree import Element
+
+from std_msgs.msg import Bool, Float32
+
+from bullet_sim.drives.harness import Harness
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_harness.so")
+class HarnessPlugin:
+    """The winch keeps its speed without the PIDs of the file, and the model does not swing."""
+
+    def __init__(self, host: Host):
+        self._host = host
+        element = host.description.element
+        joints = {joint.get("name", ""): joint for joint in element.findall("joint")}
+        if not joints:
+            raise PluginError("it needs a <joint>")
+        held, winch = (self._joint(joints, path) for path in ("detach", "winch/joint"))
+        link = host.model.link((held.findtext("child") or "").strip())
+        self._harness = Harness(host.world, link, self._axis(winch))
+        topics = names.join(f"/{host.model.name}", "harness")
+        host.subscribe(names.join(topics, "velocity"), Float32, self._take_speed, queue_size=1)
+        host.subscribe(names.join(topics, "detach"), Bool, self._take_detach, queue_size=1)
+        host.each_step(self._harness.update)
+        host.on_close(self._harness.detach)
+
+    def _joint(self, joints: dict[str, Element], path: str) -> Element:
+        """The joint that a tag names, else the first one."""
+        name = (self._host.description.element.findtext(path) or "").strip()
+        first = next(iter(joints))
+        if name not in joints:
+            log.warning("%s: <%s> is %r; there are: %s; %s is used", self._host.describe(), path,
+                        name, ", ".join(joints), first)
+            return joints[first]
+        return joints[name]
+
+    @staticmethod
+    def _axis(joint: Element) -> tuple[float, float, float]:
+        text = joint.findtext("axis/xyz") or "0 0 1"
+        try:
+            x, y, z = (float(part) for part in text.split())
+        except ValueError:
+            raise PluginError(f"<axis><xyz> is {text!r}, which is not three numbers") from None
+        return (x, y, z)
+
+    def _take_speed(self, msg: Float32) -> Callable[[], None] | None:
+        if not abs(msg.data) <= convert.LARGEST:
+            log.warning("%s: a speed that is not finite is ignored", self._host.describe())
+            return None
+        return lambda: self._harness.command(msg.data)
+
+    def _take_detach(self, msg: Bool) -> Callable[[], None] | None:
+        return self._harness.detach if msg.data else None

@@ -1,0 +1,83 @@
+"""libgazebo_ros_joint_pose_trajectory.so: joints are put where a JointTrajectory says."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from gazebo_msgs.srv import SetJointTrajectory, SetJointTrajectoryResponse
+from trajectory_msgs.msg import JointTrajectory
+
+from bullet_sim.drives.joint_poses import JointPose, JointPoses
+from bullet_sim.errors import SimulationError
+from bullet_sim.model import Link, Model
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.errors import PluginError, told
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+INERTIAL = ("world", "/map", "map")
+
+
+@plugin("libgazebo_ros_joint_pose_trajectory.so")
+class JointPoseTrajectoryPlugin:
+    """While it plays, only its own model stands outside physics (upstream stops the world's).
+
+    As upstream has it, each point's time_from_start is how long it is shown. The service is there,
+    which upstream leaves out when it is built.
+    """
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._host = host
+        namespace = p.namespace(missing="/", empty="/")
+        self._poses = JointPoses(host.world)
+        host.subscribe(names.join(namespace, p.text("topicName", "set_joint_trajectory")),
+                       JointTrajectory, self._take, queue_size=100)
+        host.serve(names.join(namespace, p.text("serviceName", "set_joint_trajectory")),
+                   SetJointTrajectory, self._serve)
+        host.each_step(self._poses.update)
+        host.on_reset(self._poses.stop)
+
+    def _take(self, msg: JointTrajectory) -> Callable[[], None]:
+        def play() -> None:
+            try:
+                self._play(msg, None)
+            except SimulationError as error:
+                log.error("%s: %s", self._host.describe(), told(error))
+        return play
+
+    def _serve(self, request) -> SetJointTrajectoryResponse:
+        def play() -> SetJointTrajectoryResponse:
+            model = self._host.world.models.get(request.model_name)
+            try:
+                if request.set_model_pose and not convert.is_sane(request.model_pose):
+                    raise PluginError(f"model_pose must be finite, up to {convert.LARGEST:g}")
+                self._play(request.joint_trajectory, model,
+                           request.model_pose if request.set_model_pose else None)
+            except SimulationError as error:
+                return SetJointTrajectoryResponse(False, told(error))
+            return SetJointTrajectoryResponse(True, "SetJointTrajectory: trajectory set")
+        return self._host.shared.mailbox.call(play)
+
+    def _play(self, msg: JointTrajectory, model: Model | None, pose=None) -> None:
+        held = self._held(msg.header.frame_id)
+        model = model or (held.model if held else self._host.model)
+        for number, point in enumerate(msg.points):
+            if len(point.positions) != len(msg.joint_names):
+                raise PluginError(f"point {number} of the trajectory has {len(point.positions)} "
+                                  f"positions for {len(msg.joint_names)} joints")
+            if not all(abs(value) <= convert.LARGEST for value in point.positions):
+                raise PluginError(f"point {number} of the trajectory is not finite, or beyond "
+                                  f"{convert.LARGEST:g}")
+        if pose is not None:
+            model.set_pose(convert.pose_from_msg(pose))
+        points = [JointPose(tuple(point.positions), point.time_from_start.to_sec())
+                  for point in msg.points]
+        self._poses.play(model, msg.joint_names, points, msg.header.stamp.to_sec(),
+                         held if held and held.model is model else None)
+
+    def _held(self, frame: str) -> Link | None:
+        return None if frame in INERTIAL else self._host.world.link(frame)

@@ -1,0 +1,91 @@
+"""libgazebo_ros_kobuki.so: TurtleBot2's base with wheels, gyroscope, bumpers and cliff sensors."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from geometry_msgs.msg import Twist
+from kobuki_msgs.msg import MotorPower
+from std_msgs.msg import Empty
+
+from bullet_sim.description import SensorDescription
+from bullet_sim.drives.kobuki import Kobuki
+from bullet_sim.model import Link
+from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic
+from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+RATE = 50.0  # Hz: what the real base does; upstream publishes at each step
+SIDES = ("left", "center", "right")
+
+
+@plugin("libgazebo_ros_kobuki.so")
+class KobukiPlugin:
+    """Commands, events and the gyroscope are below NAMESPACE/mobile_base, the rest in NAMESPACE."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._host = host
+        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+        prefix = params.below(names.join(namespace, "base_prefix"))
+        base = names.join(namespace, str(prefix or "mobile_base"))
+        imu = ImuSensor(host.world, *self._sensor(p.required("imu_name")))
+        self._kobuki = Kobuki(
+            host.world, self._joint("left"), self._joint("right"), imu, self._number("torque"),
+            self._number("wheel_separation"), self._number("wheel_diameter"),
+            self._number("velocity_command_timeout"))
+        self._output = KobukiOutput(host, self._kobuki, namespace, base,
+                                    p.flag("publish_tf", False))
+        threshold = self._number("cliff_detection_threshold")
+        cliffs = [CliffTopic(host, base, side, threshold,
+                             *self._sensor(p.required(f"cliff_sensor_{side}_name")))
+                  for side in SIDES]
+        bumper = BumperTopic(host, base, self._sensor(p.required("bumper_name"))[0])
+        self._subscribe(base)
+        host.each_step(self._kobuki.update)
+        host.every(RATE, self._output.publish)
+        for events in (bumper, *cliffs):
+            host.every(RATE, events.look, events.wanted)
+        host.on_reset(self._kobuki.reset)
+
+    def _subscribe(self, base: str) -> None:
+        for name, kind, take in (("velocity", Twist, self._take_velocity),
+                                 ("motor_power", MotorPower, self._take_power),
+                                 ("reset_odometry", Empty, self._take_reset)):
+            self._host.subscribe(names.join(base, f"commands/{name}"), kind, take, queue_size=10)
+
+    def _number(self, tag: str) -> float:
+        self._host.parameters.required(tag)
+        return self._host.parameters.number(tag, 0.0)
+
+    def _joint(self, side: str):
+        return self._host.model.joint(self._host.parameters.required(f"{side}_wheel_joint_name"))
+
+    def _sensor(self, name: str) -> tuple[Link, SensorDescription]:
+        """A sensor of the model by its name."""
+        found = {sensor.name: (link, sensor) for link in self._host.model.links.values()
+                 for sensor in link.description.sensors}
+        if name not in found:
+            raise PluginError(f"the model has no sensor {name!r}; there are: "
+                              f"{', '.join(found) or 'none'}")
+        return found[name]
+
+    def _take_velocity(self, msg: Twist) -> Callable[[], None] | None:
+        if not convert.is_sane(msg):
+            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
+                        self._host.describe(), convert.LARGEST)
+            return None
+        return lambda: self._kobuki.command(msg.linear.x, msg.angular.z)
+
+    def _take_power(self, msg: MotorPower) -> Callable[[], None]:
+        return lambda: self._kobuki.switch(msg.state == MotorPower.ON)
+
+    def _take_reset(self, _msg: Empty) -> Callable[[], None]:
+        return self._kobuki.reset_odometry

@@ -1,0 +1,62 @@
+"""libgazebo_ros_link_attacher.so: a world plugin whose services tie links together."""
+
+from __future__ import annotations
+
+import logging
+
+from gazebo_ros_link_attacher.srv import Attach, AttachResponse
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.physics.attachments import Attachment
+from bullet_sim_ros import names
+from bullet_sim_ros.errors import told
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+NAMESPACE = "/link_attacher_node"
+Ends = tuple[str, str, str, str]  # model, link, other model, its link
+
+
+@plugin("libgazebo_ros_link_attacher.so")
+class LinkAttacherPlugin:
+    """What is attached stays as it is to each other (upstream pulls the two origins together)."""
+
+    def __init__(self, host: Host):
+        self._host = host
+        self._held: dict[Ends, Attachment] = {}
+        for name, action in (("attach", self._attach), ("detach", self._detach)):
+            host.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
+        host.on_close(self._let_go)
+        host.on_reset(self._let_go)
+
+    def _handler(self, name: str, action):
+        def serve(request) -> AttachResponse:
+            ends = (request.model_name_1, request.link_name_1,
+                    request.model_name_2, request.link_name_2)
+            try:
+                return AttachResponse(self._host.shared.mailbox.call(lambda: action(ends)))
+            except SimulationError as error:
+                log.error("%s: cannot %s: %s", self._host.describe(), name, told(error))
+                return AttachResponse(False)
+        return serve
+
+    def _attach(self, ends: Ends) -> bool:
+        world = self._host.world
+        first, second = (world.model(ends[at]).link(ends[at + 1]) for at in (0, 2))
+        self._detach(ends)
+        self._held[ends] = second.attach(first)
+        return True
+
+    def _detach(self, ends: Ends) -> bool:
+        """Upstream answers that it went well only if there is something to part."""
+        attachment = self._held.pop(ends, None)
+        if attachment is None:
+            return False
+        attachment.release()
+        return True
+
+    def _let_go(self) -> None:
+        while self._held:
+            self._held.popitem()[1].release()

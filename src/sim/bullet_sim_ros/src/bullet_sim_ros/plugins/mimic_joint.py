@@ -1,0 +1,58 @@
+"""libroboticsgroup_gazebo_mimic_joint_plugin.so and its kin: a joint follows another one."""
+
+from __future__ import annotations
+
+import logging
+
+from bullet_sim.control.pid import Pid
+from bullet_sim.drives.mimic import MimicJoint, MimicParameters
+from bullet_sim_ros import names
+from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libroboticsgroup_gazebo_mimic_joint_plugin.so",
+        "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
+        "libgazebo_mimic_joint_plugin.so")
+class MimicJointPlugin:
+    """Held by a strong motor, so that it can grip (upstream puts it in place, through things)."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._world = host.world
+        leader, follower = (host.model.joint(p.required(tag)) for tag in ("joint", "mimicJoint"))
+        self._mimic = MimicJoint(leader, follower, MimicParameters(
+            p.number("multiplier", 1.0), p.number("offset", 0.0), p.number("sensitiveness", 0.0),
+            p.number("maxEffort", 1.0)), self._pid(host, follower.name))
+        host.each_step(self._follow)
+        host.on_reset(self._mimic.reset)
+
+    @staticmethod
+    def _pid(host: Host, joint: str) -> Pid | None:
+        p = host.parameters
+        # In files of older versions the tag is empty: that it is there says it all.
+        if not p.has("hasPID") or not p.flag("hasPID", True):
+            return None
+        namespace = p.namespace(missing="/", empty="/")
+        gains = read_joint_gains(namespace, [joint])
+        if joint not in gains:
+            where = names.join(namespace, f"{GAINS}/{joint}")
+            log.warning("%s: <hasPID>, but there is no parameter %s/p: the joint is held without",
+                        host.describe(), where)
+            return None
+        return Pid(gains[joint])
+
+    def _follow(self) -> None:
+        self._mimic.update(self._world.timestep)
+
+
+@plugin("libroboticsgroup_gazebo_disable_link_plugin.so",
+        "libroboticsgroup_upatras_gazebo_disable_link_plugin.so")
+class DisableLinkPlugin:
+    """Only looks whether the link is there: in Gazebo, too, the first touch wakes it again."""
+
+    def __init__(self, host: Host):
+        host.model.link(host.parameters.required("link"))

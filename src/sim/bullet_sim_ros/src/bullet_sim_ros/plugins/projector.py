@@ -1,0 +1,29 @@
+"""libgazebo_ros_projector.so: its topics, without the light."""
+
+from __future__ import annotations
+
+import logging
+
+from std_msgs.msg import Int32, String
+
+from bullet_sim_ros import names
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_projector.so")
+class ProjectorPlugin:
+    """Takes what is sent, so that nodes find their subscriber; projected light is not drawn."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        namespace = p.namespace(missing="/", empty="/")
+        for tag, kind in (("textureTopicName", String), ("projectorTopicName", Int32)):
+            topic = p.text(tag)
+            if topic:
+                host.subscribe(names.join(namespace, topic), kind, lambda _message: None,
+                               queue_size=1)
+        log.warning("%s: topics are there, but light of projector %s is not drawn",
+                    host.describe(), p.text("projector", "(no name)"))

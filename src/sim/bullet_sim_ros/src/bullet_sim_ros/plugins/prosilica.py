@@ -1,0 +1,34 @@
+"""libgazebo_ros_prosilica.so: a camera that streams; being asked for single pictures is absent."""
+
+from __future__ import annotations
+
+import logging
+
+from bullet_sim_ros import params
+from bullet_sim_ros.cameras.eye import Eye
+from bullet_sim_ros.cameras.eyes import Eyes
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+STREAMING, POLLED = "streaming", "polled"
+
+
+@plugin("libgazebo_ros_prosilica.so")
+class ProsilicaPlugin:
+    """`trigger_mode` is searched for upwards from the camera's namespace, once."""
+
+    def __init__(self, host: Host):
+        eye = Eye(host)
+        name = params.find_upwards(eye.settings.namespace, "trigger_mode")
+        mode = str(params.below(name)) if name else STREAMING
+        if mode == POLLED:
+            log.warning("%s: %s is %s, and polled_camera/GetPolledImage is not offered here: there "
+                        "will be no pictures; set it to %s", host.describe(), name, POLLED,
+                        STREAMING)
+            return
+        if mode != STREAMING:
+            log.error("%s: %s is %r; there are %s and %s; %s is used", host.describe(), name, mode,
+                      STREAMING, POLLED, STREAMING)
+        Eyes(host, [eye]).look_at_rate()

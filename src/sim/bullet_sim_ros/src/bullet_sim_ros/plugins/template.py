@@ -1,0 +1,14 @@
+"""libgazebo_ros_template.so: an example to copy from; it loads and does nothing."""
+
+from __future__ import annotations
+
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+
+@plugin("libgazebo_ros_template.so")
+class TemplatePlugin:
+    """In a model or in the world."""
+
+    def __init__(self, host: Host):
+        del host

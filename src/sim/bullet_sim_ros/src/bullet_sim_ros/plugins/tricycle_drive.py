@@ -1,0 +1,109 @@
+"""libgazebo_ros_tricycle_drive.so: speed and steering angle in; odometry, tf, joint states out."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from geometry_msgs.msg import TransformStamped, Twist
+from sensor_msgs.msg import JointState
+
+from bullet_sim.drives.tricycle import Tricycle, TricycleParameters
+from bullet_sim.model import Joint
+from bullet_sim.sensors.joint_states import sample_joints
+from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.logged_parameters import LoggedParameters
+from bullet_sim_ros.plugins.odometry_output import OdometryOutput
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_tricycle_drive.so")
+class TricycleDrivePlugin:
+    """Encoders turn left for left, and braking brakes (upstream has both the other way round).
+
+    A reset of the simulation stops it and sets the encoders to zero (upstream drives on).
+    """
+
+    def __init__(self, host: Host):
+        self._host = host
+        namespace = host.parameters.namespace(missing=host.model.name, empty=host.model.name)
+        p = LoggedParameters(host.parameters, "TricycleDrive", namespace)
+        self._joints = self._find_joints(p)
+        acceleration = p.number("wheelAcceleration", 0.0)
+        self._torque = p.number("wheelTorque", 5.0)
+        self._drive = Tricycle(*self._joints[:2], TricycleParameters(
+            p.number("actuatedWheelDiameter", 0.15), self._torque, acceleration,
+            p.number("wheelDeceleration", acceleration), p.number("wheelSpeedTolerance", 0.01),
+            p.number("steeringSpeed", 0.0), p.number("steeringAngleTolerance", 0.01)))
+        self._encoders = WheelOdometry(p.number("encoderWheelSeparation", 0.5),
+                                       p.number("encoderWheelDiameter", 0.15), signed=True)
+        self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
+        self._updated = host.world.time
+        self._wheel_tf = p.flag("publishWheelTF", False)
+        self._states = host.advertise(
+            names.join(namespace, "joint_states"), JointState, queue_size=1000,
+        ) if p.flag("publishWheelJointState", False) else None
+        self._output = OdometryOutput(host, namespace, "base_link")
+        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                       self._take_command, queue_size=1, tcp_nodelay=True)
+        if not self._true:
+            host.each_step(self._count_wheels)
+        host.every(p.number("updateRate", 100.0), self._update)
+        host.on_reset(self._restart)
+
+    def _find_joints(self, p: LoggedParameters) -> list[Joint]:
+        """Steering, driven wheel, left and right encoder."""
+        return [self._host.model.joint(p.text(tag, name)) for tag, name in (
+            ("steeringJoint", "front_steering_joint"), ("actuatedWheelJoint", "front_wheel_joint"),
+            ("encoderWheelLeftJoint", "left_wheel_joint"),
+            ("encoderWheelRightJoint", "right_wheel_joint"))]
+
+    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
+        if not convert.is_sane(msg):
+            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
+                        self._host.describe(), convert.LARGEST)
+            return None
+        return lambda: self._drive.command(msg.linear.x, msg.angular.z)
+
+    def _count_wheels(self) -> None:
+        left, right = self._joints[2:]
+        self._encoders.update(self._host.world.time, left.velocity, right.velocity)
+
+    def _update(self) -> None:
+        world = self._host.world
+        if self._output.wanted():
+            self._output.publish(self._reading(), self._wheel_transforms())
+        if self._states and self._states.get_num_connections():
+            self._publish_states()
+        self._drive.update(world.time - self._updated)
+        self._updated = world.time
+
+    def _reading(self) -> OdometryReading:
+        if self._true:
+            return true_odometry(self._host.world, self._host.model)
+        return self._encoders.sample()
+
+    def _wheel_transforms(self) -> tuple[TransformStamped, ...]:
+        """Upstream calls the frames by the joints' names and sees the links from the model."""
+        if not self._wheel_tf:
+            return ()
+        model, time, prefix = self._host.model, self._host.world.time, self._output.prefix
+        back = model.pose.inverse()
+        return tuple(convert.transform_to_msg(
+            back * model.links[joint.description.child].pose, time,
+            names.frame(prefix, joint.description.parent), names.frame(prefix, joint.name))
+            for joint in self._joints)
+
+    def _publish_states(self) -> None:
+        msg = convert.joints_to_msg(sample_joints(self._host.world, self._joints))
+        msg.effort = [self._torque, self._torque, 0.0, 0.0]  # the motors' limits, as upstream
+        self._states.publish(msg)
+
+    def _restart(self) -> None:
+        self._drive.stop()
+        self._encoders.restart(self._host.world.time)
+        self._updated = self._host.world.time

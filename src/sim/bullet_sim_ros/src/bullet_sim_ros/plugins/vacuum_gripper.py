@@ -1,0 +1,42 @@
+"""libgazebo_ros_vacuum_gripper.so: services on and off; what is near the link is held by it."""
+
+from __future__ import annotations
+
+from std_msgs.msg import Bool
+from std_srvs.srv import Empty, EmptyResponse
+
+from bullet_sim.drives.vacuum import Vacuum, VacuumParameters
+from bullet_sim_ros import names
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+
+@plugin("libgazebo_ros_vacuum_gripper.so")
+class VacuumGripperPlugin:
+    """A Bool at each step tells whether something is held."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        namespace = p.namespace(missing="/", empty="/")
+        self._vacuum = Vacuum(host.world, host.model.link(p.required("bodyName")),
+                              VacuumParameters(p.number("maxForce", 20.0),
+                                               p.number("maxDistance", 0.05),
+                                               p.number("minDistance", 0.01)))
+        self._on = self._held = False
+        self._mailbox = host.shared.mailbox
+        self._topic = host.advertise(names.join(namespace, p.required("topicName")), Bool,
+                                     queue_size=1)
+        host.serve(names.join(namespace, "on"), Empty, lambda _request: self._switch(True))
+        host.serve(names.join(namespace, "off"), Empty, lambda _request: self._switch(False))
+        host.each_step(self._pull)
+        host.every(0.0, lambda: self._topic.publish(Bool(self._held)),
+                   self._topic.get_num_connections)
+
+    def _switch(self, on: bool) -> EmptyResponse:
+        def switch() -> None:
+            self._on = on
+        self._mailbox.call(switch)
+        return EmptyResponse()
+
+    def _pull(self) -> None:
+        self._held = self._on and self._vacuum.update()

@@ -1,0 +1,75 @@
+"""libgazebo_ros_velodyne_laser.so and its GPU twin: a 3D lidar's sensor_msgs/PointCloud2."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from sensor_msgs.msg import PointCloud2, PointField
+
+from bullet_sim.sensors.laser import Laser
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"),
+                  ("ring", "<u2"), ("time", "<f4")])  # as velodyne_pointcloud lays points out
+TYPES = {"<f4": PointField.FLOAT32, "<u2": PointField.UINT16}
+FIELDS = [PointField(name, POINT.fields[name][1], TYPES[POINT.fields[name][0].str], 1)
+          for name in POINT.names]
+
+
+@plugin("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
+class VelodynePlugin:
+    """Points go column by column, the lowest ring first. A namespace other than / is the tf_prefix.
+
+    Both see collision shapes (upstream's GPU twin sees visuals).
+    """
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._host = host
+        self._laser = Laser(host.world, host.link, host.sensor)
+        self._nearest = max(p.number("min_range", 0.0), self._laser.ray.range_min)
+        self._farthest = min(p.number("max_range", math.inf), self._laser.ray.range_max)
+        self._faintest = p.number("min_intensity", -math.inf)
+        self._noise = p.deviation("gaussianNoise")
+        self._name = f"{host.link.scoped_name}::{host.sensor.name} points"
+        self._organised = p.flag("organize_cloud", False)
+        topic = p.topic("/points")
+        if not topic:
+            return
+        namespace = p.namespace(missing="/", empty="/")
+        prefix = namespace if namespace != "/" else params.own_tf_prefix(namespace)
+        self._frame = names.frame(prefix, p.text("frameName", "/world"))
+        self._clouds = host.advertise(names.join(namespace, topic), PointCloud2, queue_size=1)
+        host.every(host.sensor.update_rate, self._sweep, self._clouds.get_num_connections)
+
+    def _sweep(self) -> None:
+        points, seen = self._points()
+        if not self._organised:
+            points = points[seen][None]
+        msg = PointCloud2(height=points.shape[0], width=points.shape[1], fields=FIELDS)
+        msg.header.stamp, msg.header.frame_id = convert.stamp(self._host.world.time), self._frame
+        msg.point_step, msg.row_step = POINT.itemsize, POINT.itemsize * points.shape[1]
+        msg.is_dense = not self._organised
+        msg.data = points.tobytes()
+        self._clouds.publish(msg)
+
+    def _points(self) -> tuple[np.ndarray, np.ndarray]:
+        """POINTs (columns, rings), NaN where there is none, and where there is one."""
+        ranges, retro = self._laser.measure()
+        seen = self._within(ranges) & (retro >= self._faintest)
+        if self._noise:
+            ranges = ranges + self._host.world.random(self._name).normal(
+                0.0, self._noise, ranges.shape)
+            seen &= self._within(ranges)
+        points = np.zeros(ranges.shape, POINT)
+        places = self._laser.fan.directions * np.where(seen, ranges, np.nan)[..., None]
+        points["x"], points["y"], points["z"] = np.moveaxis(places, -1, 0)
+        points["intensity"] = np.where(seen, retro, np.nan)
+        points["ring"] = np.arange(len(ranges))[:, None]
+        return points.T, seen.T
+
+    def _within(self, ranges: np.ndarray) -> np.ndarray:
+        return (self._nearest < ranges) & (ranges < self._farthest)

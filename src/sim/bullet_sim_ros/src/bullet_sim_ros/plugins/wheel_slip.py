@@ -1,0 +1,25 @@
+"""libgazebo_ros_wheel_slip.so: read and checked; wheels keep the grip of their friction."""
+
+from __future__ import annotations
+
+import logging
+
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+@plugin("libgazebo_ros_wheel_slip.so", "libWheelSlipPlugin.so")
+class WheelSlipPlugin:
+    """The engine knows no slip that grows with the force; one warning says so."""
+
+    def __init__(self, host: Host):
+        wheels = host.description.element.findall("wheel")
+        if not wheels:
+            raise PluginError('it needs a <wheel link_name="...">')
+        for wheel in wheels:
+            host.model.link(wheel.get("link_name", ""))
+        log.warning("%s is read, but has no effect: wheels slip only beyond their friction",
+                    host.describe())

@@ -1,0 +1,60 @@
+"""Where a joint is; its stops, damping and motor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gazebo_msgs.srv import GetJointProperties, SetJointProperties
+
+from bullet_sim.model import Joint
+from bullet_sim.world import World
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.lookup import find_joint
+
+if TYPE_CHECKING:
+    from bullet_sim_ros.simulation import Simulation
+
+USED = ("damping", "hiStop", "loStop", "fmax", "vel")  # of gazebo_msgs/ODEJointProperties
+
+
+def offer_joint_services(simulation: Simulation) -> None:
+    """get_joint_properties, set_joint_properties."""
+    world, mailbox = simulation.world, simulation.mailbox
+    offer(mailbox, names.GET_JOINT_PROPERTIES, GetJointProperties,
+          lambda request, response: get_joint_properties(world, request.joint_name, response))
+    offer(mailbox, names.SET_JOINT_PROPERTIES, SetJointProperties,
+          lambda request, response: set_joint_properties(world, request, response))
+
+
+def get_joint_properties(world: World, name: str, response) -> None:
+    """Position and rate; the type is always REVOLUTE and no damping is told, as upstream."""
+    _, _, joint = find_joint(world, name, "GetJointProperties: joint not found")
+    response.type = response.REVOLUTE
+    response.position = [joint.position if joint else 0.0]
+    response.rate = [joint.velocity if joint else 0.0]
+    done(response, "GetJointProperties: got properties")
+
+
+def set_joint_properties(world: World, request, response) -> None:
+    """Empty arrays leave what is; of the others the first number counts, joints have one axis."""
+    _, _, joint = find_joint(world, request.joint_name, "SetJointProperties: joint not found")
+    config = request.ode_joint_config
+    values = {field: getattr(config, field)[0] for field in USED if getattr(config, field)}
+    if not all(abs(value) <= convert.LARGEST for value in values.values()):
+        raise ServiceError(
+            f"SetJointProperties: numbers must be finite and not beyond {convert.LARGEST:g}")
+    if joint is not None:
+        _change(joint, values)
+    done(response, "SetJointProperties: properties set")
+
+
+def _change(joint: Joint, values: dict[str, float]) -> None:
+    now = joint.description
+    lower, upper = values.get("loStop", now.lower), values.get("hiStop", now.upper)
+    damping = values.get("damping", now.damping)
+    if (lower, upper, damping) != (now.lower, now.upper, now.damping):
+        joint.change(lower, upper, damping)
+    if "fmax" in values or "vel" in values:
+        rate, effort = joint.motor
+        joint.drive_velocity(values.get("vel", rate), values.get("fmax", effort))

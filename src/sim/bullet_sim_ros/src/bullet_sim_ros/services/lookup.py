@@ -1,0 +1,52 @@
+"""Entities by the names that requests use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bullet_sim.description import JointDescription
+from bullet_sim.errors import UnknownName
+from bullet_sim.model import Joint, Link, Model
+from bullet_sim.physics.body import Twist
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+from bullet_sim_ros.services.answers import ServiceError
+
+LINK_UNKNOWN = "link not found, did you forget to scope the link by model name?"
+
+
+def find_link(world: World, name: str, missing: str) -> Link:
+    """A link by `model::link`, or by a name that is unique; ServiceError(`missing`) if none is.
+
+    A link that lumping of fixed joints took away is none, as in Gazebo.
+    """
+    try:
+        link = world.link(name)
+    except UnknownName:
+        raise ServiceError(missing) from None
+    if name not in (link.scoped_name, link.name):
+        raise ServiceError(missing)
+    return link
+
+
+def find_frame(world: World, name: str, missing: str) -> tuple[Pose, Twist]:
+    """Pose and twist of a reference frame; ServiceError(`missing`) if there is none."""
+    try:
+        return world.frame(name)
+    except UnknownName:
+        raise ServiceError(missing) from None
+
+
+def find_joint(world: World, name: str, missing: str) -> tuple[Model, JointDescription,
+                                                                Joint | None]:
+    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed."""
+    for model, description in _joints(world):
+        if name in (description.name, f"{model.name}::{description.name}"):
+            return model, description, model.joints.get(description.name)
+    raise ServiceError(missing)
+
+
+def _joints(world: World) -> Iterator[tuple[Model, JointDescription]]:
+    for model in world.models.values():
+        for description in model.description.joints:
+            yield model, description

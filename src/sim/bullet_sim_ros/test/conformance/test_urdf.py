@@ -1,0 +1,394 @@
+"""URDF by Gazebo's rules: links, joints, `<gazebo>` tags, lumping, materials."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from bullet_sim.description import Box, Cylinder, Sphere
+from bullet_sim.errors import FormatError
+from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.gazebo_materials import named_materials
+
+INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+BALL = '<{0}><geometry><sphere radius="0.1"/></geometry></{0}>'
+SHAPES = BALL.format("visual") + BALL.format("collision")
+
+
+def link(name, more="", mass=1):
+    return f'<link name="{name}"><inertial><mass value="{mass}"/>{INERTIA}</inertial>{more}</link>'
+
+
+def joint(name, parent, child, kind="fixed", more=""):
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f"{more}</joint>")
+
+
+def gazebo(content, reference=""):
+    about = f' reference="{reference}"' if reference else ""
+    return f"<gazebo{about}>{content}</gazebo>"
+
+
+def read(body, name="r"):
+    return load_model(f'<robot name="{name}">{body}</robot>', Resources())
+
+
+def surface_of(tag):
+    (part,) = read(link("a", SHAPES) + gazebo(tag, "a")).links[0].collisions
+    return part.surface
+
+
+def only_joint(kind, more="", extra=""):
+    (found,) = read(link("a") + link("b") + joint("j", "a", "b", kind, more) + extra).joints
+    return found
+
+
+LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
+HINGE = '<axis xyz="0 0 1"/>' + LIMIT
+
+
+# --- links
+
+def test_links_and_their_shapes():
+    # conforms: urdf link, urdf link/visual, urdf link/collision, urdf visual, urdf visual/origin
+    # conforms: urdf visual/geometry, urdf collision, urdf collision/origin, urdf collision/geometry
+    # conforms: urdf geometry, urdf geometry/box, urdf geometry/cylinder, urdf geometry/sphere
+    part = '<origin xyz="1 2 3" rpy="0 0 1.5"/><geometry>{}</geometry>'
+    shapes = ['<box size="1 2 3"/>', '<cylinder radius="1" length="2"/>', '<sphere radius="4"/>']
+    more = "".join(f"<{tag}>{part.format(shape)}</{tag}>"
+                   for shape in shapes for tag in ("visual", "collision"))
+    (found,) = read(link("a", more)).links
+    for things in (found.visuals, found.collisions):
+        assert [thing.geometry for thing in things] == [
+            Box((1, 2, 3)), Cylinder(1, 2), Sphere(4)]
+        assert things[0].pose.position == pytest.approx((1, 2, 3))
+        assert things[0].pose.rpy() == pytest.approx((0, 0, 1.5))
+
+
+def test_shapes_get_sdformats_names():
+    # conforms: URDF conversion/names of shapes
+    named = '<collision name="own"><geometry><sphere radius="1"/></geometry></collision>'
+    (found,) = read(link("a", SHAPES + BALL.format("visual") + named)).links
+    assert [part.name for part in found.visuals] == ["a_visual", "a_visual_1"]
+    first, own = found.collisions
+    assert first.name == "a_collision" and "own_collision" in own.name
+
+
+def test_a_capsule_is_a_tube_with_round_ends():
+    # conforms: urdf geometry/capsule
+    shape = '<capsule radius="0.1" length="0.6"/>'
+    part = f'<collision><origin xyz="1 0 0" rpy="1.5707963 0 0"/><geometry>{shape}</geometry>' \
+           "</collision>"
+    tube, one, other = read(link("a", part)).links[0].collisions
+    assert (tube.geometry, one.geometry, other.geometry) == (
+        Cylinder(0.1, 0.6), Sphere(0.1), Sphere(0.1))
+    assert tube.pose.position == pytest.approx((1, 0, 0))
+    assert {round(end.pose.position[1], 3) for end in (one, other)} == {-0.3, 0.3}
+
+
+def test_inertial():
+    # conforms: urdf link/inertial, urdf inertial, urdf inertial/mass, urdf inertial/inertia
+    # conforms: urdf inertial/origin
+    text = """<link name="a"><inertial><origin xyz="1 0 0"/><mass value="5"/>
+        <inertia ixx="1" ixy="0.1" ixz="0.2" iyy="2" iyz="0.3" izz="3"/></inertial></link>"""
+    inertial = read(text).links[0].inertial
+    assert (inertial.mass, inertial.pose.position) == (5, (1, 0, 0))
+    assert inertial.inertia == (1, 0.1, 0.2, 2, 0.3, 3)
+
+
+def test_links_without_mass_take_what_hangs_on_them_away(caplog):
+    # conforms: URDF conversion/links without inertial
+    model = read(link("a") + '<link name="b"/>' + link("c", mass=2)
+                 + joint("ab", "a", "b", "continuous") + joint("bc", "b", "c", "continuous"))
+    assert [found.name for found in model.links] == ["a"]
+    assert "link 'b' has no <inertial> or no mass and is left out, with c" in caplog.text
+    zero = read(link("a") + link("b", mass=0) + joint("ab", "a", "b", "continuous"))
+    assert len(zero.links) == 1
+
+
+def test_a_root_without_mass_lives_by_what_is_lumped_into_it():
+    # conforms: URDF conversion/fixed joints
+    model = read('<link name="foot"/>' + link("base", mass=3) + joint("j", "foot", "base"))
+    assert [found.name for found in model.links] == ["foot"]
+    assert model.links[0].inertial.mass == 3
+    assert model.lumped["base"][0] == "foot"
+
+
+def test_urdf_colours_are_not_drawn():
+    # conforms: urdf visual/material, urdf robot/material
+    text = """<material name="red"><color rgba="1 0 0 1"/></material>""" + link(
+        "a", '<visual><geometry><sphere radius="1"/></geometry><material name="red"/></visual>')
+    assert read(text).links[0].visuals[0].material is None
+
+
+def test_the_robots_own_origin_is_the_models_pose():
+    # conforms: urdf robot/origin
+    assert read(link("a") + '<origin xyz="1 2 3"/>').pose.position == (1, 2, 3)
+
+
+# --- joints
+
+@pytest.mark.parametrize("kind, made", [
+    ("revolute", "revolute"), ("continuous", "continuous"), ("prismatic", "prismatic")])
+def test_moving_joints(kind, made):
+    # conforms: urdf joint, urdf joint/parent, urdf joint/child, urdf joint/axis, urdf joint/origin
+    # conforms: URDF joint types/revolute, URDF joint types/continuous, URDF joint types/prismatic
+    # conforms: URDF joint types
+    origin = '<origin xyz="0 0 1" rpy="0 0 1"/>'
+    text = link("a") + link("b") + joint("j", "a", "b", kind, origin + HINGE)
+    model = read(text)
+    found = model.joints[0]
+    assert (found.type, found.parent, found.child, found.axis) == (made, "a", "b", (0, 0, 1))
+    assert model.links[1].pose.position == (0, 0, 1)
+    assert model.links[1].pose.rpy() == pytest.approx((0, 0, 1))
+
+
+@pytest.mark.parametrize("kind", ["floating", "planar"])
+def test_free_joints_are_no_joints(kind):
+    # conforms: URDF joint types/floating, URDF joint types/planar
+    model = read(link("a") + link("b") + joint("j", "a", "b", kind, '<axis xyz="0 0 1"/>'))
+    assert model.joints == () and len(model.links) == 2
+
+
+def test_limits_and_dynamics(caplog):
+    # conforms: urdf joint/limit, urdf joint/dynamics
+    found = only_joint("revolute", HINGE + '<dynamics damping="5" friction="6"/>')
+    assert (found.lower, found.upper, found.effort, found.velocity) == (-1, 2, 3, 4)
+    assert (found.damping, found.friction) == (5, 6)
+    turned = only_joint("revolute", HINGE.replace("-1", "9"))
+    assert (turned.lower, turned.upper) == (2, 9) and "switching the two" in caplog.text
+    assert only_joint("continuous", HINGE).upper >= 1e15
+
+
+def test_what_the_simulator_leaves_alone():
+    # conforms: urdf joint/mimic, urdf joint/safety_controller, urdf joint/calibration
+    more = """<mimic joint="k" multiplier="2"/><safety_controller k_velocity="1"/>
+        <calibration rising="0"/>"""
+    assert only_joint("revolute", HINGE + more) == only_joint("revolute", HINGE)
+
+
+def test_fixed_joints_are_lumped_with_their_shapes_masses_sensors():
+    # conforms: URDF conversion/fixed joints, URDF joint types/fixed, URDF conversion/lumped names
+    sensor = '<sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose></sensor>'
+    origin = '<origin xyz="0 0 2"/>'
+    model = read(link("a", SHAPES) + link("b", SHAPES) + joint("j", "a", "b", more=origin)
+                 + gazebo(sensor, "b"))
+    (found,) = model.links
+    assert found.inertial.mass == 2 and found.inertial.pose.position == (0, 0, 1)
+    assert [part.name for part in found.collisions] == [
+        "a_collision", "a_fixed_joint_lump__b_collision_1"]
+    assert [part.name for part in found.visuals] == [
+        "a_visual", "a_fixed_joint_lump__b_visual_1"]
+    assert found.visuals[1].pose.position == (0, 0, 2)
+    assert found.sensors[0].pose.position == (0, 0, 3)
+
+
+def test_a_link_named_world_is_the_world():
+    # conforms: URDF conversion/world link
+    model = read('<link name="world"/>' + link("a") + joint("j", "world", "a"))
+    assert [found.name for found in model.links] == ["a"]
+    assert (model.joints[0].parent, model.joints[0].type) == ("world", "fixed")
+
+
+def test_plugins_and_joints_follow_lumping():
+    # conforms: URDF conversion/plugins that name lumped links
+    # conforms: URDF conversion/joints that name lumped links
+    plugin = """<plugin name="p" filename="x"><bodyName>b</bodyName><frameName>b</frameName>
+        <xyzOffset>1 0 0</xyzOffset></plugin>"""
+    weld = '<link name="c"/><joint name="w" type="fixed"><parent>b</parent><child>c</child></joint>'
+    model = read(link("a") + link("b") + joint("j", "a", "b", more='<origin xyz="0 0 2"/>')
+                 + gazebo(plugin) + gazebo(weld))
+    element = model.plugins[0].element
+    assert element.findtext("bodyName") == element.findtext("frameName") == "a"
+    assert [float(word) for word in element.findtext("xyzOffset").split()] == [1, 0, 2]
+    assert (model.joints[0].parent, model.joints[0].child) == ("a", "c")
+
+
+def test_contact_sensors_follow_lumping():
+    # conforms: URDF conversion/contact sensors that name lumped collisions
+    sensor = """<sensor name="s" type="contact"><contact><collision>b_collision</collision>
+        </contact></sensor>"""
+    model = read(link("a", SHAPES) + link("b", SHAPES) + joint("j", "a", "b") + gazebo(sensor, "b"))
+    named = model.links[0].sensors[0].element.findtext("contact/collision")
+    assert named == "a_fixed_joint_lump__b_collision_1"
+
+
+# --- <gazebo>
+
+def test_robot_level_tags():
+    # conforms: urdf gazebo/static, urdf gazebo/plugin, urdf gazebo/self_collide
+    # conforms: urdf gazebo/link, urdf gazebo/joint
+    model = read(link("a") + gazebo("<static>YES</static><self_collide>true</self_collide>")
+                 + gazebo('<plugin name="p" filename="libx.so"/><link name="extra"/>'
+                          '<joint name="w" type="fixed"><parent>a</parent><child>extra</child>'
+                          "</joint>"))
+    assert model.static and model.self_collide
+    assert [plugin.filename for plugin in model.plugins] == ["libx.so"]
+    assert [found.name for found in model.links] == ["a", "extra"]
+    assert model.joints[0].name == "w"
+
+
+@pytest.mark.parametrize("tag, field, value", [
+    ("<mu1>0.3</mu1>", "mu", 0.3), ("<mu2>0.4</mu2>", "mu2", 0.4),
+    ('<mu1 value="0.5"/>', "mu", 0.5), ("<fdir1>0 1 0</fdir1>", "fdir1", (0, 1, 0)),
+    ("<kp>1e5</kp>", "kp", 1e5), ("<kd>7</kd>", "kd", 7),
+    ("<minDepth>0.002</minDepth>", "min_depth", 0.002), ("<maxVel>0.5</maxVel>", "max_vel", 0.5),
+])
+def test_surface_tags(tag, field, value):
+    # conforms: urdf gazebo@link/mu1, urdf gazebo@link/mu2, urdf gazebo@link/fdir1
+    # conforms: urdf gazebo@link/kp, urdf gazebo@link/kd
+    assert getattr(surface_of(tag), field) == value
+    assert getattr(surface_of(""), field) != value
+
+
+def test_blocks_for_one_link_accumulate():
+    # conforms: urdf gazebo@link
+    model = read(link("a", SHAPES) + gazebo("<mu1>0.3</mu1>", "a") + gazebo("<mu2>0.4</mu2>", "a"))
+    surface = model.links[0].collisions[0].surface
+    assert (surface.mu, surface.mu2) == (0.3, 0.4)
+
+
+def test_link_tags():
+    # conforms: urdf gazebo@link/turnGravityOff, urdf gazebo@link/gravity
+    # conforms: urdf gazebo@link/dampingFactor
+    # conforms: urdf gazebo@link/selfCollide, urdf gazebo@link/laserRetro
+    # conforms: urdf gazebo@link/sensor, urdf gazebo@link/light
+    usual = read(link("a", SHAPES)).links[0]
+    found = read(link("a", SHAPES) + gazebo("""<turnGravityOff>true</turnGravityOff>
+        <dampingFactor>0.2</dampingFactor><selfCollide>1</selfCollide><laserRetro>9</laserRetro>
+        <sensor name="s" type="ray"/><light name="l" type="spot"/>""", "a")).links[0]
+    assert (usual.gravity, usual.self_collide, usual.angular_damping) == (True, False, 0)
+    assert (found.gravity, found.self_collide, found.angular_damping) == (False, True, 0.2)
+    assert found.linear_damping == 0.2 and found.collisions[0].laser_retro == 9
+    assert (found.sensors[0].type, found.lights[0].type) == ("ray", "spot")
+    assert not read(link("a") + gazebo("<gravity>0</gravity>", "a")).links[0].gravity
+
+
+def test_material_visual_and_collision_tags():
+    # conforms: urdf gazebo@link/material, urdf gazebo@link/visual, urdf gazebo@link/collision
+    named = read(link("a", SHAPES) + gazebo("<material>Gazebo/Blue</material>", "a")).links[0]
+    assert named.visuals[0].material.diffuse == (0, 0, 1, 1)
+    written = read(link("a", SHAPES) + gazebo("""
+        <material><ambient>1 0 0 1</ambient></material>
+        <visual><transparency>0.5</transparency></visual>
+        <collision><surface><bounce><restitution_coefficient>0.7</restitution_coefficient>
+        <threshold>0</threshold></bounce></surface></collision>""", "a")).links[0]
+    assert written.visuals[0].material.ambient == (1, 0, 0, 1)
+    assert written.visuals[0].transparency == 0.5
+    assert written.collisions[0].surface.restitution == 0.7
+
+
+def test_lumped_extensions_know_their_shapes_by_name():
+    # conforms: URDF conversion/extensions of lumped links
+    own = '<collision name="side"><geometry><sphere radius="1"/></geometry></collision>'
+    model = read(link("a", SHAPES) + link("b", SHAPES + own) + joint("j", "a", "b")
+                 + gazebo("<mu1>0.1</mu1><material>Gazebo/Red</material>", "b"))
+    assert [part.surface.mu for part in model.links[0].collisions] == [1.0, 0.1, 1.0]
+    assert model.links[0].visuals[0].material is None
+    assert model.links[0].visuals[1].material.diffuse == (1, 0, 0, 1)
+
+
+def test_tags_that_refer_to_nothing_are_one_warning(caplog):
+    # conforms: URDF conversion/references to nothing
+    read(link("a") + gazebo("<mu1>1</mu1>", "wheeel") + gazebo("<mu2>1</mu2>", "wheeel"))
+    assert caplog.text.count("'wheeel'") == 1
+
+
+def test_joint_tags():
+    # conforms: urdf gazebo@joint, urdf gazebo@joint/provideFeedback
+    # conforms: urdf gazebo@joint/springReference, urdf gazebo@joint/springStiffness
+    usual = only_joint("revolute", HINGE)
+    found = only_joint("revolute", HINGE, gazebo("""<provideFeedback>true</provideFeedback>
+        <springReference>0.5</springReference><springStiffness>6</springStiffness>""", "j"))
+    assert not usual.provide_feedback and found.provide_feedback
+    assert (found.spring_reference, found.spring_stiffness) == (0.5, 6)
+
+
+def test_fixed_joints_that_are_kept():
+    # conforms: urdf gazebo@joint/preserveFixedJoint, urdf gazebo@joint/disableFixedJointLumping
+    disable = "<disableFixedJointLumping>true</disableFixedJointLumping>"
+    preserve = "<preserveFixedJoint>true</preserveFixedJoint>"
+    text = link("a") + link("b") + joint("j", "a", "b")
+    stiff = read(text + gazebo(disable, "j")).joints[0]
+    assert (stiff.type, stiff.lower, stiff.upper) == ("revolute", 0, 0)
+    assert read(text + gazebo(disable + preserve, "j")).joints[0].type == "fixed"
+    assert read(text).joints == ()
+
+
+# --- materials
+
+GREY = (0.5, 0.5, 0.5)
+ORANGE = (1, 0.5088, 0.0468)
+COLOURS = {
+    "Grey": (0.7, 0.7, 0.7), "DarkGrey": (0.175, 0.175, 0.175), "White": (1, 1, 1),
+    "FlatBlack": (0.1, 0.1, 0.1), "Black": (0, 0, 0), "Red": (1, 0, 0),
+    "RedBright": (0.87, 0.26, 0.07), "Green": (0, 1, 0), "Blue": (0, 0, 1), "SkyBlue": (0, 0, 1),
+    "Yellow": (1, 1, 0), "ZincYellow": (0.9725, 0.9529, 0.2078), "DarkYellow": (0.7, 0.7, 0),
+    "Purple": (1, 0, 1), "Turquoise": (0, 1, 1), "Orange": ORANGE, "Indigo": (0.33, 0, 0.5),
+    "Gold": (0.8, 0.64869, 0.120759), "Pioneer2Body": (0.681, 0.0009, 0.0009),
+    "JointAnchor": (1, 1, 1), "LightBlueLaser": (0.5, 0.5, 1, 0.4), "BlueLaser": (0, 0, 1, 0.4),
+    "RedGlow": (1, 0, 0), "GreenGlow": (0, 1, 0), "BlueGlow": (0, 0, 1), "YellowGlow": (1, 1, 0),
+    "PurpleGlow": (1, 0, 1), "TurquoiseGlow": (0, 1, 1), "WhiteGlow": (1, 1, 1),
+    "RedTransparent": (1, 0, 0, 0.5), "GreenTransparent": (0, 1, 0, 0.5),
+    "BlueTransparent": (0, 0, 1, 0.5), "YellowTransparent": (1, 1, 0, 0.5),
+    "GreyTransparent": (*GREY, 0.5), "RedTransparentOverlay": (1, 0, 0, 0.5),
+    "GreenTransparentOverlay": (0, 1, 0, 0.5), "BlueTransparentOverlay": (0, 0, 1, 0.5),
+    "OrangeTransparentOverlay": (*ORANGE, 0.8),
+    "DarkOrangeTransparentOverlay": (0.6, 0.305, 0.028, 0.8),
+    "DarkMagentaTransparent": (0.6, 0, 0.6, 0.5), "OrangeTransparent": (1, 0.44, 0, 0.4),
+    "LightOn": (0, 1, 0), "LightOff": (1, 0, 0),
+}
+PICTURED = """WoodFloor CeilingTiled PaintedWall WoodPallet Wood Bricks WindowFrame Road Residential
+    Tertiary Pedestrian Footway Motorway Lanes_6 Trunk Lanes_4 Primary Lanes_2 Secondary Lane_1
+    Steps PioneerBody CoM CloudySky GreyGradientSky""".split()
+
+
+@pytest.mark.parametrize("name", COLOURS)
+def test_plain_materials_by_name(name):
+    # conforms: Gazebo/* materials, Gazebo/* materials/plain colours
+    text = link("a", SHAPES) + gazebo(f"<material>Gazebo/{name}</material>", "a")
+    material = read(text).links[0].visuals[0].material
+    assert material.diffuse == pytest.approx((*COLOURS[name], 1)[:4])
+    assert (sum(material.emissive[:3]) > 0) == name.endswith(("Glow", "LightOn", "LightOff"))
+    assert material.lighting == ("Overlay" not in name and name != "JointAnchor")
+
+
+@pytest.mark.parametrize("name", PICTURED)
+def test_pictured_materials_have_a_plain_colour(name, caplog):
+    # conforms: Gazebo/* materials/textures
+    text = link("a", SHAPES) + gazebo(f"<material>Gazebo/{name}</material>", "a")
+    assert read(text).links[0].visuals[0].material.diffuse[3] == 1
+    assert not caplog.records
+
+
+def test_no_material_is_missed():
+    # conforms: Gazebo/* materials
+    assert set(named_materials()) == {f"Gazebo/{name}" for name in [*COLOURS, *PICTURED]}
+
+
+def test_an_unknown_material_is_one_warning_and_the_default_surface(caplog):
+    # conforms: Gazebo/* materials/unknown names
+    text = link("a", SHAPES) + gazebo("<material>Gazebo/Pink</material>", "a")
+    assert read(text).links[0].visuals[0].material is None
+    assert caplog.text.count("Gazebo/Pink") == 1
+
+
+# --- in the world, and what cannot be
+
+def test_a_robot_drives_through_spawn(bench):
+    # conforms: urdf robot, urdf robot/link, urdf robot/joint, urdf robot/gazebo
+    spin = joint("j", "a", "b", "continuous", '<axis xyz="0 0 1"/>')
+    robot = f'<robot name="r">{link("a", SHAPES)}{link("b", SHAPES)}{spin}</robot>'
+    model = bench.spawn(robot)
+    bench.run(0.1)
+    assert sorted(model.links) == ["a", "b"] and list(model.joints) == ["j"]
+    assert all(math.isfinite(value) for value in model.pose.position)
+
+
+def test_a_chain_too_long_is_one_line():
+    # conforms: URDF conversion/limits of size
+    links = "".join(link(f"l{i}") for i in range(300))
+    joints = "".join(joint(f"j{i}", f"l{i}", f"l{i + 1}") for i in range(299))
+    with pytest.raises(FormatError, match="more than 200 joints one after another"):
+        read(links + joints)
