@@ -53,6 +53,8 @@ class Drive(unittest.TestCase):
             return list(self.told)
 
     def test_turns_away_across_the_seam_of_the_angles(self):
+        # conforms: turtlebot3_drive, turtlebot3_drive/cmd_vel_topic_name, turtlebot3_drive/scan
+        # conforms: turtlebot3_drive/odom
         self.show()
         self.face(-170)
         self.wait_until_told(FORWARD)
