@@ -11,6 +11,7 @@ import signal
 import sys
 import tempfile
 import time
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,19 +107,18 @@ def _be_checked(path: Path, log: Path) -> None:
     """In the child: never returns."""
     # A little beyond what is allowed, so that what wants too much is found out and not the machine.
     resource.setrlimit(resource.RLIMIT_DATA, (2 * MEMORY, 2 * MEMORY))
-    output = os.open(log, os.O_WRONLY | os.O_CREAT)
-    os.dup2(output, 1)
-    os.dup2(output, 2)
+    output = log.open("w", encoding="utf-8")
+    os.dup2(output.fileno(), 1)
+    os.dup2(output.fileno(), 2)
+    sys.stdout = sys.stderr = output
     os.chdir(path.parent)
     code = 99
     try:
         code = command.main([str(path)])
-        sys.stdout.flush()
     except BaseException:
-        import traceback
         traceback.print_exc()
-        sys.stderr.flush()
     finally:
+        output.flush()
         os._exit(code)
 
 
