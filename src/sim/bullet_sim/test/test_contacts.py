@@ -5,8 +5,8 @@ import math
 import pytest
 
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose, conjugate, rotate
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 GRAVITY = 9.8

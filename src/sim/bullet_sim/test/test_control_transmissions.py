@@ -94,8 +94,7 @@ def test_facts_of_a_robot():
                                                    soft=SoftLimits(-0.5, 0.5, 10.0, 3.0))
     assert facts.limits("axle") == JointLimits()
     assert facts.limits("roll") == JointLimits(velocity=4.0, effort=5.0)
-    assert (facts.joint_type("axle"), facts.parent("axle"), facts.child("axle")) == (
-        "continuous", "arm", "wheel")
+    assert (facts.parent("axle"), facts.child("axle")) == ("arm", "wheel")
     assert facts.pose("axle").position == pytest.approx((1.0, 0.5, 0.0))
     assert facts.pose("axle").rpy()[2] == pytest.approx(math.pi / 2)
     assert (facts.wheel_radius("axle"), facts.wheel_radius("roll")) == (0.3, 0.2)

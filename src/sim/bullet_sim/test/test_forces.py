@@ -15,8 +15,8 @@ from bullet_sim.description import (
     WorldDescription,
 )
 from bullet_sim.forces import Effort, Span, Wrench
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 INERTIA = (0.1, 0.0, 0.0, 0.2, 0.0, 0.3)

@@ -21,7 +21,7 @@ from bullet_sim.description import (
     Sphere,
     Visual,
 )
-from bullet_sim.pose import Pose, quaternion_from_matrix
+from bullet_sim.pose import Pose
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.scene import Scene
@@ -31,7 +31,7 @@ UP = (0.0, 0.0, 1.0)
 DARK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
 LAMP = Material(diffuse=(1.0, 1.0, 1.0, 1.0), lighting=False)
 # Straight down, top of the picture towards +y, right towards +x.
-DOWN = quaternion_from_matrix(np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]))
+DOWN = (0.5, -0.5, -0.5, -0.5)
 
 
 @pytest.fixture(scope="module")
@@ -276,7 +276,7 @@ def test_moved_and_removed_links(renderer):
     assert middle(renderer.draw(scene, from_above())) == [255, 255, 255]
     scene.set_pose(("thing", "link"), Pose((100.0, 0.0, 0.0)))
     assert not renderer.draw(scene, from_above()).rgb.any()
-    scene.set_poses({("thing", "link"): Pose((0.0, 0.0, -1.0))})
+    scene.set_pose(("thing", "link"), Pose((0.0, 0.0, -1.0)))
     frame = renderer.draw(scene, from_above(), depth=True)
     assert frame.depth[32, 32] == pytest.approx(3.0, rel=1e-3)
     scene.remove_model("thing")

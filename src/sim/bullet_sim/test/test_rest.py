@@ -20,8 +20,8 @@ from bullet_sim.description import (
     Surface,
 )
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 SETTLE = 3.0  # s within which all that stands here comes to rest

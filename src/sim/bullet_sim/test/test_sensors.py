@@ -14,11 +14,11 @@ from bullet_sim.description import (
     RayDescription,
     SensorDescription,
 )
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim.sensors.imu import Imu
 from bullet_sim.sensors.laser import Laser
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 ROOM = 4.0  # m, inner side of the square room

@@ -8,12 +8,12 @@ from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Twist as TwistMsg
 
 from bullet_sim.description import CameraDescription
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
+from bullet_sim.twist import Twist
 from bullet_sim_ros import convert
 
 

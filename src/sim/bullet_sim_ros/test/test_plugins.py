@@ -15,8 +15,8 @@ from bullet_sim.world import World
 from bullet_sim_ros.agenda import Agenda
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins import load_plugins, plugin, registry
-from bullet_sim_ros.plugins.host import Shared
 from bullet_sim_ros.plugins.parameters import PluginParameters
+from bullet_sim_ros.plugins.shared import Shared
 from bullet_sim_ros.services.models import with_namespace
 
 

@@ -11,7 +11,8 @@ from bullet_sim.description import SensorDescription
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.formats import Resources, load_model, load_world
 from bullet_sim.formats.xacro_files import expand
-from bullet_sim.model import Link, Model
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.world import World

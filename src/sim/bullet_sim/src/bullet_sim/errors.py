@@ -16,11 +16,12 @@ class FormatError(SimulationError):
 class ResourceNotFound(SimulationError):
     """A URI or file name that is in none of the searched folders."""
 
-    def __init__(self, uri: str, searched: Iterable[str] = ()):
+    def __init__(self, uri: str, searched: Iterable[str] = (), known: Iterable[str] = ()):
         self.uri = uri
         self.searched = tuple(str(place) for place in searched)
         places = ", ".join(self.searched) or "nowhere to look"
-        super().__init__(f"{uri} not found (searched: {places})")
+        there_are = f"; there are: {', '.join(known)}" if known else ""
+        super().__init__(f"{uri} not found (searched: {places}){there_are}")
 
 
 class UnknownName(SimulationError):

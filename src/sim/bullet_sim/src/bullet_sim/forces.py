@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from bullet_sim.model import Joint, Link, Model
+from bullet_sim.joint import Joint
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Vector3
 
 

@@ -1,80 +1,22 @@
-"""A model in the world: links and joints by name."""
+"""A model in the world: a whole of links and joints, which go by name."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from bullet_sim.description import (
-    Inertial,
-    JointDescription,
-    LinkDescription,
-    ModelDescription,
-)
+from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.joint import HeldJoint, Joint, LoopJoint, OddGroup
+from bullet_sim.link import Link, gravity_compensation
 from bullet_sim.physics.assembly import WORLD, assemble, loose_joints
-from bullet_sim.physics.attachments import Attachment
 from bullet_sim.physics.axes import SECOND
-from bullet_sim.physics.body import STILL, Body, Twist, gravity_compensation
+from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.filters import Filters
 from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.physics.loops import Closures
-from bullet_sim.pose import Pose, Vector3, conjugate, rotate
-
-
-class Link:
-    """A link's description and where it is now, in the world."""
-
-    def __init__(self, model: Model, description: LinkDescription, body: Body):
-        self.model = model
-        self.description = description
-        self.name = description.name
-        self.scoped_name = f"{model.name}::{description.name}"
-        self._body = body
-
-    @property
-    def pose(self) -> Pose:
-        """Link frame in the world."""
-        return self.model.link_states()[self.name][0]
-
-    @property
-    def twist(self) -> Twist:
-        """Velocity of the link frame's origin, world axes."""
-        return self.model.link_states()[self.name][1]
-
-    def move(self, pose: Pose, twist: Twist) -> None:
-        """Put it there, with that velocity (world axes), and all that joints hold it to.
-
-        Joints keep their positions and rates.
-        """
-        self.model.move_body(self._body, pose * self.pose.inverse())
-        if not self._body.tree.held:
-            self._body.add_twist(twist_difference(twist, self.twist), pose.position)
-            self.model.forget()
-
-    def change(self, inertial: Inertial, gravity: bool) -> None:
-        """Other mass, centre of mass and inertia, and whether gravity pulls at it."""
-        self.description = replace(self.description, inertial=inertial, gravity=gravity)
-        self.model.note_weightless()
-        if not self.model.static:
-            self._body.change_inertial(self.name, inertial)
-            self.model.forget()
-
-    def attach(self, other: Link | None = None) -> Attachment:
-        """Hold it where it is now, on another model's link or in the world, until released."""
-        if other is None:
-            return Attachment(self._body, self.name)
-        return Attachment(self._body, self.name, other._body, other.name)
-
-    def apply_force(self, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
-        """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
-        self._body.apply_force(self.name, force, torque)
-
-    def apply_steady_force(self, force: Vector3) -> None:
-        """Force (N) at the centre of mass that acts in every step, world axes."""
-        self._body.apply_steady_force(self.name, force)
+from bullet_sim.pose import Pose, Vector3
+from bullet_sim.twist import STILL, Twist, shifted_twist
 
 
 class Model:
@@ -245,26 +187,3 @@ class Model:
         """Take its bodies out of the engine."""
         for body in self.bodies:
             body.remove()
-
-
-def shifted_twist(twist: Twist, at: Vector3, to: Vector3) -> Twist:
-    """The same rigid motion, seen at another point."""
-    ax, ay, az = twist.angular
-    x, y, z = (t - a for t, a in zip(to, at, strict=True))
-    linear = twist.linear
-    return Twist(
-        (linear[0] + ay * z - az * y, linear[1] + az * x - ax * z, linear[2] + ax * y - ay * x),
-        twist.angular,
-    )
-
-
-def twist_difference(a: Twist, b: Twist) -> Twist:
-    """What `a` is more than `b`."""
-    return Twist(tuple(x - y for x, y in zip(a.linear, b.linear, strict=True)),
-                 tuple(x - y for x, y in zip(a.angular, b.angular, strict=True)))
-
-
-def twist_in(pose: Pose, twist: Twist) -> Twist:
-    """World-axes twist, turned into the axes of `pose`."""
-    back = conjugate(pose.orientation)
-    return Twist(rotate(back, twist.linear), rotate(back, twist.angular))

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from bullet_sim.description import JointDescription
-from bullet_sim.model import Link, Model, shifted_twist
-from bullet_sim.physics.body import STILL, Twist
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
+from bullet_sim.twist import STILL, Twist, shifted_twist
 
 SCOPE = "::"
 

@@ -129,19 +129,3 @@ def rotation_matrix(q: Quaternion) -> np.ndarray:
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ])
-
-
-def quaternion_from_matrix(r: np.ndarray) -> Quaternion:
-    """Unit quaternion of a (3, 3) rotation matrix (Shepperd's method)."""
-    diagonal = [r[0, 0], r[1, 1], r[2, 2]]
-    trace = sum(diagonal)
-    if trace > max(diagonal):
-        q = (r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], 1 + trace)
-        return normalised(q)
-    i = int(np.argmax(diagonal))
-    j, k = (i + 1) % 3, (i + 2) % 3
-    q = [0.0, 0.0, 0.0, r[k, j] - r[j, k]]
-    q[i] = 1 + r[i, i] - r[j, j] - r[k, k]
-    q[j] = r[j, i] + r[i, j]
-    q[k] = r[k, i] + r[i, k]
-    return normalised(q)

@@ -6,7 +6,7 @@ import math
 import time
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,41 +14,21 @@ from bullet_sim.actors import Walker
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, UnknownName
 from bullet_sim.forces import Forces
-from bullet_sim.model import Link, Model
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.nested import find_part
-from bullet_sim.physics.body import Twist
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
 from bullet_sim.physics.limits import check_physics
 from bullet_sim.physics.mending import mend
+from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene import Scene
+from bullet_sim.snapshot import Snapshot, take_snapshot
 from bullet_sim.stages import Stages
+from bullet_sim.twist import Twist
 
 INERTIAL_FRAMES = ("", "world", "map", "/map")  # other names of the world's frame
-
-
-@dataclass(frozen=True)
-class ModelSnapshot:
-    """One model at one moment, in the world frame."""
-    pose: Pose
-    twist: Twist
-    links: dict[str, tuple[Pose, Twist]]
-    joints: dict[str, tuple[float, float]]  # position, rate
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """The world at one moment."""
-    time: float  # s, simulated
-    models: dict[str, ModelSnapshot]
-
-
-@dataclass(frozen=True)
-class RayHits:
-    """Result of a batch of rays; row i belongs to ray i."""
-    fraction: np.ndarray  # (n,) of the ray's length; 1 where nothing was hit
-    retro: np.ndarray  # (n,) laser_retro of what was hit
 
 
 class World:
@@ -233,13 +213,7 @@ class World:
 
     def snapshot(self) -> Snapshot:
         """Where everything is now."""
-        return Snapshot(self.time, {
-            name: ModelSnapshot(
-                model.pose, model.twist, dict(model.link_states()),
-                {joint.name: (joint.position, joint.velocity) for joint in model.joints.values()},
-            )
-            for name, model in self.models.items()
-        })
+        return take_snapshot(self.time, self.models)
 
     def update_scene(self) -> Scene:
         """The scene with every moving link where it is now."""
@@ -250,12 +224,7 @@ class World:
 
     def cast_rays(self, starts: np.ndarray, ends: np.ndarray) -> RayHits:
         """First collision shape along each ray; `starts` and `ends` are (n, 3) in the world."""
-        rows = self._client.cast_rays(starts.tolist(), ends.tolist())
-        fraction = np.array([row[2] if row[0] >= 0 else 1.0 for row in rows])
-        retro = np.zeros(len(rows))
-        if self._client.retro:
-            retro[:] = [self._client.retro.get((row[0], row[1]), 0.0) for row in rows]
-        return RayHits(fraction, retro)
+        return cast_rays(self._client, starts, ends)
 
     def contacts(self) -> list[Contact]:
         """What touched what in the last step; read from the engine when asked for."""

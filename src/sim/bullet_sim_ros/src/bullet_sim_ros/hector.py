@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.value_server import Value, ValueServer

@@ -7,6 +7,7 @@ import rospy
 CLOCK = "/clock"
 MODEL_STATES = "~model_states"
 LINK_STATES = "~link_states"
+SCENE = "~scene"
 SET_MODEL_STATE = "~set_model_state"
 SET_LINK_STATE = "~set_link_state"
 PERFORMANCE_METRICS = "~performance_metrics"

@@ -18,7 +18,9 @@ from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import load_plugins, load_world_plugins
-from bullet_sim_ros.plugins.host import Host, Shared
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.shared import Shared
+from bullet_sim_ros.scene_topic import SceneTopic
 from bullet_sim_ros.speed import Speed
 from bullet_sim_ros.state_topics import StateTopics
 
@@ -42,8 +44,10 @@ class Simulation:
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
         self.agenda.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
+        self._scene: SceneTopic | None = None
         if parameters.enable_ros_network:
             StateTopics(self, parameters)
+            self._scene = SceneTopic(world)
             self._metrics = MetricsTopic(self)
         for model in world.models.values():
             self._load_plugins(model)
@@ -58,6 +62,8 @@ class Simulation:
         left = iterations or float("inf")
         while left and not self._stopped():
             self._wait()
+            if self._scene:
+                self._scene.update()
             if not self.world.paused and not self._stopped():
                 left -= self._advance(left)
 

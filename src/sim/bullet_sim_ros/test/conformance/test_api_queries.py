@@ -5,8 +5,8 @@ import math
 import pytest
 import rospy
 
-from bullet_sim.physics.body import Twist as Motion
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist as Motion
 
 INERTIA = "<inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.3</izz><ixy>0.01</ixy></inertia>"
 ARM = f"""<model name="arm"><link name="base"><inertial><mass>5</mass>{INERTIA}</inertial>

@@ -6,8 +6,8 @@ import pytest
 from gazebo_msgs.msg import LinkState, ModelState, ODEJointProperties
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
-from bullet_sim.physics.body import Twist as Motion
 from bullet_sim.pose import Pose as Placement
+from bullet_sim.twist import Twist as Motion
 
 ARM = """<model name="arm"><link name="base"/><link name="tip"><gravity>false</gravity>
     <inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>0.3</izz></inertia></inertial>

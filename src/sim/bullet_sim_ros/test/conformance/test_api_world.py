@@ -7,8 +7,8 @@ import rospy
 from gazebo_msgs.msg import ODEPhysics
 from geometry_msgs.msg import Vector3
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 from bullet_sim_ros.params import read_node_parameters
 
 ARM = """<model name="arm"><link name="base"/><link name="tip"/>

@@ -21,7 +21,8 @@ from bullet_sim.description import (
     Visual,
 )
 from bullet_sim.drives.diff_drive import DiffDrive
-from bullet_sim.model import Link, Model
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.sensors.odometry import true_odometry

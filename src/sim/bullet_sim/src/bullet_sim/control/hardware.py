@@ -13,7 +13,8 @@ from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.formats.urdf_transmission import Transmission
-from bullet_sim.model import Joint, Model
+from bullet_sim.joint import Joint
+from bullet_sim.model import Model
 
 NO_LIMITS = JointLimits()
 

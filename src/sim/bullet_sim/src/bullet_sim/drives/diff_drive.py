@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 
 SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
 

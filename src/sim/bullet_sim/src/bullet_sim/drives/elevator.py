@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.world import World
 
 # Gazebo drives lift and door by forces, force = -p gap - d rate, so heavily damped that both come

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Vector3
 from bullet_sim.world import World

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from bullet_sim.model import Link
-from bullet_sim.physics.body import gravity_compensation
+from bullet_sim.link import Link, gravity_compensation
 from bullet_sim.pose import Pose, Quaternion, Vector3, conjugate, multiply
 from bullet_sim.world import World
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bullet_sim.model import Link, Model
-from bullet_sim.physics.body import STILL
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
+from bullet_sim.twist import STILL
 from bullet_sim.world import World
 
 
@@ -29,11 +30,6 @@ class JointPoses:
         self._world = world
         self._points: list[JointPose] = []
         self._model: Model | None = None
-
-    @property
-    def playing(self) -> bool:
-        """Whether there is more to come."""
-        return bool(self._points)
 
     def play(self, model: Model, names: Sequence[str], points: Sequence[JointPose],
              start: float, held: Link | None = None) -> None:

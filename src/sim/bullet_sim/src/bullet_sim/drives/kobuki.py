@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.imu_sensor import ImuSensor

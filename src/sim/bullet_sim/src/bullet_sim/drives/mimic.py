@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bullet_sim.control.pid import Pid
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 
 FOLLOWING_EFFORT = 1e3  # N m or N: more than any finger; the joint is to be where it belongs
 CATCH_UP = 5  # steps in which a gap is closed

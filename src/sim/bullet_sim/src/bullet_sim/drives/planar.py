@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from bullet_sim.model import Model
-from bullet_sim.physics.body import Twist
 from bullet_sim.physics.rest import STILL_RATE, STILL_SPEED
 from bullet_sim.pose import quaternion_from_rpy, rotate
 from bullet_sim.sensors.odometry import OdometryReading
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 

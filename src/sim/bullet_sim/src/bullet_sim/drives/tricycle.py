@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 
 GREATEST_ANGLE = math.pi / 2  # rad, of the steering
 PLACED = 1e-4  # rad: a joint this near to its angle need not be put there again

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 

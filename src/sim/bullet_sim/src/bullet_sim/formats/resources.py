@@ -78,7 +78,15 @@ class Resources:
 
     def find_world(self, name: str) -> Path:
         """A world file: as given, else below the resource paths."""
-        return self._first(name, self._plain_candidates(name, Path.cwd()))
+        try:
+            return self._first(name, self._plain_candidates(name, Path.cwd()))
+        except ResourceNotFound as error:
+            raise ResourceNotFound(name, error.searched, self._worlds()) from None
+
+    def _worlds(self) -> list[str]:
+        """What `find_world` finds by name in the folders `worlds`."""
+        return sorted({f"worlds/{path.name}" for folder in self.resource_paths
+                       for path in (folder / "worlds").glob("*.world")})
 
     def package_folder(self, package: str) -> Path:
         """Folder of a ROS package."""

@@ -69,7 +69,7 @@ def find_material(name: str, uris: list[str], source: Source, where: str) -> Mat
         found = named_materials().get(name)
     if found is None:
         media = [path / "media/materials/scripts" for path in source.resources.resource_paths]
-        found = _in_scripts(name, media, source)
+        found = _in_scripts(name, [folder for folder in media if folder.is_dir()], source)
     if found is None:
         searched = ", ".join([*(str(place) for place in places), *missing]) or "Gazebo's own names"
         message = f"{where}: material {name!r} not found, default taken (searched: {searched})"

@@ -23,10 +23,6 @@ class RobotFacts:
         """Whether the URDF has a joint of that name."""
         return name in self._joints
 
-    def joint_type(self, name: str) -> str:
-        """revolute, continuous, prismatic, fixed, floating or planar."""
-        return self._joint(name).type
-
     def parent(self, name: str) -> str:
         """The joint's parent link."""
         return self._joint(name).parent

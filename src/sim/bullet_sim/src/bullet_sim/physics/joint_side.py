@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-import logging
-import math
 from collections.abc import Iterable
 
 from bullet_sim.description import JointDescription
-from bullet_sim.physics.assembly import PhysicsLink, Tree
-from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.decay import Decay
+from bullet_sim.physics.engine_handle import EngineHandle
 from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.physics.springs import Springs
 from bullet_sim.pose import Quaternion, Vector3
 
 STRONGEST = 1e6  # N m or N; the engine makes NaN of much more
-log = logging.getLogger(__name__)
 
 
-class JointSide:
-    """What a Body does with its joints; its number and tree are those of the Body."""
-
-    tree: Tree
-    number: int  # the engine's
-    _client: PhysicsClient
-    _index: dict[str, int]  # physics link -> the engine's number of it and of its joint
+class JointSide(EngineHandle):
+    """What a Body does with its joints."""
 
     def _find_joints(self) -> None:
         joints = [link for link in self.tree.links if link.joint]
@@ -34,13 +26,6 @@ class JointSide:
         self._ball_index = {link.joint.name: self._index[link.name] for link in joints
                             if link.joint.type == "ball"}
         self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
-        self._refused: set[str] = set()  # what has been said to be no number
-
-    def _call(self, function, *args, **kwargs):
-        return self._client.call(function, self.number, *args, **kwargs)
-
-    def _read(self, function, *args, **kwargs):
-        return self._client.read(function, self.number, *args, **kwargs)
 
     def _set_up_joints(self) -> None:
         self._feedback: set[int] = set()
@@ -162,13 +147,3 @@ class JointSide:
     def wants_to_move(self) -> bool:
         """Whether a motor is to hold a rate other than zero."""
         return any(velocity and effort for velocity, effort in self._motors.values())
-
-    def _is_number(self, what: str, *values: float) -> bool:
-        """Whether the engine may see them: one NaN, and nothing has ground to stand on."""
-        if all(map(math.isfinite, values)):
-            return True
-        if what not in self._refused:
-            self._refused.add(what)
-            log.warning("%s: a %s of %s is no number and is left out, here and from now on",
-                        self.tree.links[-1].described, what, ", ".join(map(str, values)))
-        return False

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
-from bullet_sim.physics.body import BASE, Body
+from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.link_side import BASE
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose, Vector3, rotate
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from bullet_sim.physics.assembly import PhysicsLink
-from bullet_sim.physics.body import Body, cross
+from bullet_sim.physics.body import Body
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
+from bullet_sim.twist import cross
 
 
 def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:

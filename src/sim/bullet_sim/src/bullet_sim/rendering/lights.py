@@ -15,7 +15,6 @@ from bullet_sim.rendering.shaders import DIRECTIONAL, MAX_LIGHTS, POINT, SPOT
 log = logging.getLogger(__name__)
 
 _KINDS = {"directional": DIRECTIONAL, "point": POINT, "spot": SPOT}
-BLOCK_SIZE = 16 * (3 + 6 * MAX_LIGHTS)  # bytes
 EYE_OFFSET = 16  # bytes, of the camera's position in the block
 
 

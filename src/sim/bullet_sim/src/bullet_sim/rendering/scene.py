@@ -98,6 +98,11 @@ class Scene(SceneState):
         return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version,
                           dict(self.images))
 
+    @property
+    def visuals(self) -> Mapping[LinkKey, tuple[Visual, ...]]:
+        """What each link's shape was made from."""
+        return self._visuals
+
     def add_light(self, light: LightDescription) -> None:
         """Poses and directions of lights are in the world."""
         if light.name in self.lights:
@@ -140,10 +145,6 @@ class Scene(SceneState):
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
         if node.pose is not pose:  # what stands still keeps its node, and the matrix in it
             self.nodes[key] = Node(node.shape, pose)
-
-    def set_poses(self, poses: Mapping[LinkKey, Pose]) -> None:
-        for key, pose in poses.items():
-            self.set_pose(key, pose)
 
 
 def link_shape(visuals: Sequence[Visual]) -> LinkShape:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import moderngl
-import numpy as np
 
 from bullet_sim.rendering.frame import CameraView
 
@@ -56,8 +55,3 @@ class Sky:
         self._array.render(moderngl.TRIANGLES, vertices=3)
         self._context.enable(moderngl.CULL_FACE)
         self._context.depth_func = "<"
-
-
-def sky_colour(height: float) -> np.ndarray:
-    """RGB 0..1 in a direction whose sine of the angle above the horizon is `height`."""
-    return np.array(HORIZON) + (np.array(ZENITH) - HORIZON) * max(height, 0.0) ** 0.5

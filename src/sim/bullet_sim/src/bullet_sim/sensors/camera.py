@@ -9,7 +9,7 @@ import numpy as np
 
 from bullet_sim.description import CameraDescription, SensorDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.rendering.scene import SceneState

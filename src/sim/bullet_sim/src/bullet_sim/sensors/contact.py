@@ -6,10 +6,10 @@ import logging
 from dataclasses import dataclass, field
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.model import Link
-from bullet_sim.physics.body import cross
+from bullet_sim.link import Link
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Vector3
+from bullet_sim.twist import cross
 from bullet_sim.world import World
 
 log = logging.getLogger(__name__)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bullet_sim.model import Link
-from bullet_sim.physics.body import Twist, cross
+from bullet_sim.link import Link
 from bullet_sim.pose import Pose, Vector3, conjugate, rotate
+from bullet_sim.twist import Twist, cross
 from bullet_sim.world import World
 
 

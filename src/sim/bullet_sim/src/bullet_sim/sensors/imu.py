@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.pose import Quaternion, Vector3
 from bullet_sim.world import World
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.model import Link, shifted_twist
+from bullet_sim.link import Link
 from bullet_sim.pose import IDENTITY, Vector3, conjugate, multiply, rotate
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.noise import SensorNoise
+from bullet_sim.twist import shifted_twist
 from bullet_sim.world import World
 
 

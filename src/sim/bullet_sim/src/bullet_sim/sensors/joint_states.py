@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.world import World
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.sensors.noise import SensorNoise
 from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim.world import World

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from bullet_sim.model import Link, shifted_twist
+from bullet_sim.link import Link
 from bullet_sim.pose import rotation_matrix
+from bullet_sim.twist import shifted_twist
 from bullet_sim.world import World
 
 

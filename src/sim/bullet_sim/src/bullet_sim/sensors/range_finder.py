@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim.world import World
 

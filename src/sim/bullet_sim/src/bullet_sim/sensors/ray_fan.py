@@ -6,7 +6,7 @@ import numpy as np
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.world import World
 
 MOST_RAYS = 1_000_000  # more than any scanner has; a slip of the keyboard must not fill the memory

@@ -10,12 +10,13 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
-from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
+from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.logged_parameters import LoggedParameters
+from bullet_sim_ros.plugins.odometry_source import OdometrySource
 from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -36,8 +37,8 @@ class DiffDrivePlugin:
             p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0),
         )
         self._drive = DiffDrive(*self._joints, geometry)
-        self._wheel_odometry = WheelOdometry(geometry.wheel_separation, geometry.wheel_diameter)
-        self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
+        self._odometry_source = OdometrySource(host, p, self._joints, WheelOdometry(
+            geometry.wheel_separation, geometry.wheel_diameter))
         self._updated = host.world.time
         self._publish_tf = p.flag("publishTf", True)
         self._publish_odom_tf = p.flag("publishOdomTF", True)
@@ -51,8 +52,6 @@ class DiffDrivePlugin:
         self._label = p.label
         self._open_topics(namespace, p.text("commandTopic", "cmd_vel"),
                           p.text("odometryTopic", "odom"), p.flag("publishWheelJointState", False))
-        if not self._true:
-            host.each_step(self._count_wheels)
         host.every(p.number("updateRate", 100.0), self._update)
         host.on_reset(self._restart)
 
@@ -72,15 +71,9 @@ class DiffDrivePlugin:
         log.info("%s: Advertise odom on %s", self._label, odometry)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if not convert.is_sane(msg):
-            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
-
-    def _count_wheels(self) -> None:
-        left, right = self._joints
-        self._wheel_odometry.update(self._host.world.time, left.velocity, right.velocity)
 
     def _update(self) -> None:
         world = self._host.world
@@ -88,14 +81,9 @@ class DiffDrivePlugin:
             reading = sample_joints(world, self._joints)
             self._states.publish(convert.joints_to_msg(reading, velocities=False))
         if self._publish_tf and self._heard():
-            self._publish(self._reading())
+            self._publish(self._odometry_source.sample())
         self._drive.update(world.time - self._updated)
         self._updated = world.time
-
-    def _reading(self) -> OdometryReading:
-        if self._true:
-            return true_odometry(self._host.world, self._host.model)
-        return self._wheel_odometry.sample()
 
     def _heard(self) -> bool:
         shared = self._host.shared
@@ -124,5 +112,5 @@ class DiffDrivePlugin:
 
     def _restart(self) -> None:
         self._drive.stop()
-        self._wheel_odometry.restart(self._host.world.time)
+        self._odometry_source.restart()
         self._updated = self._host.world.time

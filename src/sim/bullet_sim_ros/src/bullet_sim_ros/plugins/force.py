@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from geometry_msgs.msg import Wrench
 
-from bullet_sim_ros import convert, names
+from bullet_sim_ros import names
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.registry import plugin
-
-log = logging.getLogger("bullet_sim.plugins")
 
 NONE = (0.0, 0.0, 0.0)
 
@@ -30,9 +27,7 @@ class ForcePlugin:
         host.each_step(self._push)
 
     def _take(self, msg: Wrench) -> Callable[[], None] | None:
-        if not convert.is_sane(msg.force, msg.torque):
-            log.warning("%s: a wrench that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("wrench", msg.force, msg.torque):
             return None
         return lambda: self._set(msg)
 

@@ -1,4 +1,4 @@
-"""What a plugin is given: its tags, its model, and ROS topics that are closed together."""
+"""What a plugin is given: its tags and place, calls by the loop, and topics that end with it."""
 
 from __future__ import annotations
 
@@ -8,64 +8,30 @@ from collections.abc import Callable
 from concurrent.futures import Future
 
 import rospy
-import tf2_ros
-from geometry_msgs.msg import TransformStamped
 from rosgraph.names import is_legal_name
 
 from bullet_sim.description import PluginDescription, SensorDescription, Visual
-from bullet_sim.model import Link, Model
-from bullet_sim.world import World
-from bullet_sim_ros.agenda import Agenda, Duty, always
-from bullet_sim_ros.drawing import DrawingThread
+from bullet_sim.link import Link
+from bullet_sim.model import Model
+from bullet_sim_ros import convert
+from bullet_sim_ros.agenda import Duty, always
 from bullet_sim_ros.errors import PluginError, told
-from bullet_sim_ros.lockstep import Lockstep
-from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.plugins.parameters import PluginParameters
+from bullet_sim_ros.plugins.place import Place
+from bullet_sim_ros.plugins.shared import Shared
 
 log = logging.getLogger("bullet_sim.plugins")
 
 
-class Shared:
-    """What all plugins of one simulation use together."""
-
-    def __init__(self, world: World, mailbox: Mailbox, agenda: Agenda, drawing: DrawingThread,
-                 lockstep: Lockstep):
-        self.world = world
-        self.mailbox = mailbox
-        self.agenda = agenda
-        self.drawing = drawing
-        self.lockstep = lockstep
-        self.warned: set[tuple[str, str]] = set()  # unknown plugins: where they are, file name
-        self._broadcaster: tf2_ros.TransformBroadcaster | None = None
-
-    def announce_transforms(self) -> None:
-        """Make /tf known, so that who is there before time begins misses nothing."""
-        if self._broadcaster is None:
-            self._broadcaster = tf2_ros.TransformBroadcaster()
-
-    def send_transforms(self, transforms: list[TransformStamped]) -> None:
-        """Publish on /tf, after `announce_transforms`."""
-        self._broadcaster.sendTransform(transforms)
-
-    def transforms_wanted(self) -> bool:
-        """Whether anybody listens to /tf."""
-        return bool(self._broadcaster and self._broadcaster.pub_tf.get_num_connections())
-
-
-class Host:
+class Host(Place):
     """One plugin's view of the simulation. Made and used in the loop's thread."""
 
     def __init__(self, shared: Shared, model: Model | None, description: PluginDescription,
                  sensor: SensorDescription | None = None, link: Link | None = None,
                  visual: Visual | None = None):
+        super().__init__(shared.world, model, description, sensor, link, visual)
         self.shared = shared
-        self.world = shared.world
-        self.description = description
         self.parameters = PluginParameters(model.name if model else "(world)", description)
-        self._model = model
-        self._sensor = sensor
-        self._link = link
-        self._visual = visual
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
         self._drawn: Future | None = None
@@ -74,62 +40,9 @@ class Host:
         self._duty: Duty | None = None  # the last that `every` was asked for
 
     @property
-    def model(self) -> Model:
-        """The model that the plugin is in."""
-        if self._model is None:
-            raise PluginError("it belongs inside a <model>, not in the world")
-        return self._model
-
-    @property
-    def in_world(self) -> bool:
-        """Whether the plugin is in the world itself."""
-        return self._model is None
-
-    @property
-    def has_sensor(self) -> bool:
-        """Whether the plugin is in a sensor."""
-        return self._sensor is not None
-
-    @property
-    def in_visual(self) -> bool:
-        """Whether the plugin is in a visual."""
-        return self._visual is not None
-
-    @property
-    def visual(self) -> Visual:
-        """The visual that the plugin is in; `link` is the one that it is on."""
-        if self._visual is None:
-            raise PluginError("it belongs inside a <visual>")
-        return self._visual
-
-    @property
     def updates(self) -> int:
         """How often the plugin has done what it does at a rate."""
         return self._duty.count if self._duty else 0
-
-    @property
-    def sensor(self) -> SensorDescription:
-        """The sensor that the plugin is in."""
-        if self._sensor is None:
-            raise PluginError("it belongs inside a <sensor>, not in the model")
-        return self._sensor
-
-    @property
-    def link(self) -> Link:
-        """The link that the sensor is on."""
-        if self._link is None:
-            raise PluginError("it belongs inside a <sensor>, not in the model")
-        return self._link
-
-    def describe(self) -> str:
-        """Model, sensor or visual, and plugin, for log lines."""
-        sensor = f" sensor {self._sensor.name}:" if self._sensor else ""
-        if self._visual is not None:
-            sensor = f" visual {self._visual.name}:"
-        name = self.description.name or "(no name)"
-        place = f"model {self._model.name}:" if self._model else \
-            f"world {self.world.description.name}:"
-        return f"{place}{sensor} plugin {name} ({self.description.filename})"
 
     # --- when the loop calls
 
@@ -244,6 +157,14 @@ class Host:
         subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
         self._closers.append(subscriber.unregister)
         return subscriber
+
+    def refuses(self, what: str, *messages) -> bool:
+        """Whether numbers of these messages are not finite or far too great; if so, a warning."""
+        if convert.is_sane(*messages):
+            return False
+        log.warning("%s: a %s that is not finite, or beyond %g, is ignored", self.describe(), what,
+                    convert.LARGEST)
+        return True
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
         """A service; a name that is taken is a warning, as upstream has it."""

@@ -8,7 +8,7 @@ from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.errors import UnknownName
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.imu import Imu, ImuReading
 from bullet_sim_ros import convert, names

@@ -10,7 +10,8 @@ from trajectory_msgs.msg import JointTrajectory
 
 from bullet_sim.drives.joint_poses import JointPose, JointPoses
 from bullet_sim.errors import SimulationError
-from bullet_sim.model import Link, Model
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError, told
 from bullet_sim_ros.plugins.host import Host

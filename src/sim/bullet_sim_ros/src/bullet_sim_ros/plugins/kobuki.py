@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist
@@ -11,16 +10,14 @@ from std_msgs.msg import Empty
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.kobuki import Kobuki
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.sensors.imu_sensor import ImuSensor
-from bullet_sim_ros import convert, names, params
+from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic
 from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
 from bullet_sim_ros.plugins.registry import plugin
-
-log = logging.getLogger("bullet_sim.plugins")
 
 RATE = 50.0  # Hz: what the real base does; upstream publishes at each step
 SIDES = ("left", "center", "right")
@@ -78,9 +75,7 @@ class KobukiPlugin:
         return found[name]
 
     def _take_velocity(self, msg: Twist) -> Callable[[], None] | None:
-        if not convert.is_sane(msg):
-            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("command", msg):
             return None
         return lambda: self._kobuki.command(msg.linear.x, msg.angular.z)
 

@@ -8,7 +8,7 @@ from kobuki_msgs.msg import BumperEvent, CliffEvent
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.bumper import SECTORS, pressed_bumpers
-from bullet_sim.model import Link
+from bullet_sim.link import Link
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
 from bullet_sim_ros.plugins.host import Host

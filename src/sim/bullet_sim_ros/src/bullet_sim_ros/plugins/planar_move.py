@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
-from bullet_sim_ros import convert, names
+from bullet_sim_ros import names
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.odometry_output import OdometryOutput
 from bullet_sim_ros.plugins.registry import plugin
-
-log = logging.getLogger("bullet_sim.plugins")
 
 
 @plugin("libgazebo_ros_planar_move.so")
@@ -44,9 +41,7 @@ class PlanarMovePlugin:
         return 1.0 / (steps * timestep)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if not convert.is_sane(msg):
-            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("command", msg):
             return None
         return lambda: self._command(msg)
 

@@ -8,8 +8,9 @@ from pathlib import PurePosixPath
 
 from bullet_sim.model import Model
 from bullet_sim_ros.errors import told
-from bullet_sim_ros.plugins.host import Host, Shared
+from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.sensor_types import warn_of_sensor
+from bullet_sim_ros.plugins.shared import Shared
 from bullet_sim_ros.plugins.unknown import warn_of_unknown
 
 log = logging.getLogger("bullet_sim.plugins")

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.skid_steer import SkidSteer
 from bullet_sim.sensors.odometry import true_odometry
-from bullet_sim_ros import convert, names
+from bullet_sim_ros import names
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.odometry_output import OdometryOutput
 from bullet_sim_ros.plugins.registry import plugin
-
-log = logging.getLogger("bullet_sim.plugins")
 
 
 @plugin("libgazebo_ros_skid_steer_drive.so")
@@ -41,9 +38,7 @@ class SkidSteerDrivePlugin:
         host.on_reset(self._drive.stop)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if not convert.is_sane(msg):
-            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 

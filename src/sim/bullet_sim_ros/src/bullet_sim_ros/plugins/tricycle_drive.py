@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 
 from geometry_msgs.msg import TransformStamped, Twist
 from sensor_msgs.msg import JointState
 
 from bullet_sim.drives.tricycle import Tricycle, TricycleParameters
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
-from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
+from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.logged_parameters import LoggedParameters
 from bullet_sim_ros.plugins.odometry_output import OdometryOutput
+from bullet_sim_ros.plugins.odometry_source import OdometrySource
 from bullet_sim_ros.plugins.registry import plugin
-
-log = logging.getLogger("bullet_sim.plugins")
 
 
 @plugin("libgazebo_ros_tricycle_drive.so")
@@ -39,9 +37,9 @@ class TricycleDrivePlugin:
             p.number("actuatedWheelDiameter", 0.15), self._torque, acceleration,
             p.number("wheelDeceleration", acceleration), p.number("wheelSpeedTolerance", 0.01),
             p.number("steeringSpeed", 0.0), p.number("steeringAngleTolerance", 0.01)))
-        self._encoders = WheelOdometry(p.number("encoderWheelSeparation", 0.5),
-                                       p.number("encoderWheelDiameter", 0.15), signed=True)
-        self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
+        self._odometry_source = OdometrySource(host, p, self._joints[2:], WheelOdometry(
+            p.number("encoderWheelSeparation", 0.5), p.number("encoderWheelDiameter", 0.15),
+            signed=True))
         self._updated = host.world.time
         self._wheel_tf = p.flag("publishWheelTF", False)
         self._states = host.advertise(
@@ -50,8 +48,6 @@ class TricycleDrivePlugin:
         self._output = OdometryOutput(host, namespace, "base_link")
         host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
                        self._take_command, queue_size=1, tcp_nodelay=True)
-        if not self._true:
-            host.each_step(self._count_wheels)
         host.every(p.number("updateRate", 100.0), self._update)
         host.on_reset(self._restart)
 
@@ -63,29 +59,18 @@ class TricycleDrivePlugin:
             ("encoderWheelRightJoint", "right_wheel_joint"))]
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if not convert.is_sane(msg):
-            log.warning("%s: a command that is not finite, or beyond %g, is ignored",
-                        self._host.describe(), convert.LARGEST)
+        if self._host.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
-
-    def _count_wheels(self) -> None:
-        left, right = self._joints[2:]
-        self._encoders.update(self._host.world.time, left.velocity, right.velocity)
 
     def _update(self) -> None:
         world = self._host.world
         if self._output.wanted():
-            self._output.publish(self._reading(), self._wheel_transforms())
+            self._output.publish(self._odometry_source.sample(), self._wheel_transforms())
         if self._states and self._states.get_num_connections():
             self._publish_states()
         self._drive.update(world.time - self._updated)
         self._updated = world.time
-
-    def _reading(self) -> OdometryReading:
-        if self._true:
-            return true_odometry(self._host.world, self._host.model)
-        return self._encoders.sample()
 
     def _wheel_transforms(self) -> tuple[TransformStamped, ...]:
         """Upstream calls the frames by the joints' names and sees the links from the model."""
@@ -105,5 +90,5 @@ class TricycleDrivePlugin:
 
     def _restart(self) -> None:
         self._drive.stop()
-        self._encoders.restart(self._host.world.time)
+        self._odometry_source.restart()
         self._updated = self._host.world.time

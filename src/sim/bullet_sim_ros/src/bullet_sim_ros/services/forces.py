@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from gazebo_msgs.srv import ApplyBodyWrench, ApplyJointEffort, BodyRequest, JointRequest
 
 from bullet_sim.forces import Effort, Span, Wrench
-from bullet_sim.physics.body import cross
 from bullet_sim.pose import IDENTITY, Vector3, rotate
+from bullet_sim.twist import cross
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from gazebo_msgs.srv import GetJointProperties, SetJointProperties
 
-from bullet_sim.model import Joint
+from bullet_sim.joint import Joint
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer

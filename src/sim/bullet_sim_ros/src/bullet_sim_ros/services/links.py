@@ -14,8 +14,8 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point, Quaternion
 
 from bullet_sim.description import Inertial
-from bullet_sim.model import twist_difference, twist_in
 from bullet_sim.pose import Pose
+from bullet_sim.twist import twist_difference, twist_in
 from bullet_sim.world import INERTIAL_FRAMES, World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 from bullet_sim.description import JointDescription
 from bullet_sim.errors import UnknownName
-from bullet_sim.model import Joint, Link, Model
-from bullet_sim.physics.body import Twist
+from bullet_sim.joint import Joint
+from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 from bullet_sim_ros.services.answers import ServiceError
 

@@ -8,10 +8,9 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
 from geometry_msgs.msg import Pose as PoseMsg
 
-from bullet_sim.model import twist_difference, twist_in
 from bullet_sim.nested import find_part
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose, rotate
+from bullet_sim.twist import Twist, twist_difference, twist_in
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer

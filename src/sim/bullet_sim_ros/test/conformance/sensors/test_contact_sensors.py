@@ -8,8 +8,8 @@ from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import WrenchStamped
 from sensor_models import xyz
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 
 WEIGHT = 2 * 9.8  # N, of the boxes below
 

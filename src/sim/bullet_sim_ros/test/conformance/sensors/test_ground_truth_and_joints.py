@@ -8,8 +8,8 @@ from nav_msgs.msg import Odometry
 from sensor_models import xyz
 from sensor_msgs.msg import JointState
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 
 ARM = """<model name="arm"><static>{static}</static>
   <link name="base"><inertial><mass>5</mass></inertial></link>

@@ -8,8 +8,8 @@ from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter
 from sensor_models import hector, take, xyz
 from sensor_msgs.msg import NavSatStatus
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 
 
 def reconfigure(bench, namespace: str, doubles=None, bools=None) -> None:

@@ -8,8 +8,8 @@ from geometry_msgs.msg import Vector3
 from sensor_models import hector, take, turn, xyz
 from sensor_msgs.msg import Imu
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose, rpy_from_quaternion
+from bullet_sim.twist import Twist
 
 
 def test_imu_axes(bench):

@@ -8,8 +8,8 @@ from geometry_msgs.msg import Vector3Stamped
 from sensor_models import EARTH, hector, take, xyz
 from sensor_msgs.msg import MagneticField, NavSatFix, NavSatStatus
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 
 DEGREE = 111_412.0  # m, of latitude at 60 degrees north on WGS84
 PARALLEL = 55_800.0  # m, of longitude there

@@ -10,8 +10,8 @@ from sensor_models import turn, xyz
 from sensor_msgs.msg import Imu
 from std_srvs.srv import EmptyResponse
 
-from bullet_sim.physics.body import Twist
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 
 DIAGONAL = [0, 4, 8]
 

@@ -1,0 +1,125 @@
+"""How to run ruff, pytest and rostest, with a Result of each."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import run_tests_processes as processes
+from run_tests_processes import ROOT, run_marked, unseen
+from run_tests_results import Result, note_end, pytest_cases, rostest_cases
+
+OUT = ROOT / "out" / "test"
+PROGRESS = re.compile(r"\[ *\d+%\]$")
+
+
+def run_ruff() -> Result:
+    """The whole tree; counts as one test."""
+    began = time.monotonic()
+    done = subprocess.run([shutil.which("ruff") or "ruff", "check", "--output-format=concise"],
+                          cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    result = Result("ruff check", time.monotonic() - began)
+    if done.returncode == 0:
+        result.passed = 1
+    else:
+        result.failures.append("ruff check")
+        result.output = done.stdout + done.stderr
+    return result
+
+
+class Progress:
+    """Shows pytest's own progress, a line a file, as soon as each is whole."""
+
+    def __init__(self) -> None:
+        self.position = 0
+
+    def __call__(self, log: Path) -> None:
+        with log.open("rb") as file:
+            file.seek(self.position)
+            text = file.read()
+        whole = text[: text.rfind(b"\n") + 1]
+        self.position += len(whole)
+        for line in whole.decode("utf-8", "replace").splitlines():
+            if PROGRESS.search(line):
+                print(f"  {line}", flush=True)
+
+
+def run_pytest(limit: float, apart: list[Path]) -> list[Result]:
+    """All files but those `apart`, in one process; a result for each file, and one for itself."""
+    cases, log = OUT / "pytest.xml", OUT / "pytest.log"
+    whole = Result("pytest")
+    began = time.monotonic()
+    code, left = run_marked([*pytest_command(cases), *(f"--ignore={path}" for path in apart)],
+                            log, limit, Progress())
+    whole.seconds = time.monotonic() - began
+    files = pytest_cases(cases)
+    failed = any(result.failures for result in files.values())
+    note_end(whole, code, failed, left)
+    if failed or whole.failures:
+        whole.output = log.read_text(errors="replace")
+    for result in files.values():
+        print(result.line())
+    print(whole.line(), flush=True)
+    return [*files.values(), whole]
+
+
+def pytest_command(cases: Path) -> list[str]:
+    """What to run, for results in a file of its own."""
+    return [sys.executable, "-m", "pytest", f"--junitxml={cases}", "--color=no", "--tb=short",
+            "--continue-on-collection-errors"]
+
+
+def run_pytest_file(path: Path, limit: float) -> Result:
+    """One file in a process of its own."""
+    name = str(path.relative_to(ROOT))
+    result = Result(name)
+    if processes.stopping:
+        return result
+    folder = OUT / name.replace("/", ".")
+    folder.mkdir(parents=True)
+    cases, log = folder / "pytest.xml", folder / "output.log"
+    began = time.monotonic()
+    code, left = run_marked([*pytest_command(cases), name], log, limit, unseen)
+    result = pytest_cases(cases).get(name, result)
+    result.seconds = time.monotonic() - began
+    note_end(result, code, bool(result.failures), left)
+    if result.failures:
+        result.output = log.read_text(errors="replace")
+    return result
+
+
+def run_rostest(launch: Path, limit: float) -> Result:
+    """One launch file with its test nodes, which get `limit` seconds together."""
+    result = Result(str(launch.relative_to(ROOT)))
+    if processes.stopping:
+        return result
+    folder = OUT / result.name.replace("/", ".")
+    folder.mkdir(parents=True)
+    log = folder / "output.log"
+    began = time.monotonic()
+    command = ["rostest", f"--results-base-dir={folder}", str(launch)]
+    code, left = run_marked(command, log, limit, unseen)
+    inner = 0
+    try:
+        for own, case in rostest_cases(folder):
+            if not own:
+                inner += 1
+                result.add_case(case)
+            elif case.find("failure") is not None or case.find("error") is not None:
+                result.add_case(case)
+    except ET.ParseError as error:
+        result.failures.append(f"{result.name}: unreadable result: {error}")
+    if code == 124:
+        result.failures.append(f"{result.name}: not done after {limit:.0f} s")
+    elif not result.failures and (code or not inner):
+        result.failures.append(f"{result.name}: exit code {code}, {inner} tests ran")
+    result.failures += [f"{result.name}: left running: {command}" for command in left]
+    result.seconds = time.monotonic() - began
+    if result.failures:
+        result.output = log.read_text(errors="replace")
+    return result

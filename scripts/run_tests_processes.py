@@ -1,0 +1,90 @@
+"""Commands under a time limit, of which nothing is left running."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+MARK = "RUN_TESTS_MARK"  # environment variable by which a test's processes are known
+GRACE = 5.0  # s a test's processes have to end after it
+STOP = 15.0  # s rostest has to end its nodes when it is told to stop
+Watch = Callable[[Path], None]
+
+stopping = False  # set by a signal: what runs is cut short, nothing new begins
+
+
+def stop(_signal: int, _frame: object) -> None:
+    """Handler of the signals that end the run."""
+    global stopping
+    stopping = True
+
+
+def processes_marked(mark: str) -> list[int]:
+    """Process ids whose environment carries the mark, whatever session or parent they have."""
+    needle = f"{MARK}={mark}".encode()
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if needle in (folder / "environ").read_bytes().split(b"\0"):
+                found.append(int(folder.name))
+        except OSError:
+            continue  # gone by now, or another user's
+    return found
+
+
+def command_line(pid: int) -> str:
+    """What a process was started with, as far as it can still be read."""
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode().strip()
+    except OSError:
+        return f"process {pid}"
+
+
+def kill_left_over(mark: str, grace: float) -> list[str]:
+    """Command lines of what still runs `grace` seconds on; none of it runs afterwards."""
+    limit = time.monotonic() + grace
+    while (left := processes_marked(mark)) and time.monotonic() < limit:
+        time.sleep(0.1)
+    commands = [command_line(pid) for pid in left]
+    while left:
+        for pid in left:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        time.sleep(0.05)
+        left = processes_marked(mark)
+    return commands
+
+
+def run_marked(command: list[str], log: Path, limit: float, watch: Watch) -> tuple[int, list[str]]:
+    """Exit code (124 after `limit` seconds), and what was left running; `watch` sees the log."""
+    mark = uuid.uuid4().hex
+    ros_home = str(log.parent / "ros")  # nothing of a test goes to the person's ~/.ros
+    env = dict(os.environ, **{MARK: mark}, ROS_HOME=ros_home, ROS_LOG_DIR=ros_home)
+    end = time.monotonic() + limit
+    with log.open("wb") as output:
+        child = subprocess.Popen(command, cwd=ROOT, env=env, stdin=subprocess.DEVNULL,
+                                 stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+        while child.poll() is None and time.monotonic() < end and not stopping:
+            time.sleep(0.05)
+            watch(log)
+        cut_short = child.poll() is None
+        if cut_short:
+            child.send_signal(signal.SIGINT)
+            try:
+                child.wait(2.0 if stopping else STOP)
+            except subprocess.TimeoutExpired:
+                pass
+        left = kill_left_over(mark, 0.0 if cut_short else GRACE)
+        return (124 if cut_short else child.wait()), left
+
+
+def unseen(_log: Path) -> None:
+    """The watch for a log that nobody waits for."""

@@ -1,0 +1,80 @@
+"""What tests came to: read from the reports of pytest and rostest, counted and shown."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+@dataclass
+class Result:
+    """What one file of tests came to; `output` is shown if any failed."""
+
+    name: str
+    seconds: float = 0.0
+    passed: int = 0
+    skipped: int = 0
+    failures: list[str] = field(default_factory=list)
+    output: str = ""
+
+    def add_case(self, case: ET.Element) -> None:
+        """Count a test case of a report, and its time."""
+        self.seconds += float(case.get("time") or 0.0)
+        if case.find("failure") is not None or case.find("error") is not None:
+            self.failures.append(f"{self.name}: {case.get('name')}")
+        elif case.find("skipped") is not None:
+            self.skipped += 1
+        else:
+            self.passed += 1
+
+    def line(self) -> str:
+        """Time, count, verdict and name, for the list."""
+        verdict = f"{len(self.failures)} FAILED" if self.failures else "ok"
+        return f"{self.seconds:7.1f} s  {self.passed:4d} ok  {verdict:9s}  {self.name}"
+
+
+def pytest_cases(cases: Path) -> dict[str, Result]:
+    """A result for each file that the report names."""
+    files: dict[str, Result] = {}
+    if cases.exists():
+        for case in ET.parse(cases).iter("testcase"):
+            name = case.get("file") or case.get("classname") or case.get("name") or "?"
+            files.setdefault(name, Result(name)).add_case(case)
+    return files
+
+
+def note_end(result: Result, code: int, failed: bool, left: list[str]) -> None:
+    """Count how pytest itself ended, where its cases do not say it already."""
+    if code == 124:
+        result.failures.append(f"{result.name}: not done after {result.seconds:.0f} s")
+    elif code not in (0, 1) or (code == 1 and not failed):
+        result.failures.append(f"{result.name}: ended with exit code {code}")
+    result.failures += [f"{result.name}: left running: {command}" for command in left]
+
+
+def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
+    """(is rostest's own case, case): its own say only whether a test node ran at all."""
+    return [(path.name.startswith("rostest-"), case) for path in sorted(results.rglob("*.xml"))
+            for case in ET.parse(path).iter("testcase")]
+
+
+def show_failures(results: list[Result]) -> None:
+    """What the failed ones printed, then a line for each failure."""
+    for result in results:
+        if result.output:
+            print(f"\n==== {result.name}")
+            print("\n".join(f"  | {line}" for line in result.output.splitlines()))
+    failures = [failure for result in results for failure in result.failures]
+    if failures:
+        print("\nFailed:")
+        print("\n".join(f"  {failure}" for failure in failures))
+
+
+def show_totals(results: list[Result]) -> bool:
+    """One line, the last; whether something passed and nothing failed."""
+    passed, skipped = sum(each.passed for each in results), sum(each.skipped for each in results)
+    failed = sum(len(each.failures) for each in results)
+    last = f"{passed} passed, {failed} failed"
+    print(last + (f", {skipped} skipped" if skipped else ""), flush=True)
+    return bool(passed) and not failed

@@ -1,0 +1,47 @@
+"""Joints between links: axes, stops, losses and springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.pose import IDENTITY, Pose, Vector3
+
+
+@dataclass(frozen=True)
+class SecondAxis:
+    """`<axis2>` of a universal, revolute2 or gearbox joint; fields as of JointDescription."""
+
+    axis: Vector3 = (0.0, 0.0, 1.0)
+    lower: float = -1e16
+    upper: float = 1e16
+    effort: float = -1.0
+    velocity: float = -1.0
+    damping: float = 0.0
+    friction: float = 0.0
+    spring_reference: float = 0.0
+    spring_stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
+class JointDescription:
+    """`axis` is in the joint frame; for URDF that is the child link's frame (`pose` identity)."""
+
+    name: str
+    type: str  # revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox
+    parent: str  # link name, or "world"
+    child: str
+    pose: Pose = IDENTITY  # joint frame in the child link frame
+    axis: Vector3 = (0.0, 0.0, 1.0)
+    lower: float = -1e16  # rad or m
+    upper: float = 1e16
+    effort: float = -1.0  # N m or N; below 0: no limit
+    velocity: float = -1.0  # rad/s or m/s; below 0: no limit
+    damping: float = 0.0
+    friction: float = 0.0
+    spring_reference: float = 0.0
+    spring_stiffness: float = 0.0
+    provide_feedback: bool = False
+    axis2: SecondAxis = SecondAxis()
+    thread_pitch: float = 1.0  # screw: rad/m with the sign turned, travel = -angle / thread_pitch
+    gearbox_ratio: float = 1.0  # gearbox: angle of the parent = -ratio * angle of the child, both
+    gearbox_reference_body: str = ""  # measured from this link, about axis and axis2

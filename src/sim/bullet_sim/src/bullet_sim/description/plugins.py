@@ -1,0 +1,15 @@
+"""What a file says of a plugin, unread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element
+
+
+@dataclass(frozen=True)
+class PluginDescription:
+    """A `<plugin>` element as written; who loads it reads the parameters."""
+
+    name: str
+    filename: str
+    element: Element

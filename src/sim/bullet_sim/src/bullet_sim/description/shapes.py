@@ -1,0 +1,97 @@
+"""Shapes of what is seen and touched; lengths in m."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.description.surfaces import Material
+from bullet_sim.pose import Vector3
+
+
+@dataclass(frozen=True)
+class Box:
+    """A cuboid about its middle."""
+
+    size: Vector3  # full lengths
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A round bar about its middle."""
+
+    radius: float
+    length: float  # along z, centred
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A ball about its middle."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Flat ground without end."""
+
+    normal: Vector3
+    size: tuple[float, float]  # what is drawn; a plane collides everywhere
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles from a file, or those of one part of it."""
+
+    path: str  # absolute path of an existing file
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    submesh: str | None = None
+    centre_submesh: bool = False
+
+
+@dataclass(frozen=True)
+class Heightmap:
+    """Ground whose height is a grey image: white is `size[2]` above black; image up is +y."""
+
+    path: str | None  # absolute path of an existing image; None: flat
+    size: Vector3 = (1.0, 1.0, 1.0)
+    position: Vector3 = (0.0, 0.0, 0.0)  # of the middle of the black level, in the link frame
+    layers: tuple[TerrainLayer, ...] = ()  # from the lowest up
+
+
+@dataclass(frozen=True)
+class TerrainLayer:
+    """How a heightmap looks from some height on."""
+
+    material: Material
+    tile: float = 10.0  # m that one image of the texture covers
+    lowest: float = 0.0  # m above the black level
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """Outlines extruded from z = 0 up; what lies inside an odd number of them is solid."""
+
+    outlines: tuple[tuple[tuple[float, float], ...], ...]  # closed, m
+    height: float = 1.0
+
+
+@dataclass(frozen=True)
+class ImageExtrusion:
+    """The dark parts of a picture as walls from z = 0 up; the picture's middle is the origin."""
+
+    path: str  # absolute path of an existing image
+    scale: float = 1.0  # m/px
+    threshold: int = 200  # grey value (0..255) up to which a pixel is solid
+    height: float = 1.0
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A band of ground along points, such as a road; it is only ever drawn."""
+
+    points: tuple[Vector3, ...]
+    width: float = 1.0
+
+
+Generated = Heightmap | Polyline | ImageExtrusion | Strip  # triangles that we make ourselves
+Geometry = Box | Cylinder | Sphere | Plane | Mesh | Generated

@@ -1,0 +1,56 @@
+"""Worlds: physics, place on Earth, scene and all that is in them from the start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.description.links import Visual
+from bullet_sim.description.models import ModelDescription
+from bullet_sim.description.plugins import PluginDescription
+from bullet_sim.description.scenes import LightDescription, SceneDescription
+from bullet_sim.pose import Vector3
+
+
+@dataclass(frozen=True)
+class PhysicsDescription:
+    """`<physics>` with SDF's defaults; the ODE numbers are kept for get_physics_properties."""
+
+    max_step_size: float = 0.001  # s
+    real_time_update_rate: float = 1000.0  # Hz; 0: as fast as possible
+    real_time_factor: float = 1.0
+    max_contacts: int = 20
+    iterations: int = 50
+    precon_iterations: int = 0
+    sor: float = 1.3
+    cfm: float = 0.0
+    erp: float = 0.2
+    contact_max_correcting_vel: float = 100.0
+    contact_surface_layer: float = 0.001
+    auto_disable_bodies: bool = False
+
+
+@dataclass(frozen=True)
+class SphericalDescription:
+    """`<spherical_coordinates>`: where on Earth the world's origin is."""
+
+    latitude_deg: float = 0.0
+    longitude_deg: float = 0.0
+    elevation: float = 0.0  # m above the WGS84 ellipsoid
+    heading_deg: float = 0.0  # from east to the world's x axis, counter-clockwise
+
+
+@dataclass(frozen=True)
+class WorldDescription:
+    """All that is there at the start; magnetic field in T, gravity in m/s^2."""
+
+    name: str = "default"
+    gravity: Vector3 = (0.0, 0.0, -9.8)
+    magnetic_field: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
+    physics: PhysicsDescription = PhysicsDescription()
+    scene: SceneDescription = SceneDescription()
+    spherical: SphericalDescription | None = None
+    models: tuple[ModelDescription, ...] = ()
+    lights: tuple[LightDescription, ...] = ()
+    plugins: tuple[PluginDescription, ...] = ()
+    scenery: tuple[tuple[str, Visual], ...] = ()  # seen but not touched, such as roads
+    sim_time: float = 0.0  # s, at which a saved world goes on

@@ -1,0 +1,27 @@
+"""Straight rays against collision shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bullet_sim.physics.client import PhysicsClient
+
+
+@dataclass(frozen=True)
+class RayHits:
+    """Result of a batch of rays; row i belongs to ray i."""
+
+    fraction: np.ndarray  # (n,) of the ray's length; 1 where nothing was hit
+    retro: np.ndarray  # (n,) laser_retro of what was hit
+
+
+def cast_rays(client: PhysicsClient, starts: np.ndarray, ends: np.ndarray) -> RayHits:
+    """First shape along each ray; `starts` and `ends` are (n, 3) in the world, m."""
+    rows = client.cast_rays(starts.tolist(), ends.tolist())
+    fraction = np.array([row[2] if row[0] >= 0 else 1.0 for row in rows])
+    retro = np.zeros(len(rows))
+    if client.retro:
+        retro[:] = [client.retro.get((row[0], row[1]), 0.0) for row in rows]
+    return RayHits(fraction, retro)

@@ -1,0 +1,46 @@
+"""Velocities of rigid bodies, and what they are at other points and in other frames."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bullet_sim.pose import Pose, Vector3, conjugate, rotate
+
+
+@dataclass(frozen=True)
+class Twist:
+    """Velocity of a frame's origin and its rate of turn, both in world axes."""
+
+    linear: Vector3 = (0.0, 0.0, 0.0)  # m/s
+    angular: Vector3 = (0.0, 0.0, 0.0)  # rad/s
+
+
+STILL = Twist()
+
+
+def cross(a, b) -> Vector3:
+    """Vector product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def shifted_twist(twist: Twist, at: Vector3, to: Vector3) -> Twist:
+    """The same rigid motion, seen at another point."""
+    ax, ay, az = twist.angular
+    x, y, z = (t - a for t, a in zip(to, at, strict=True))
+    linear = twist.linear
+    return Twist(
+        (linear[0] + ay * z - az * y, linear[1] + az * x - ax * z, linear[2] + ax * y - ay * x),
+        twist.angular,
+    )
+
+
+def twist_difference(a: Twist, b: Twist) -> Twist:
+    """What `a` is more than `b`."""
+    return Twist(tuple(x - y for x, y in zip(a.linear, b.linear, strict=True)),
+                 tuple(x - y for x, y in zip(a.angular, b.angular, strict=True)))
+
+
+def twist_in(pose: Pose, twist: Twist) -> Twist:
+    """World-axes twist, turned into the axes of `pose`."""
+    back = conjugate(pose.orientation)
+    return Twist(rotate(back, twist.linear), rotate(back, twist.angular))

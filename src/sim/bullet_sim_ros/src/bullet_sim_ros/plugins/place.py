@@ -1,0 +1,76 @@
+"""Where a plugin stands: in the world, a model, a sensor or a visual."""
+
+from __future__ import annotations
+
+from bullet_sim.description import PluginDescription, SensorDescription, Visual
+from bullet_sim.link import Link
+from bullet_sim.model import Model
+from bullet_sim.world import World
+from bullet_sim_ros.errors import PluginError
+
+
+class Place:
+    """A plugin's element and those around it; what is asked for and not there is a PluginError."""
+
+    def __init__(self, world: World, model: Model | None, description: PluginDescription,
+                 sensor: SensorDescription | None = None, link: Link | None = None,
+                 visual: Visual | None = None):
+        self.world = world
+        self.description = description
+        self._model = model
+        self._sensor = sensor
+        self._link = link
+        self._visual = visual
+
+    @property
+    def model(self) -> Model:
+        """The model that the plugin is in."""
+        if self._model is None:
+            raise PluginError("it belongs inside a <model>, not in the world")
+        return self._model
+
+    @property
+    def in_world(self) -> bool:
+        """Whether the plugin is in the world itself."""
+        return self._model is None
+
+    @property
+    def has_sensor(self) -> bool:
+        """Whether the plugin is in a sensor."""
+        return self._sensor is not None
+
+    @property
+    def in_visual(self) -> bool:
+        """Whether the plugin is in a visual."""
+        return self._visual is not None
+
+    @property
+    def visual(self) -> Visual:
+        """The visual that the plugin is in; `link` is the one that it is on."""
+        if self._visual is None:
+            raise PluginError("it belongs inside a <visual>")
+        return self._visual
+
+    @property
+    def sensor(self) -> SensorDescription:
+        """The sensor that the plugin is in."""
+        if self._sensor is None:
+            raise PluginError("it belongs inside a <sensor>, not in the model")
+        return self._sensor
+
+    @property
+    def link(self) -> Link:
+        """The link that the sensor is on."""
+        if self._link is None:
+            raise PluginError("it belongs inside a <sensor>, not in the model")
+        return self._link
+
+    def describe(self) -> str:
+        """Model, sensor or visual, and plugin, for log lines."""
+        sensor = f" sensor {self._sensor.name}:" if self._sensor else ""
+        if self._visual is not None:
+            sensor = f" visual {self._visual.name}:"
+        name = self.description.name or "(no name)"
+        place = f"model {self._model.name}:" if self._model else \
+            f"world {self.world.description.name}:"
+        return f"{place}{sensor} plugin {name} ({self.description.filename})"

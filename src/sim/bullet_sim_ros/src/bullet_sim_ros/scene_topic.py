@@ -1,0 +1,42 @@
+"""~scene: what there is to see, as text, for the page in the browser and others that draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import rospy
+from std_msgs.msg import String
+
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.scene_text import scene_to_text
+from bullet_sim_ros import names
+
+if TYPE_CHECKING:
+    from bullet_sim.world import World
+
+
+class SceneTopic:
+    """Latched; made while somebody subscribes, and anew when links, visuals or lights change.
+
+    How things move is in link_states; in a paused world, which publishes none, a new text has it.
+    """
+
+    def __init__(self, world: World):
+        self._world = world
+        self._publisher = rospy.Publisher(names.SCENE, String, queue_size=1, latch=True)
+        self._told: int | None = None  # version of the scene
+        self._still: tuple[Pose, ...] = ()  # of all links, while paused
+
+    def update(self) -> None:
+        """Called again and again, paused or not: costs next to nothing while nothing changes."""
+        if not self._publisher.get_num_connections():
+            return
+        still = self._poses() if self._world.paused else self._still
+        if self._told == self._world.scene.version and still == self._still:
+            return
+        self._told, self._still = self._world.scene.version, still
+        self._publisher.publish(String(scene_to_text(self._world.update_scene())))
+
+    def _poses(self) -> tuple[Pose, ...]:
+        return tuple(link.pose for model in self._world.models.values()
+                     for link in model.links.values())
