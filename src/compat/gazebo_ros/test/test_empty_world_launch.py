@@ -17,7 +17,7 @@ DEFAULTS = {
     "enable_ros_network": "true", "server_required": "false", "gui_required": "false",
 }
 OUR_OWN = {"real_time_factor": "", "lockstep": "", "lockstep_timeout": "1.0", "seed": "",
-           "profile": "false"}
+           "profile": "false", "viewer": "false"}
 
 
 def load(*arguments, file=LAUNCH):
@@ -33,6 +33,7 @@ def command(*arguments):
 
 
 def test_the_arguments_and_their_defaults():
+    # conforms: empty_world.launch
     root = ElementTree.parse(LAUNCH).getroot()
     args = root.findall("arg")
     defaults = {a.get("name"): a.get("default") for a in args if "default" in a.attrib}
@@ -64,10 +65,15 @@ def test_plain_start():
      ["-u", "-r", "--verbose", "-e", "ode", "worlds/empty.world"]),
 ])
 def test_the_servers_command_line(arguments, words):
+    # conforms: empty_world.launch/paused, empty_world.launch/verbose, empty_world.launch/physics
+    # conforms: empty_world.launch/world_name, empty_world.launch/extra_gazebo_args
     assert command(*arguments) == words
 
 
 def test_debug_respawn_required_output():
+    # conforms: empty_world.launch/debug, empty_world.launch/respawn_gazebo
+    # conforms: empty_world.launch/output, empty_world.launch/server_required
+    # conforms: empty_world.launch/gui_required, empty_world.launch/verbose
     nodes, _ = load("debug:=true", "respawn_gazebo:=true", "output:=log")
     assert nodes["gazebo"].type == "debug" and nodes["gazebo"].respawn
     assert not nodes["gazebo_gui"].respawn
@@ -79,10 +85,19 @@ def test_debug_respawn_required_output():
 
 
 def test_without_gui_only_the_client_is_missing():
+    # conforms: empty_world.launch/gui
     assert list(load("gui:=false")[0]) == ["gazebo"]
 
 
+def test_the_page_in_the_browser_comes_only_when_asked_for():
+    # conforms: empty_world.launch/viewer
+    assert "sim_viewer" not in load()[0]
+    assert load("viewer:=true")[0]["sim_viewer"].package == "sim_viewer"
+
+
 def test_parameters():
+    # conforms: empty_world.launch/use_sim_time, empty_world.launch/enable_ros_network
+    # conforms: empty_world.launch/use_clock_frequency, empty_world.launch/pub_clock_frequency
     _, params = load("use_sim_time:=false", "enable_ros_network:=false",
                      "use_clock_frequency:=true", "pub_clock_frequency:=50")
     assert params == {"/use_sim_time": False, "/gazebo/enable_ros_network": False,
@@ -90,6 +105,8 @@ def test_parameters():
 
 
 def test_parameters_of_our_own():
+    # conforms: empty_world.launch/lockstep, empty_world.launch/lockstep_timeout
+    # conforms: empty_world.launch/profile
     _, params = load("lockstep:=/cmd_vel", "profile:=true")
     ours = {name: value for name, value in params.items()
             if name not in ("/use_sim_time", "/gazebo/enable_ros_network")}

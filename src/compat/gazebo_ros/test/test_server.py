@@ -38,6 +38,8 @@ PLAIN = ["--world", "worlds/empty.world", "--physics", "ode"]
      ["--world", "x.world", "--physics", "ode"]),
 ])
 def test_gazebos_options_become_the_nodes(words, expected):
+    # conforms: gzserver, gzserver/WORLD, gzserver/-u, gzserver/--verbose, gzserver/-e
+    # conforms: gzserver/remappings, gzserver/unknown options
     assert node_arguments("gzserver", words) == expected
 
 
@@ -65,8 +67,10 @@ def start(tmp_path):
         process.communicate()
 
 
-@pytest.mark.parametrize(("name", "dev"), [("gzserver", "False"), ("debug", "True")])
+@pytest.mark.parametrize(("name", "dev"), [
+    ("gzserver", "False"), ("debug", "True"), ("perf", "False")])
 def test_the_script_becomes_the_node(start, name, dev):
+    # conforms: perf, debug
     process = start(name, "-u", "a.world", "__name:=gazebo")
     assert process.stdout.readline().split() == [
         str(process.pid), dev, "True", "--world", "a.world", "--physics", "ode", "--paused",
@@ -76,6 +80,7 @@ def test_the_script_becomes_the_node(start, name, dev):
 
 
 def test_gazebo_is_the_clients_line_and_the_server(start):
+    # conforms: gazebo
     process = start("gazebo", "a.world")
     assert "image_view" in process.stdout.readline()
     assert process.stdout.readline().split()[0] == str(process.pid)
@@ -84,6 +89,7 @@ def test_gazebo_is_the_clients_line_and_the_server(start):
 @pytest.mark.parametrize("name", ["gzserver", "gzclient", "gazebo", "debug"])
 @pytest.mark.parametrize("option", ["-h", "--help", "-v", "--version"])
 def test_help_and_version(start, name, option):
+    # conforms: gzserver/-h, gzserver/-v, gzclient/-h, gzclient/-v
     process = start(name, option)
     said, _ = process.communicate(timeout=20)
     assert process.returncode == 0 and name in said
@@ -91,6 +97,7 @@ def test_help_and_version(start, name, option):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_client_says_how_to_look_and_ends_with_0(start, number):
+    # conforms: gzclient
     process = start("gzclient", "--verbose", "__name:=gazebo_gui")
     line = process.stdout.readline()
     assert "rosrun image_view image_view" in line and "rviz" in line

@@ -158,6 +158,8 @@ class Model:
 
     def link(self, name: str) -> Link:
         """The link, or the one that took it in when fixed joints were lumped."""
+        if name not in self.links:
+            name = self._without_scope(name)
         name = self.description.lumped.get(name, (name, None))[0]
         if name not in self.links:
             raise UnknownName(f"link of model {self.name}", name, self.links)
@@ -165,6 +167,8 @@ class Model:
 
     def joint(self, name: str) -> Joint | HeldJoint:
         """The joint of that name; fixed ones are there too, but not among `joints`."""
+        if name not in self.joints:
+            name = self._without_scope(name)
         found = self.joints.get(name) or self.fixed_joints.get(name)
         if found is not None:
             return found
@@ -173,6 +177,10 @@ class Model:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
                                   f"{held[0].type}, of which there is nothing to read or drive")
         raise UnknownName(f"joint of model {self.name}", name, self.joints)
+
+    def _without_scope(self, name: str) -> str:
+        """A part's name inside the model: Gazebo also takes `MODEL::PART`."""
+        return name.removeprefix(f"{self.name}::")
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
         """The joints of these names, to be read and driven together: a group for each body."""

@@ -17,7 +17,7 @@ from bullet_sim.formats.xml_values import flag, integer, number, pose
 def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
     """The plugins directly below an element, as written."""
     return tuple(
-        PluginDescription(plugin.get("name", ""), plugin.get("filename", ""), plugin)
+        PluginDescription(plugin.get("name", ""), plugin.get("filename", "").strip(), plugin)
         for plugin in element.findall("plugin")
     )
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.physics.assembly import Tree
+from bullet_sim.physics.embedded import Embedded
 from bullet_sim.physics.planes import Planes
 from bullet_sim.physics.quiet import STDOUT, pybullet, quiet
 from bullet_sim.physics.rest import Rest
@@ -29,6 +30,7 @@ FEWEST_ITERATIONS = 150
 # ones, and what stands meanwhile creeps by 0.04 mm/s on a slope (0.013 when exact).
 EXACT, BRISK = 1e-7, 1e-5
 STATIC_FILTER = (2, -3)  # Bullet's group and mask of what never moves: all but its like
+PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
 RAYS_AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 
 
@@ -38,6 +40,7 @@ class PhysicsClient:
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
         self.rest = Rest()
         self.planes = Planes(self._let_collide)
+        self._embedded = Embedded(self.read)
         self.retro: dict[tuple[int, int], float] = {}  # laser_retro of engine links, where not 0
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
@@ -64,6 +67,8 @@ class PhysicsClient:
     def call(self, function, *args, **kwargs):
         """Run a pybullet function that changes something."""
         self.rest.disturb()
+        if function in PLACING:
+            self._embedded.watch()
         return function(*args, physicsClientId=self._id, **kwargs)
 
     def read(self, function, *args, **kwargs):
@@ -77,6 +82,7 @@ class PhysicsClient:
             if tolerance != self._tolerance:
                 self._tolerance = tolerance
                 self.read(pybullet.setPhysicsEngineParameter, solverResidualThreshold=tolerance)
+            self._embedded.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
 
     def cast_rays(self, starts: list, ends: list) -> list:

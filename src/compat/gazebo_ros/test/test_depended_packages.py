@@ -1,0 +1,38 @@
+"""Packages that robots' package.xml and CMakeLists.txt name: rospack and catkin find them."""
+
+import os
+from pathlib import Path
+
+import pytest
+import rospkg
+
+NAMES = (
+    "gazebo_ros", "gazebo_msgs", "gazebo_plugins", "gazebo_ros_control", "gazebo_dev",
+    "gazebo_ros_pkgs", "controller_manager", "controller_manager_msgs", "ros_control",
+    "ros_controllers", "joint_state_controller", "effort_controllers", "position_controllers",
+    "velocity_controllers", "diff_drive_controller", "joint_trajectory_controller", "xacro")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_robots_package_can_depend_on_it(name):
+    # conforms: find_package(catkin COMPONENTS)/gazebo_ros
+    # conforms: find_package(catkin COMPONENTS)/gazebo_msgs
+    # conforms: find_package(catkin COMPONENTS)/gazebo_plugins
+    # conforms: find_package(catkin COMPONENTS)/gazebo_ros_control
+    # conforms: find_package(catkin COMPONENTS)/gazebo_dev
+    # conforms: find_package(catkin COMPONENTS)/gazebo_ros_pkgs
+    # conforms: find_package(catkin COMPONENTS)/controller_manager
+    # conforms: find_package(catkin COMPONENTS)/controller_manager_msgs
+    # conforms: find_package(catkin COMPONENTS)/ros_control
+    # conforms: find_package(catkin COMPONENTS)/ros_controllers
+    # conforms: find_package(catkin COMPONENTS)/joint_state_controller
+    # conforms: find_package(catkin COMPONENTS)/effort_controllers
+    # conforms: find_package(catkin COMPONENTS)/position_controllers
+    # conforms: find_package(catkin COMPONENTS)/velocity_controllers
+    # conforms: find_package(catkin COMPONENTS)/diff_drive_controller
+    # conforms: find_package(catkin COMPONENTS)/joint_trajectory_controller
+    # conforms: find_package(catkin COMPONENTS)/xacro
+    assert Path(rospkg.RosPack().get_path(name)).is_dir()
+    prefixes = os.environ["CMAKE_PREFIX_PATH"].split(os.pathsep)
+    assert any((Path(prefix) / "share" / name / "cmake" / f"{name}Config.cmake").is_file()
+               for prefix in prefixes)

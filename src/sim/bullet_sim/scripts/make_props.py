@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Writes the folders of data/models that data/props/*.toml describes: plain bodies of one link.
+
+    python3 src/sim/bullet_sim/scripts/make_props.py
+
+A table is a model. Its keys (SI units):
+  name        the model's own name where it is not that of the folder
+  like, paint another model's table with the look of its first part changed
+  static, mass (1), link ("link"), pose and link_pose [x, y, z], as in SDF
+  size        [x, y, z], m, of the box round all that is solid (round all, where nothing is)
+  ordinary    the size is an ordinary one of its kind; without it, upstream's own numbers
+  parts       list of {box = [x, y, z]}, {cylinder = [radius, length]}, {sphere = radius},
+              {squares = [columns, rows, side]} (the black half of a checkerboard) or {digit = n}
+              (on the four sides of a cube of 0.8 m); at = [x, y, z(, roll, pitch, yaw)] in the
+              link, look = a Gazebo material or [r, g, b], solid / seen = false for no collision /
+              no visual
+"""
+
+import math
+import tomllib
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
+HEAD = '<?xml version="1.0"?>\n<!-- Written by make_props.py from data/props. -->\n'
+SHAPES = ("box", "cylinder", "sphere")
+FACES = ((0.4, 0.0, 0.0), (0.0, 0.4, 90.0), (-0.4, 0.0, 180.0), (0.0, -0.4, 270.0))
+# The seven bars of a digit: across, up (of half the digit's width and height) and whether it lies.
+BARS = {"a": (0, 2, True), "b": (1, 1, False), "c": (1, -1, False), "d": (0, -2, True),
+        "e": (-1, -1, False), "f": (-1, 1, False), "g": (0, 0, True)}
+DIGITS = {1: "bc", 2: "abged", 3: "abgcd", 4: "fgbc", 5: "afgcd", 6: "afgecd", 7: "abc",
+          8: "abcdefg", 9: "abcdfg"}
+
+
+def read_props(folder: Path = DATA / "props") -> dict[str, dict]:
+    """All tables by model folder, with `like` replaced and each part made of plain shapes."""
+    tables = {}
+    for path in sorted(folder.glob("*.toml")):
+        tables |= tomllib.loads(path.read_text(encoding="utf-8"))
+    return {name: _complete(table, tables) for name, table in tables.items()}
+
+
+def _complete(table: dict, tables: dict[str, dict]) -> dict:
+    if "like" in table:
+        model = tables[table["like"]]
+        first = {**model["parts"][0], "look": table["paint"]}
+        table = {**model, **table, "parts": [first, *model["parts"][1:]]}
+    return {**table, "parts": [plain for part in table["parts"] for plain in _plain(part)]}
+
+
+def _plain(part: dict) -> list[dict]:
+    if "digit" in part:
+        return [{**_bar(bar, face), "look": "Gazebo/FlatBlack", "solid": False}
+                for face in FACES for bar in DIGITS[part["digit"]]]
+    if "squares" in part:
+        columns, rows, side = part["squares"]
+        return [{"box": [side, side, 0.001], "look": part["look"], "solid": False,
+                 "at": [round((i - (columns - 1) / 2) * side, 6),
+                        round((j - (rows - 1) / 2) * side, 6), part["at"][2]]}
+                for i in range(columns) for j in range(rows) if (i + j) % 2 == 0]
+    return [part]
+
+
+def _bar(bar: str, face: tuple[float, float, float]) -> dict:
+    across, up, lies = BARS[bar]
+    x, y, angle_deg = face
+    angle = math.radians(angle_deg)
+    at = [x - across * 0.14 * math.sin(angle), y + across * 0.14 * math.cos(angle), up * 0.14]
+    size = [0.002, 0.34, 0.06] if lies else [0.002, 0.06, 0.28]
+    return {"box": size, "at": [*(round(value, 6) for value in at), 0, 0, round(angle, 6)]}
+
+
+def model_text(folder: str, table: dict) -> str:
+    """The model.sdf of a table."""
+    sdf = Element("sdf", version="1.6")
+    model = SubElement(sdf, "model", name=table.get("name", folder))
+    if table.get("static"):
+        _text(model, "static", "true")
+    if "pose" in table:
+        _text(model, "pose", _numbers([*table["pose"], 0, 0, 0]))
+    link = SubElement(model, "link", name=table.get("link", "link"))
+    if "link_pose" in table:
+        _text(link, "pose", _numbers([*table["link_pose"], 0, 0, 0]))
+    if not table.get("static"):
+        _add_inertial(link, table)
+    for number, part in enumerate(table["parts"], 1):
+        for kind, wanted in (("collision", "solid"), ("visual", "seen")):
+            if part.get(wanted, True):
+                _add_shape(link, kind, f"{kind}_{number}", part)
+    indent(sdf, " ")
+    return HEAD + tostring(sdf, encoding="unicode") + "\n"
+
+
+def config_text(folder: str, table: dict) -> str:
+    """The model.config of a table."""
+    model = Element("model")
+    _text(model, "name", table.get("name", folder))
+    _text(model, "version", "1.0")
+    _text(model, "sdf", "model.sdf").set("version", "1.6")
+    indent(model, " ")
+    return HEAD + tostring(model, encoding="unicode") + "\n"
+
+
+def _add_shape(link: Element, kind: str, name: str, part: dict) -> None:
+    element = SubElement(link, kind, name=name)
+    at = part.get("at", [0, 0, 0])
+    if any(at):
+        _text(element, "pose", _numbers(at if len(at) == 6 else [*at, 0, 0, 0]))
+    geometry = SubElement(element, "geometry")
+    match _shape(part):
+        case "box", size:
+            _text(SubElement(geometry, "box"), "size", _numbers(size))
+        case "cylinder", (radius, length):
+            cylinder = SubElement(geometry, "cylinder")
+            _text(cylinder, "radius", _numbers([radius]))
+            _text(cylinder, "length", _numbers([length]))
+        case "sphere", radius:
+            _text(SubElement(geometry, "sphere"), "radius", _numbers([radius]))
+    if kind == "visual":
+        _add_material(SubElement(element, "material"), part["look"])
+
+
+def _add_material(material: Element, look: str | list[float]) -> None:
+    if isinstance(look, str):
+        script = SubElement(material, "script")
+        _text(script, "uri", "file://media/materials/scripts/gazebo.material")
+        _text(script, "name", look)
+        return
+    for tag in ("ambient", "diffuse"):
+        _text(material, tag, _numbers([*look, 1]))
+
+
+def _add_inertial(link: Element, table: dict) -> None:
+    """Of the solid parts, of one density; parts that lie at an angle count as if they did not."""
+    solid = [part for part in table["parts"] if part.get("solid", True)]
+    volumes = [_volume(part) for part in solid]
+    mass = table.get("mass", 1)
+    masses = [mass * volume / sum(volumes) for volume in volumes]
+    places = [part.get("at", [0, 0, 0])[:3] for part in solid]
+    centre = [sum(m * place[i] for m, place in zip(masses, places, strict=True)) / mass
+              for i in range(3)]
+    moments = [0.0, 0.0, 0.0]
+    for m, part, place in zip(masses, solid, places, strict=True):
+        squares = [(place[i] - centre[i]) ** 2 + side ** 2 / 12
+                   for i, side in enumerate(_sides(part))]
+        for i in range(3):
+            moments[i] += m * (sum(squares) - squares[i])
+    inertial = SubElement(link, "inertial")
+    if any(abs(value) > 1e-9 for value in centre):
+        _text(inertial, "pose", _numbers([*centre, 0, 0, 0]))
+    _text(inertial, "mass", _numbers([mass]))
+    inertia = SubElement(inertial, "inertia")
+    for tag, value in zip(("ixx", "iyy", "izz"), moments, strict=True):
+        _text(inertia, tag, f"{value:.6g}")
+    for tag in ("ixy", "ixz", "iyz"):
+        _text(inertia, tag, "0")
+
+
+def _shape(part: dict) -> tuple:
+    kind = next(kind for kind in SHAPES if kind in part)
+    return kind, part[kind]
+
+
+def _volume(part: dict) -> float:
+    match _shape(part):
+        case "box", size:
+            return math.prod(size)
+        case "cylinder", (radius, length):
+            return math.pi * radius ** 2 * length
+        case "sphere", radius:
+            return 4 / 3 * math.pi * radius ** 3
+    raise ValueError(part)
+
+
+def _sides(part: dict) -> list[float]:
+    """Sides, m, of the box with the same moments of inertia per mass."""
+    match _shape(part):
+        case "box", size:
+            return size
+        case "cylinder", (radius, length):
+            return [math.sqrt(3) * radius, math.sqrt(3) * radius, length]
+        case "sphere", radius:
+            return [math.sqrt(12 / 5) * radius] * 3
+    raise ValueError(part)
+
+
+def _text(parent: Element, tag: str, text: str) -> Element:
+    element = SubElement(parent, tag)
+    element.text = text
+    return element
+
+
+def _numbers(values: list[float]) -> str:
+    return " ".join(f"{value:.7g}" for value in values)
+
+
+def files() -> dict[str, str]:
+    """What the script writes: text by path below data/models."""
+    written = {}
+    for folder, table in read_props().items():
+        written[f"{folder}/model.sdf"] = model_text(folder, table)
+        written[f"{folder}/model.config"] = config_text(folder, table)
+    return written
+
+
+if __name__ == "__main__":
+    for name, text in files().items():
+        path = DATA / "models" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")

@@ -1,0 +1,61 @@
+"""What is put into the ground comes out of it slowly and upright."""
+
+import pytest
+
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Inertial,
+    LinkDescription,
+    ModelDescription,
+    Plane,
+    WorldDescription,
+)
+from bullet_sim.physics import embedded
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+
+HALF = 0.1  # m, of the cube's height
+FLOOR = ModelDescription("floor", static=True, links=(LinkDescription(
+    "link", collisions=(Collision("plane", Plane((0.0, 0.0, 1.0), (10.0, 10.0))),)),))
+CUBE = ModelDescription("cube", links=(LinkDescription(
+    "link", inertial=Inertial(1.0, inertia=(0.01, 0, 0, 0.01, 0, 0.01)),
+    collisions=(Collision("c", Box((2 * HALF,) * 3)),)),))
+
+
+@pytest.fixture
+def world():
+    made = World(WorldDescription(models=(FLOOR,)))
+    yield made
+    made.close()
+
+
+def heights(world, model, seconds):
+    found = []
+    for _ in range(round(seconds / 0.01)):
+        world.step(10)
+        found.append(model.pose.position[2])
+    return found
+
+
+@pytest.mark.parametrize("depth", [0.02, 0.06, 0.15])
+def test_a_spawned_body_rises_to_the_floor_and_no_higher(world, depth):
+    rising = heights(world, world.spawn(CUBE, Pose((0, 0, HALF - depth))), 2.0)
+    assert max(rising) < HALF + 0.005
+    assert rising[-1] == pytest.approx(HALF, abs=0.001)
+    fastest = max(b - a for a, b in zip(rising, rising[1:], strict=False)) / 0.01
+    assert 0.5 * embedded.FASTEST < fastest < 1.2 * embedded.FASTEST
+
+
+def test_a_moved_body_does_so_too(world):
+    cube = world.spawn(CUBE, Pose((0, 0, HALF)))
+    world.step(1000)
+    cube.set_pose(Pose((0, 0, 0.03)))
+    assert max(heights(world, cube, 2.0)) < HALF + 0.005
+    assert abs(cube.pose.rpy()[0]) < 0.01
+
+
+def test_what_is_deep_for_good_is_left_to_the_engine_in_the_end(world, monkeypatch):
+    monkeypatch.setattr(embedded, "LONGEST", 0.1)
+    cube = world.spawn(CUBE, Pose((0, 0, 0.02)))
+    assert max(heights(world, cube, 1.0)) > HALF + 0.1

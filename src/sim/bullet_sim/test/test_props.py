@@ -1,0 +1,133 @@
+"""The models and worlds that come with the simulator: as their scripts write them, of the size that
+their data say, and standing where they are put."""
+
+import importlib.util
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bullet_sim.description import Box, Cylinder, Geometry, ModelDescription, Plane, Sphere
+from bullet_sim.errors import ResourceNotFound
+from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+
+SCRIPTS = Path(__file__).resolve().parents[1] / "scripts"
+RESOURCES = Resources.from_environment({})
+SPACING = 30.0  # m, between models that are tried in one world
+LIMIT = 0.001  # m, and rad
+
+
+def script(name: str):
+    """A file of scripts/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+PROPS = script("make_props").read_props()
+OTHERS = {path.name for path in (DATA_FOLDER / "models").iterdir()} - set(PROPS)
+
+
+def load(name: str) -> ModelDescription:
+    return load_model('<sdf version="1.6"><world name="w"><include><pose>0 0 0 0 0 0</pose>'
+                      f"<uri>model://{name}</uri></include></world></sdf>", RESOURCES)
+
+
+def half_extent(shape: Geometry, turn: np.ndarray) -> np.ndarray:
+    """(3,) m, half of what a turned shape measures along x, y and z."""
+    match shape:
+        case Sphere(radius):
+            return np.full(3, radius)
+        case Box(size):
+            return np.abs(turn) @ (np.array(size) / 2)
+        case Cylinder(radius, length):
+            axis = turn[:, 2]
+            return np.abs(axis) * length / 2 + radius * np.sqrt(np.maximum(1 - axis ** 2, 0))
+    raise TypeError(shape)
+
+
+def bounds(model: ModelDescription) -> tuple[np.ndarray, np.ndarray]:
+    """(3,) m each: least and greatest corner of all that is solid, of all that is seen if none."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    solid = any(link.collisions for link in model.links)
+    for link in model.links:
+        for part in link.collisions if solid else link.visuals:
+            place = (link.pose * part.pose).matrix()
+            reach = half_extent(part.geometry, place[:3, :3])
+            low = np.minimum(low, place[:3, 3] - reach)
+            high = np.maximum(high, place[:3, 3] + reach)
+    return low, high
+
+
+@pytest.mark.parametrize("maker", ["make_props", "make_worlds"])
+def test_files_are_what_their_script_writes(maker):
+    folder = DATA_FOLDER / ("models" if maker == "make_props" else "worlds")
+    for name, text in script(maker).files().items():
+        assert (folder / name).read_text(encoding="utf-8") == text, f"python3 {SCRIPTS}/{maker}.py"
+
+
+def test_they_are_small():
+    assert sum(path.stat().st_size for path in DATA_FOLDER.rglob("*.*")) < 1_000_000
+
+
+@pytest.mark.parametrize("name", PROPS)
+def test_a_prop_measures_what_its_data_say(name):
+    low, high = bounds(load(name))
+    seen_only = not any(part.get("solid", True) for part in PROPS[name]["parts"])
+    assert high - low == pytest.approx(PROPS[name]["size"], abs=0.003 if seen_only else 0.0006)
+
+
+@pytest.fixture(scope="module")
+def stood() -> dict[str, tuple[Pose, Pose]]:
+    """Poses of all that can fall, put on the ground a second ago: then and now."""
+    world = World(load_world(DATA_FOLDER / "worlds/empty.world", RESOURCES))
+    placed = {}
+    for number, name in enumerate(sorted({*PROPS, *OTHERS} - {"sun", "ground_plane"})):
+        model = load(name)
+        if not model.static:
+            column, row = divmod(number, 12)
+            place = Pose((column * SPACING, row * SPACING, -bounds(model)[0][2]))
+            placed[name] = world.spawn(model, place, name), place
+    world.step(round(1.0 / world.timestep))
+    return {name: (place, model.pose) for name, (model, place) in placed.items()}
+
+
+FALLING = sorted([*(name for name, table in PROPS.items() if not table.get("static")),
+                  "camera", "create", "depth_camera", "double_pendulum_with_base", "hinged_door",
+                  "hokuyo", "kinect", "pioneer2at", "pioneer2dx", "simple_arm"])
+
+
+@pytest.mark.parametrize("name", FALLING)
+def test_what_can_fall_stands_for_a_second(stood, name):
+    then, now = stood[name]
+    moved = then.inverse() * now
+    turned = 2 * math.acos(min(1.0, abs(moved.orientation[3])))
+    assert np.abs(moved.position).max() < LIMIT and turned < 10 * LIMIT, moved
+
+
+def test_all_that_can_fall_was_tried(stood):
+    assert sorted(stood) == FALLING
+
+
+@pytest.mark.parametrize(
+    "name", sorted(path.name for path in (DATA_FOLDER / "worlds").glob("*.world")))
+def test_a_world_loads_and_steps(name, caplog):
+    world = World(load_world(DATA_FOLDER / "worlds" / name, RESOURCES))
+    world.step(round(0.2 / world.timestep))
+    assert not caplog.records
+    for model in world.models.values():
+        assert np.isfinite(model.pose.position).all() and model.pose.position[2] > -0.05, model.name
+    flat = (Plane, Box, Cylinder, Sphere)
+    assert all(isinstance(part.geometry, flat) for model in world.models.values()
+               for link in model.description.links for part in link.visuals)
+
+
+def test_a_world_that_is_not_there_is_answered_with_those_that_are():
+    with pytest.raises(ResourceNotFound, match=r"worlds/shape.world not found \(searched: .*\); "
+                       r"there are: .*worlds/empty.world, .*worlds/shapes.world"):
+        RESOURCES.find_world("worlds/shape.world")

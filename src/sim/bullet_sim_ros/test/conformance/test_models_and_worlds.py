@@ -1,0 +1,236 @@
+"""Models and worlds that come with the simulator: found by name, spawned from the database, and the
+worlds of gazebo_plugins with what their plugins publish."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+import rospkg
+import yaml
+from std_msgs.msg import String
+
+from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim_ros.interface import FOLDER
+
+TEST_WORLDS = Path(rospkg.RosPack().get_path("gazebo_plugins")) / "test/test_worlds"
+DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
+            "</world></sdf>")  # what spawn_model -database sends
+PREFIX = "models: "
+
+
+UNPACED = '<physics type="ode"><real_time_update_rate>0</real_time_update_rate></physics>'
+
+
+def text_of(path: Path) -> str:
+    """A world that runs as fast as it goes."""
+    return re.sub('<world name=".*">', rf"\g<0>{UNPACED}", path.read_text(encoding="utf-8"))
+
+
+def props(theme: str) -> dict[str, dict]:
+    path = DATA_FOLDER / "props" / f"{theme}.toml"
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def spawn_all(bench, names) -> None:
+    for name in names:
+        answer = bench.call("/gazebo/spawn_sdf_model", model_name=name,
+                            model_xml=DATABASE.format(name))
+        assert answer.success, answer.status_message
+        model = bench.world.models[name]
+        assert any(link.description.visuals for link in model.links.values()), name
+        bench.delete(name)
+
+
+def test_barriers_are_spawned_from_the_database(bench):
+    # conforms: models: barriers/jersey_barrier
+    # conforms: models: barriers/drc_practice_orange_jersey_barrier
+    # conforms: models: barriers/drc_practice_white_jersey_barrier
+    # conforms: models: barriers/construction_cone, models: barriers/construction_barrel
+    # conforms: models: barriers/grey_wall, models: barriers/mud_box
+    # conforms: models: barriers/asphalt_plane, models: barriers/brick_box_3x1x3
+    # conforms: models: barriers/cinder_block, models: barriers/cinder_block_2
+    # conforms: models: barriers/cinder_block_wide, models: barriers/drc_practice_2x4
+    # conforms: models: barriers/drc_practice_2x6, models: barriers/drc_practice_4x4x20
+    # conforms: models: barriers/drc_practice_4x4x40, models: barriers/drc_practice_base_4x4
+    # conforms: models: barriers/drc_practice_base_4x8, models: barriers/drc_practice_block_wall
+    # conforms: models: barriers/drc_practice_blue_cylinder
+    # conforms: models: barriers/drc_practice_yellow_parking_block
+    # conforms: models: barriers/drc_practice_wheel_valve
+    # conforms: models: barriers/drc_practice_wheel_valve_large
+    # conforms: models: barriers/drc_practice_truss, models: barriers/nist_maze_wall_120
+    # conforms: models: barriers/nist_maze_wall_240, models: barriers/nist_simple_ramp_120
+    # conforms: models: barriers/nist_elevated_floor_120, models: barriers/nist_stairs_120
+    # conforms: models: barriers/nist_fiducial_barrel
+    spawn_all(bench, props("barriers"))
+
+
+def test_buildings_are_spawned_from_the_database(bench):
+    # conforms: models: buildings/house_1, models: buildings/house_2, models: buildings/house_3
+    # conforms: models: buildings/gas_station, models: buildings/fast_food
+    # conforms: models: buildings/grocery_store, models: buildings/thrift_shop
+    # conforms: models: buildings/salon, models: buildings/post_office
+    # conforms: models: buildings/law_office, models: buildings/police_station
+    # conforms: models: buildings/fire_station, models: buildings/school
+    # conforms: models: buildings/apartment, models: buildings/office_building
+    # conforms: models: buildings/radio_tower, models: buildings/water_tower
+    # conforms: models: buildings/parking_garage, models: buildings/cafe
+    # conforms: models: buildings/willowgarage
+    spawn_all(bench, props("buildings"))
+
+
+def test_household_are_spawned_from_the_database(bench):
+    # conforms: models: household/beer, models: household/coke_can, models: household/plastic_cup
+    # conforms: models: household/bowl, models: household/saucepan, models: household/hammer
+    # conforms: models: household/cordless_drill, models: household/bookshelf
+    # conforms: models: household/cabinet, models: household/cafe_table, models: household/table
+    # conforms: models: household/table_marble, models: household/chair01
+    # conforms: models: household/cardboard_box, models: household/grey_tote
+    # conforms: models: household/first_2015_trash_can, models: household/trash_bin
+    # conforms: models: household/person_standing, models: household/person_walking
+    # conforms: models: household/door_handle
+    # conforms: models: household/monkey_wrench, models: household/disk_part
+    spawn_all(bench, props("household"))
+
+
+def test_markings_are_spawned_from_the_database(bench):
+    # conforms: models: markings/checkerboard, models: markings/checkerboard_plane
+    # conforms: models: markings/number1, models: markings/number2, models: markings/number3
+    # conforms: models: markings/number4, models: markings/number5, models: markings/number6
+    # conforms: models: markings/number7, models: markings/number8, models: markings/number9
+    # conforms: models: markings/robocup14_spl_field, models: markings/robocup14_spl_goal
+    spawn_all(bench, props("markings"))
+
+
+def test_shapes_are_spawned_from_the_database(bench):
+    # conforms: models: shapes/box, models: shapes/sphere, models: shapes/cylinder
+    # conforms: models: shapes/unit_box, models: shapes/unit_sphere, models: shapes/unit_cylinder
+    # conforms: models: shapes/cube_20k, models: shapes/wood_cube_2_5cm
+    # conforms: models: shapes/wood_cube_5cm, models: shapes/wood_cube_7_5cm
+    # conforms: models: shapes/wood_cube_10cm, models: shapes/bowling_cube, models: shapes/block
+    # conforms: models: shapes/wooden_board, models: shapes/cricket_ball
+    # conforms: models: shapes/robocup_spl_ball, models: shapes/robocup_3Dsim_ball
+    # conforms: models: shapes/marble_1_5cm, models: shapes/stone_10_2_5_1_25cm
+    spawn_all(bench, props("shapes"))
+
+
+def test_street_are_spawned_from_the_database(bench):
+    # conforms: models: street/fire_hydrant, models: street/dumpster, models: street/lamp_post
+    # conforms: models: street/stop_sign, models: street/speed_limit_sign, models: street/mailbox
+    # conforms: models: street/postbox, models: street/telephone_pole, models: street/bus_stop
+    # conforms: models: street/oak_tree, models: street/pine_tree, models: street/hatchback
+    # conforms: models: street/hatchback_red, models: street/hatchback_blue, models: street/suv
+    # conforms: models: street/pickup, models: street/bus, models: street/ambulance
+    spawn_all(bench, props("street"))
+
+
+def test_robots_and_sensors_are_spawned_from_the_database(bench):
+    # conforms: models: robots/pioneer2dx, models: robots/create, models: robots/simple_arm
+    # conforms: models: robots/double_pendulum_with_base, models: robots/hinged_door
+    # conforms: models: robots/hokuyo, models: robots/kinect, models: robots/camera
+    # conforms: models: robots/depth_camera, models: robots/pioneer2at
+    # conforms: models: robots/drc_practice_angled_barrier_45
+    spawn_all(bench, ["pioneer2dx", "pioneer2at", "create", "simple_arm", "hinged_door", "hokuyo",
+                      "double_pendulum_with_base", "kinect", "camera", "depth_camera",
+                      "drc_practice_angled_barrier_45"])
+
+
+def test_ground_and_sun_come_with_the_world(bench):
+    # conforms: models: robots/ground_plane, models: robots/sun
+    assert "ground_plane" in bench.world.models and "sun" in bench.world.lights
+
+
+def test_the_table_has_every_model():
+    rows = yaml.safe_load((FOLDER / "models.yaml").read_text(encoding="utf-8"))["rows"]
+    listed = {name for row in rows if row["name"].startswith(PREFIX) for name in row["tags"]}
+    assert listed == {path.name for path in (DATA_FOLDER / "models").iterdir()}
+
+
+def test_pioneers_wheels_carry_it(bench):
+    # conforms: models: robots/pioneer2dx
+    bench.call("/gazebo/spawn_sdf_model", model_name="p", model_xml=DATABASE.format("pioneer2dx"))
+    model = bench.world.models["p"]
+    for side in ("left", "right"):
+        model.joint(f"{side}_wheel_hinge").drive_velocity(5.0, 5.0)  # rad/s, N m
+    bench.run(1.0)
+    assert model.pose.position[0] == pytest.approx(0.11 * 5.0, abs=0.08)
+
+
+@pytest.mark.parametrize(("world", "topics"), [
+    ("gazebo_ros_range", {"/sonar", "/sonar2"}),
+    ("gazebo_ros_laser", {"/test_laser"}),
+    ("gazebo_ros_gpu_laser", {"/test_gpu_laser"}),
+    ("gazebo_ros_block_laser", {"/test_block_laser"}),
+    ("gazebo_ros_block_laser_clipping", {"/test_block_laser"}),
+    ("gazebo_ros_camera", {"/image_raw", "/camera_info"}),
+    ("gazebo_ros_depth_camera", {"/depth_cam/image_raw", "/depth_cam/points"}),
+    ("bumper_test", {"/box_bumper", "/box1_bumper"}),
+    ("test_lasers", {"/test_laser", "/test_gpu_laser", "/test_block_laser"}),
+    ("gazebo_ros_trimesh_collision", set()),
+    ("trisphere_cycle_wheel_slip", set()),
+    ("elevator", set()),
+])
+def test_a_world_of_gazebo_plugins_loads_and_publishes(make_bench, world, topics):
+    # conforms: gazebo_plugins test_worlds/bumper_test, gazebo_plugins test_worlds/elevator
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_block_laser
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_block_laser_clipping
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_camera
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_depth_camera
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_gpu_laser
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_laser
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_range
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_trimesh_collision
+    # conforms: gazebo_plugins test_worlds/test_lasers
+    # conforms: gazebo_plugins test_worlds/trisphere_cycle_wheel_slip
+    bench = make_bench(text_of(TEST_WORLDS / f"{world}.world"))
+    heard = {topic: bench.listen(topic) for topic in topics}
+    assert topics <= set(bench.advertised())
+    bench.run(1.2 if world == "gazebo_ros_camera" else 0.25)
+    assert all(heard.values()), {topic: len(messages) for topic, messages in heard.items()}
+
+
+def test_the_first_sonar_sees_the_second(make_bench):
+    # conforms: gazebo_plugins test_worlds/gazebo_ros_range
+    bench = make_bench(text_of(TEST_WORLDS / "gazebo_ros_range.world"))
+    first, second = bench.listen("/sonar"), bench.listen("/sonar2")
+    bench.run(0.5)
+    assert first[-1].range == pytest.approx(0.225, abs=0.01)
+    assert second[-1].range == pytest.approx(0.75, abs=0.03)
+
+
+def test_the_lift_goes_up_when_called(make_bench):
+    # conforms: worlds/elevator_ros.world
+    bench = make_bench(text_of(DATA_FOLDER / "worlds/elevator_ros.world"))
+    lift = bench.world.models["elevator"]
+    bench.run(0.2)
+    bench.send("/elevator", String("1"))
+    bench.run(8.0)
+    assert lift.link("link").pose.position[2] == pytest.approx(3.15, abs=0.1)
+
+
+@pytest.mark.parametrize(("world", "models"), [
+    ("blank.world", set()),
+    ("empty.world", {"ground_plane"}),
+    ("empty_sky.world", {"ground_plane"}),
+    ("shapes.world", {"ground_plane", "box", "sphere", "cylinder"}),
+    ("willowgarage.world", {"ground_plane", "willowgarage"}),
+    ("simple_arm.world", {"ground_plane", "simple_arm"}),
+    ("pioneer2dx.world", {"ground_plane", "pioneer2dx"}),
+    ("mud.world", {"ground_plane", "pendulum_thick_mud", "pendulum_thin_mud", "pendulum_no_mud",
+                   "mud_pit_thin", "mud_pit_thick", "mud_patch"}),
+    ("rubble.world", {"ground_plane", "cylinder_0", "box_1"}),
+    ("stacks.world", {"ground_plane", "box_1", "sphere_1", "sphere_1a", "cylinder_1"}),
+    ("cafe.world", {"ground_plane", "Cafe", "table1", "table5", "actor1", "actor2"}),
+])
+def test_a_world_of_gazebos_media_has_its_models(make_bench, world, models):
+    # conforms: worlds/blank.world, worlds/empty.world, worlds/empty_sky.world
+    # conforms: worlds/shapes.world, worlds/willowgarage.world, worlds/simple_arm.world
+    # conforms: worlds/pioneer2dx.world, worlds/mud.world, worlds/rubble.world
+    # conforms: worlds/stacks.world, worlds/cafe.world
+    bench = make_bench(text_of(DATA_FOLDER / "worlds" / world))
+    names = bench.call("/gazebo/get_world_properties").model_names
+    assert models <= set(names) and (len(names) == len(models) or world in BIG)
+    bench.run(0.05)
+
+
+BIG = ("rubble.world", "stacks.world", "cafe.world")  # with more models than are named here
