@@ -1,5 +1,7 @@
 """What is put into the ground comes out of it slowly and upright."""
 
+import itertools
+
 import pytest
 
 from bullet_sim.description import (
@@ -43,7 +45,7 @@ def test_a_spawned_body_rises_to_the_floor_and_no_higher(world, depth):
     rising = heights(world, world.spawn(CUBE, Pose((0, 0, HALF - depth))), 2.0)
     assert max(rising) < HALF + 0.005
     assert rising[-1] == pytest.approx(HALF, abs=0.001)
-    fastest = max(b - a for a, b in zip(rising, rising[1:], strict=False)) / 0.01
+    fastest = max(b - a for a, b in itertools.pairwise(rising)) / 0.01
     assert 0.5 * embedded.FASTEST < fastest < 1.2 * embedded.FASTEST
 
 

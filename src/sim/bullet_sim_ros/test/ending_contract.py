@@ -50,6 +50,7 @@ class Ending(unittest.TestCase):
                 self.assert_ends(process, 0)
 
     def test_it_ends_after_so_many_steps_wherever_time_began(self):
+        # conforms: gzserver/--iters, gzserver/--initial_sim_time
         process = self.start("--iters", "100", "--initial_sim_time", "5")
         self.assertEqual(process.wait(RUN_LIMIT), 0, self.output())
 

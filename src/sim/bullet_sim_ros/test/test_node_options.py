@@ -21,6 +21,7 @@ def opened(*words):
     ((), 1000.0), (("--real-time-factor", "0"), 0.0), (("--real-time-factor=2",), 2000.0),
     (("--real-time-factor", "0.5"), 500.0)])
 def test_real_time_factor_becomes_the_update_rate(words, rate_hz):
+    # conforms: gzserver/--real_time_factor, empty_world.launch/real_time_factor
     assert opened(*words).description.physics.real_time_update_rate == pytest.approx(rate_hz)
 
 
@@ -34,6 +35,7 @@ def test_a_step_of_nothing_is_the_worlds_error_with_and_without_a_factor(tmp_pat
 
 
 def test_seed_and_pause():
+    # conforms: gzserver/--seed, gzserver/-u, empty_world.launch/seed
     assert (opened().seed, opened().paused) == (0, False)
     world = opened("--seed", "12345678901", "--paused")
     assert (world.seed, world.paused) == (12345678901, True)

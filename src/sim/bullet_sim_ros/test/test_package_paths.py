@@ -30,6 +30,8 @@ def packages(tmp_path, monkeypatch):
 
 
 def test_exports_of_packages_are_search_paths(packages):
+    # conforms: package.xml <gazebo_ros>/gazebo_model_path
+    # conforms: package.xml <gazebo_ros>/gazebo_media_path
     packages("plain", "")
     packages("other", '<other gazebo_model_path="${prefix}/not_for_us"/>')
     folder = packages("full", '<gazebo_ros gazebo_model_path="${prefix}/a:${prefix}/b"/>'

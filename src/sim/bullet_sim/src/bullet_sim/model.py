@@ -54,6 +54,16 @@ class Model:
         self._find_joints(loose)
         self._steady = [body for body in self.bodies if body.acts_steadily]
         self.note_weightless()
+        self._start_joints()
+
+    def _start_joints(self) -> None:
+        """Put joints where a saved world has them; the model frame stays."""
+        pose = self.pose
+        away = [joint for joint in self.description.joints if joint.start]
+        for joint in away:
+            self.joints[joint.name].reset(joint.start)
+        if away:
+            self.set_pose(pose)
 
     def _find_joints(self, loose: Sequence[JointDescription]) -> None:
         described = {joint.name: joint for joint in self.description.joints}

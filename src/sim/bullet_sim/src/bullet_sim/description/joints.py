@@ -45,3 +45,4 @@ class JointDescription:
     thread_pitch: float = 1.0  # screw: rad/m with the sign turned, travel = -angle / thread_pitch
     gearbox_ratio: float = 1.0  # gearbox: angle of the parent = -ratio * angle of the child, both
     gearbox_reference_body: str = ""  # measured from this link, about axis and axis2
+    start: float = 0.0  # rad or m: where a saved world has it; a reset takes it to zero

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.scaling import scaled_model
+from bullet_sim.formats.sdf_state_joints import with_saved_joints
 from bullet_sim.formats.xml_values import child_text, not_negative, numbers, pose, vector
 from bullet_sim.pose import Pose
 
@@ -64,9 +65,9 @@ def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
     if min(scale) <= 0.0:
         raise FormatError(f"{where} <scale>: {min(scale):g} leaves nothing; make it larger than 0")
     model = scaled_model(model, scale)
-    if model.joints and not model.static:
-        return model  # its link poses are joint positions, and those start at zero here
     saved = dict(_link_poses(state, "", where))
+    if model.joints and not model.static:
+        return with_saved_joints(model, saved)
     to_model = model.pose.inverse()  # link poses are saved in the world frame
     return replace(
         model,

@@ -19,4 +19,5 @@ class LoopActionServer(actionlib.ActionServer):
     def initialize(self) -> None:
         """Open the topics; the timer that comes with them is ended at once."""
         super().initialize()
-        self.status_timer.shutdown()
+        if self.status_timer is not None:  # none if actionlib_status_frequency is 0
+            self.status_timer.shutdown()

@@ -14,7 +14,7 @@ import yaml
 from genpy.message import fill_message_args
 from geometry_msgs.msg import Point, Pose, Quaternion
 
-from bullet_sim.description import Box, Cylinder, Mesh, Plane, Sphere
+from bullet_sim.description import Box, Cylinder, Plane, Sphere
 from bullet_sim.formats.xacro_files import expand
 from bullet_sim.meshes import collision_mesh
 from bullet_sim.model import Model
@@ -33,7 +33,8 @@ class Style:
     `models` says of each model which links and joints it has; `topics` has type, rate (Hz) and
     frame of each topic, of /tf as "parent -> child"; `send` is published after the five seconds,
     and `seconds` later `reaches` holds within `within`: joints are `model/joint` (rad or m), models
-    have x, y and yaw. `warnings` are regular expressions, one for each line that is said.
+    have x, y and yaw. `warnings` are regular expressions, one for each line that is said, and
+    `missing` the tags whose default the plugins of upstream's helper class announce.
     """
 
     file: str
@@ -44,12 +45,14 @@ class Style:
     parameters: str = ""  # a file beside, loaded into the namespace
     controllers: tuple[str, ...] = ()
     topics: dict[str, tuple] = field(default_factory=dict)
+    reads: dict[str, dict] = field(default_factory=dict)  # topic: path in its last message: value
     floor: float | None = 0.0  # m; None: there is none to stand on
     send: dict[str, tuple] = field(default_factory=dict)  # topic: type, fields
     seconds: float = 2.0
     reaches: dict[str, float | list[float]] = field(default_factory=dict)
     within: float = 0.05
     warnings: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
 
 
 def read_styles() -> dict[str, Style]:
@@ -108,7 +111,7 @@ class Stage:
         for node in kinds["spawner"]:
             words = dict(word.partition("=")[::2] for word in node.args.split())
             namespace = words.pop("--namespace", node.namespace)
-            self.start_controllers(namespace, list(words))
+            self.start_controllers(namespace, [word for word in words if word[:2] != "--"])
 
     def _serve(self, words: list[str]) -> None:
         text = Path(words[-1]).read_text(encoding="utf-8")
@@ -198,11 +201,22 @@ def pose_of(numbers) -> Pose:
     return Pose(Point(*numbers[:3]), Quaternion(*quaternion_from_rpy(*numbers[3:])))
 
 
+def value_at(message, path: str):
+    """What stands at a path such as `ranges.4` or `pose.pose.position.x`; `#` is a length."""
+    for part in path.split("."):
+        if part == "#":
+            message = len(message)
+        else:
+            message = message[int(part)] if part.lstrip("-").isdigit() else getattr(message, part)
+    return message
+
+
 def lowest_point(model: Model) -> float:
-    """Height of the lowest point of its collisions (m); inf if it has none but planes."""
-    return min((_lowest(collision.geometry, link.pose * collision.pose)
-                for link in model.links.values() for collision in link.description.collisions),
-               default=math.inf)
+    """Height of the lowest point of its collisions (m); without any, of its links' origins."""
+    origins = [link.pose.position[2] for link in model.links.values()]
+    return min([_lowest(collision.geometry, link.pose * collision.pose)
+                for link in model.links.values() for collision in link.description.collisions]
+               or origins)
 
 
 def _lowest(geometry, pose: Placement) -> float:
@@ -216,5 +230,4 @@ def _lowest(geometry, pose: Placement) -> float:
     if isinstance(geometry, Cylinder):
         across = math.sqrt(max(0.0, 1.0 - down[2] ** 2))
         return z - abs(down[2]) * geometry.length / 2 - across * geometry.radius
-    assert isinstance(geometry, Mesh), geometry
     return z + (collision_mesh(geometry)[0] @ down).min()
