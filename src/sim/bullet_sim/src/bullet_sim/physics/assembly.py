@@ -26,6 +26,7 @@ Member = tuple[LinkDescription, JointDescription | None]  # None: nothing carrie
 WELD_INERTIAL = Inertial(mass=1e-6, inertia=(1e-9, 0.0, 0.0, 1e-9, 0.0, 1e-9))
 NO_DIRECTION = (0.0, 0.0, 0.0)  # <fdir1> when nothing is said
 MASSLESS = Inertial(mass=0.0, inertia=(0.0,) * 6)
+MOST_LINKS = 128  # of a tree, in PyBullet; of a larger one it tells nothing
 
 
 @dataclass
@@ -62,9 +63,10 @@ class Tree:
 
 
 def assemble(model: ModelDescription) -> list[Tree]:
-    """Trees of a model, in the order of its links. A static model is one welded tree."""
+    """Trees of a model, in the order of its links. A static model is welded, in as few as can be.
+    """
     if model.static:
-        return [_welded_tree(model)] if model.links else []
+        return _welded_trees(model)
     return [_jointed_tree(model, members) for members in _components(model)]
 
 
@@ -169,14 +171,18 @@ def _jointed_tree(model: ModelDescription, members: list[Member]) -> Tree:
     return tree
 
 
-def _welded_tree(model: ModelDescription) -> Tree:
-    tree = Tree(fixed=True)
-    base = model.links[0]
+def _welded_trees(model: ModelDescription) -> list[Tree]:
+    trees: list[Tree] = []
     for link in model.links:
-        parent = None if link is base else base.name
-        pose = link.pose if link is base else base.pose.inverse() * link.pose
-        _add(tree, replace(link, inertial=MASSLESS), IDENTITY, parent, None, pose)
-    return tree
+        own = Tree(fixed=True)  # of this link alone, its surfaces with it
+        _add(own, replace(link, inertial=MASSLESS), IDENTITY, None, None, link.pose)
+        if not trees or len(trees[-1].links) + len(own.links) > MOST_LINKS:
+            trees.append(own)
+            continue
+        base, first = trees[-1].links[0], own.links[0]
+        first.parent, first.pose_parent = base.name, base.pose_parent.inverse() * link.pose
+        trees[-1].links += own.links
+    return trees
 
 
 def _add(tree: Tree, link: LinkDescription, offset: Pose, parent: str | None,

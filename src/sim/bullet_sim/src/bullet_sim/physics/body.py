@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,10 +14,11 @@ from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.joint_side import JointSide
 from bullet_sim.physics.link_side import BASE, LinkSide
-from bullet_sim.physics.quiet import pybullet
-from bullet_sim.physics.surfaces import contact_values
+from bullet_sim.physics.quiet import EngineError, pybullet
+from bullet_sim.physics.surfaces import coming_out, contact_values, gives_way, giving_way
 from bullet_sim.pose import Pose
 
+NOWHERE = -1  # the number of what the engine does not have
 FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a small wheel back
 
 
@@ -45,8 +47,13 @@ class Body(LinkSide, JointSide):
         self._find_joints()
         self.attached: list[Attachment] = []
         self._link_indices = list(range(len(tree.links) - 1))
-        self.put_in(pose_world_model * self.base_pose_model)
         self.on_unload: list[Callable[[], None]] = []  # to be called before the engine loses it
+        self.number = NOWHERE
+        try:
+            self.put_in(pose_world_model * self.base_pose_model)
+        except Exception:
+            self._unload()  # half of it may be there
+            raise
         client.rest.bodies.append(self)
 
     @property
@@ -125,32 +132,49 @@ class Body(LinkSide, JointSide):
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; Gazebo does so only where a model asks for it.
         self._call(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
+        mass = self._mass()
         for link in self.tree.links:
             values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping
             if link.collisions:
                 com = self.com_in_link(self._index[link.name])
-                values |= contact_values(link.collisions[0], self.tree.fixed, com)
+                values |= contact_values(link.collisions[0], self.tree.fixed, com, mass)
             self._call(pybullet.changeDynamics, self._index[link.name], **values)
+
+    def come_out(self, part: float | None, timestep: float) -> None:
+        """Have contacts correct that part of their depth in each step (s); None: as usual."""
+        values = giving_way(self._mass()) if part is None else coming_out(part, timestep)
+        for link in self.tree.links:
+            if link.collisions and gives_way(link.collisions[0], self.tree.fixed):
+                self._read(pybullet.changeDynamics, self._index[link.name], **values)
+
+    def _mass(self) -> float:
+        return sum(link.inertial.mass for link in self.tree.links)
 
     # --- leaving
 
     def remove(self) -> None:
-        """Take the body out of the world."""
+        """Take the body out of the world, also where the engine cannot find it any more."""
         self._client.rest.bodies.remove(self)
         for attachment in self.attached:
-            attachment.detach()
+            with contextlib.suppress(EngineError):
+                attachment.detach()
         self.attached = []
         self._unload()
 
     def _unload(self) -> None:
         for action in list(self.on_unload):
-            action()
+            with contextlib.suppress(EngineError):
+                action()
+        if self.number == NOWHERE:
+            return
         self._client.planes.remove(self.number)
         for seen in [seen for seen in self._client.retro if seen[0] == self.number]:
             del self._client.retro[seen]
-        self._call(pybullet.removeBody)
+        with contextlib.suppress(EngineError):
+            self._call(pybullet.removeBody)
+        self.number = NOWHERE
 
     # --- rest
 

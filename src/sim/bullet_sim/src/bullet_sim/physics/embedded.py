@@ -1,49 +1,72 @@
 """Lets what was put into something else come out of it slowly, instead of shooting it out.
 
-A contact corrects a part of its depth in each step: a robot that is spawned 6 cm deep in the floor,
-as many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long
-as something is so deep, the part is made smaller for all contacts of the world.
+A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as many
+launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long as
+something is so deep, all contacts of the world correct only a small part of their depth in a step.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 from bullet_sim.physics.quiet import pybullet
 
 CORRECTED = 0.08  # part of the depth in each step; PyBullet's own
 FASTEST = 0.2  # m/s at which it comes out
+DEEPEST = 1.0  # m, that is reckoned with
 LONGEST = 5.0  # s, simulated, after which the engine has its own way again
 DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
+
+
+class Placed(Protocol):
+    """A body as seen from here."""
+
+    def come_out(self, part: float | None, timestep: float) -> None:
+        """Have contacts correct that part of their depth in each step (s); None: as usual."""
+        ...
 
 
 class Embedded:
     """Looks at the depths before each step, from when a body was placed until none is deep.
 
-    `call` runs a pybullet function in the engine.
+    `call` runs a pybullet function in the engine; `bodies` is the list of all that are there.
     """
 
-    def __init__(self, call: Callable):
+    def __init__(self, call: Callable, bodies: Sequence[Placed]):
         self._call = call
+        self._bodies = bodies
         self._part = CORRECTED
         self._left = 0.0  # s, for which to look on
+        self._placed = False  # since the last step
 
     def watch(self) -> None:
         """A body was put somewhere."""
         self._left = LONGEST
+        self._placed = True
 
     def before_step(self, timestep: float) -> None:
         """Choose the part of the depth that the next step, of `timestep` (s), corrects."""
         if not self._left:
             return
+        if self._placed:
+            # Contacts keep what their bodies were like when they were found: find them when these
+            # hardly push.
+            self._placed = False
+            self._come_out(FASTEST * timestep / DEEPEST, timestep)
         self._left = max(0.0, self._left - timestep)
         deepest = self._deepest() if self._left else 0.0
         part = min(CORRECTED, FASTEST * timestep / deepest) if deepest > 0.0 else CORRECTED
         if part == CORRECTED:
             self._left = 0.0
         if part != self._part:
-            self._part = part
-            self._call(pybullet.setPhysicsEngineParameter, contactERP=part)
+            self._come_out(part, timestep)
+
+    def _come_out(self, part: float, timestep: float) -> None:
+        self._part = part
+        self._call(pybullet.setPhysicsEngineParameter, contactERP=part)
+        for body in self._bodies:
+            body.come_out(None if part == CORRECTED else part, timestep)
 
     def _deepest(self) -> float:
         """Greatest depth of all contacts, m; 0 or less where nothing overlaps."""

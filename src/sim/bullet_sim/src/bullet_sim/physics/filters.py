@@ -25,12 +25,17 @@ class Filters:
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body]):
         self._client = client
         self._bodies = bodies
+        self._static = model.static  # then no two parts meet
         self._pairs: list[tuple[int, int, int, int]] = []
         self._colliding = set() if model.static else {
             link.name for link in model.links if model.self_collide or link.self_collide}
         self._joined = {frozenset((joint.parent, joint.child)) for joint in model.joints
                         if joint.type != "gearbox"}
-        self.attach()
+        try:
+            self.attach()
+        except Exception:
+            self.detach()
+            raise
         if self._pairs or self._masked:
             for body in bodies:
                 body.attached.append(self)
@@ -42,7 +47,7 @@ class Filters:
         self._masked = False
         for body, index, _ in parts:
             self._mask(body, index)
-        for one, other in itertools.combinations(parts, 2):
+        for one, other in itertools.combinations(parts, 2) if not self._static else ():
             if self._has_to_be_told(one, other):
                 pair = one[0].number, other[0].number, one[1], other[1]
                 self._client.call(pybullet.setCollisionFilterPair, *pair, 0)

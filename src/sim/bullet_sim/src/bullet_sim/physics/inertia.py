@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Plane, Sphere
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.meshes import collision_mesh
 
 log = logging.getLogger(__name__)
@@ -27,13 +27,32 @@ LIGHTEST = 1e-9  # kg
 ROUNDING = 1e-6
 
 
+def check_inertial(inertial: Inertial) -> None:
+    """A SimulationError where the numbers are none, or no tensor of inertia.
+
+    What breaks only the triangle rule passes, as in ODE: `sound_inertial` mends it.
+    """
+    values = (inertial.mass, *inertial.inertia, *inertial.pose.position)
+    if not all(map(math.isfinite, values)) or inertial.mass <= 0:
+        raise SimulationError("mass must be above 0, and mass, centre of mass and inertia finite")
+    moments = np.linalg.eigvalsh(_tensor(inertial))
+    if moments[0] <= 0:
+        raise SimulationError(
+            f"this is no inertia: its principal moments would be "
+            f"{', '.join(f'{m:.3g}' for m in moments)} kg m^2, and all have to be above 0; ixy, "
+            "ixz and iyz are too large for ixx, iyy and izz")
+
+
+def _tensor(inertial: Inertial) -> np.ndarray:
+    xx, xy, xz, yy, yz, zz = inertial.inertia
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
 def sound_inertial(inertial: Inertial, collisions: Sequence[Collision], where: str) -> Inertial:
     """The same where it is possible; else with the least moments that are, and a line in the log.
     """
     mass = min(max(inertial.mass, LIGHTEST), HEAVIEST)
-    xx, xy, xz, yy, yz, zz = inertial.inertia
-    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    moments, axes = np.linalg.eigh(tensor)
+    moments, axes = np.linalg.eigh(_tensor(inertial))
     least = mass * (THINNEST * max(_size(collisions), SMALLEST)) ** 2
     sound = _possible(moments, least)
     if mass == inertial.mass and np.allclose(sound, moments, rtol=ROUNDING, atol=0.0):

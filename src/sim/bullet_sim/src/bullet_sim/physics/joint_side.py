@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import deque
+from collections.abc import Iterable, Sequence
+from statistics import fmean
 
 from bullet_sim.description import JointDescription
 from bullet_sim.physics.assembly import PhysicsLink
@@ -13,6 +15,7 @@ from bullet_sim.physics.quiet import pybullet
 from bullet_sim.physics.springs import Springs
 from bullet_sim.pose import Quaternion, Vector3
 
+Bearing = tuple[float, Sequence[float]]  # effort of a motor; force and torque, (6,)
 STRONGEST = 1e6  # N m or N; the engine makes NaN of much more
 
 
@@ -28,7 +31,7 @@ class JointSide(EngineHandle):
         self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
 
     def _set_up_joints(self) -> None:
-        self._feedback: set[int] = set()
+        self._feedback: dict[int, deque[Bearing]] = {}  # joints that are measured; before a rest
         for index in self._ball_index.values():
             self._call(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
                        targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
@@ -43,6 +46,22 @@ class JointSide(EngineHandle):
         return next(link for link in self.tree.links
                     if link.carrier is not None and link.carrier.name == joint)
 
+    def moving_carrier(self, link: str) -> PhysicsLink | None:
+        """The engine's link, this one or one that it is fixed to, that a joint with one axis moves.
+
+        None where no such joint, but the world or a ball, holds it.
+        """
+        found = {each.name: each for each in self.tree.links}
+        each = found.get(link)
+        while each is not None and (each.joint is None or (
+                each.joint.type != "ball" and self.is_held(each.joint.name))):
+            each = found.get(each.parent)
+        return None if each is None or each.joint.type == "ball" else each
+
+    def described_parent(self, link: PhysicsLink) -> str:
+        """The described link that an engine's link hangs on."""
+        return next(each.described for each in self.tree.links if each.name == link.parent)
+
     def joint_index(self, joint: str) -> int:
         """The engine's number of a joint that can move."""
         return self._joint_index[joint]
@@ -50,11 +69,29 @@ class JointSide(EngineHandle):
     def enable_feedback(self, index: int) -> None:
         """Have the engine keep what the joint of that number bears."""
         if index not in self._feedback:
-            self._feedback.add(index)
+            self._feedback[index] = deque()
             self._call(pybullet.enableJointForceTorqueSensor, index, 1)
 
-    def joint_effort(self, index: int) -> tuple[float, Vector3]:
-        """What a joint's motor did in the last step, and the six numbers of what it bore."""
+    def joint_effort(self, index: int) -> Bearing:
+        """What a joint's motor did in the last step, and the six numbers of what it bore.
+
+        In a world at rest, the means of what they were: contacts go on trembling, and the last step
+        would be told for ever.
+        """
+        rows = self._feedback.get(index)
+        if not rows or not self._client.rest.reached:
+            return self._last_effort(index)
+        efforts, bore = zip(*rows, strict=True)
+        return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
+
+    def keep_feedback(self) -> None:
+        """Note what joints bore in the last step; as many steps as there are between two looks."""
+        for index, rows in self._feedback.items():
+            rows.append(self._last_effort(index))
+            while len(rows) > self._client.rest.look_every:
+                rows.popleft()
+
+    def _last_effort(self, index: int) -> Bearing:
         if index in self._ball_index.values():
             return 0.0, self._read(pybullet.getJointStateMultiDof, index)[2]
         row = self._read(pybullet.getJointState, index)

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+import logging
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
+from bullet_sim.physics.assembly import MOST_LINKS, Tree
+
+log = logging.getLogger(__name__)
 
 SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and with it an answer, take a second
 LONGEST_STEP = 0.1  # s; with longer ones things pass through each other
 MOST_ITERATIONS = 10_000  # a step; upstream's bound in dynamic_reconfigure
 HIGHEST_RATE = 1e6  # Hz
+# Fields of PhysicsDescription that are only kept, and their names in messages: from 0 on.
+KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
+        "contact_surface_layer": "contact_surface_layer",
+        "contact_max_correcting_vel": "contact_max_correcting_vel"}
+# PyBullet keeps 128 positions of a body, of which its base takes 7, and tells no more (measured).
+MOST_POSITIONS = 121
+BALL_POSITIONS = 4  # a ball joint's: a quaternion
 
 
 def check_physics(physics: PhysicsDescription) -> None:
@@ -22,3 +37,44 @@ def check_physics(physics: PhysicsDescription) -> None:
     if not 0 <= physics.iterations <= MOST_ITERATIONS:
         raise SimulationError(f"{physics.iterations} solver iterations a step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")
+
+
+def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
+    """What a world file asks for; for what is outside, the default, with an error line."""
+    usual = PhysicsDescription()
+    for field in ("max_step_size", "real_time_update_rate", "iterations"):
+        asked, default = getattr(physics, field), getattr(usual, field)
+        try:
+            check_physics(replace(usual, **{field: asked}))
+        except SimulationError as error:
+            log.error("<physics>: %s; %g is used instead", error, default)
+            physics = replace(physics, **{field: default})
+    return physics
+
+
+def check_kept(before: PhysicsDescription, after: PhysicsDescription) -> None:
+    """A SimulationError that names what of KEPT was changed to no number, or below zero.
+
+    What a world file says is left alone: it has no effect.
+    """
+    for field, name in KEPT.items():
+        value = getattr(after, field)
+        if value != getattr(before, field) and not 0 <= value < math.inf:
+            raise SimulationError(f"{name} is {value:g}; it must be finite and not below 0")
+
+
+def check_trees(model: str, trees: Iterable[Tree]) -> None:
+    """A SimulationError where a model is more than the engine can hold in one piece."""
+    for tree in trees:
+        balls = sum(link.joint is not None and link.joint.type == "ball" for link in tree.links)
+        moving = sum(link.joint is not None for link in tree.links)
+        if moving + (BALL_POSITIONS - 1) * balls > MOST_POSITIONS:
+            counting = f" ({balls} balls among them, which count {BALL_POSITIONS} times)"
+            raise SimulationError(
+                f"model {model} has {moving} moving joints in one piece"
+                f"{counting if balls else ''}; the engine takes at most {MOST_POSITIONS}")
+        if len(tree.links) > MOST_LINKS:
+            raise SimulationError(
+                f"model {model} has {len(tree.links)} links in one piece, those of fixed joints "
+                f"and of collisions with a surface of their own among them; the engine takes at "
+                f"most {MOST_LINKS}")

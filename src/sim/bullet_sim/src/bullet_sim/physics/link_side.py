@@ -9,6 +9,7 @@ from bullet_sim.pose import IDENTITY, Pose, Vector3, normalised
 from bullet_sim.twist import Twist, cross
 
 BASE = -1  # PyBullet's number of a body's base link
+NOWHERE = (0.0, 0.0, 1e5)  # m
 
 
 class LinkSide(EngineHandle):
@@ -70,6 +71,10 @@ class LinkSide(EngineHandle):
             return
         frame = Pose(frame.position, normalised(frame.orientation))
         com = frame * self._pose_base_com
+        if not self.tree.fixed:
+            # By way of nowhere: contacts of the old place, with its depths, would come along.
+            self._read(pybullet.resetBasePositionAndOrientation, NOWHERE, com.orientation)
+            self._client.read(pybullet.performCollisionDetection)
         self._call(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
         self._client.planes.put(self.number, self.tree, frame)
 

@@ -34,7 +34,11 @@ class Closures:
         self._bodies = bodies
         self._loose = loose
         self._constraints: list[int] = []
-        self.attach()
+        try:
+            self.attach()
+        except Exception:
+            self.detach()
+            raise
         if self._constraints:
             for body in bodies:
                 body.attached.append(self)

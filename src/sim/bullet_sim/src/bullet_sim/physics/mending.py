@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.quiet import EngineError
 
 if TYPE_CHECKING:
     from bullet_sim.model import Model
@@ -44,6 +45,30 @@ def mend(client: PhysicsClient, models: Iterable[Model]) -> None:
                 body.rebuild({})
     for model in models:
         model.reset() if model in broken else model.forget()
+
+
+def lost_models(models: Iterable[Model], error: EngineError, told: set[str]) -> list[str]:
+    """After an error of the engine: names of the models of which it has lost a body.
+
+    Each is a line in the log; so is an error that has no such cause, once: it goes into `told`.
+    """
+    lost = [model.name for model in models if any(map(_is_lost, model.bodies))]
+    for name in lost:
+        log.error("model %s is taken out: the engine cannot tell where it is any more (%s); the "
+                  "rest of the world goes on", name, error)
+    if not lost and str(error) not in told:
+        told.add(str(error))
+        log.error("the engine did not do a step as it should: %s; the world goes on", error)
+    return lost
+
+
+def _is_lost(body: Body) -> bool:
+    try:
+        body.speeds()
+        body.link_states()
+    except EngineError:
+        return True
+    return False
 
 
 def _is_broken(body: Body) -> bool:

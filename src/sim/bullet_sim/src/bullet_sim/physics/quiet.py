@@ -33,4 +33,6 @@ STDOUT, STDERR = 1, 2
 with quiet(STDOUT, STDERR):  # it prints its build time when first imported
     import pybullet
 
-__all__ = ["STDERR", "STDOUT", "pybullet", "quiet"]
+EngineError = pybullet.error
+
+__all__ = ["STDERR", "STDOUT", "EngineError", "pybullet", "quiet"]

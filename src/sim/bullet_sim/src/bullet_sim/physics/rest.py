@@ -33,6 +33,10 @@ class Restable(Protocol):
         """Greatest speed, m/s, and rate of turn, rad/s, of any of its parts."""
         ...
 
+    def keep_feedback(self) -> None:
+        """Note what its joints bore in the last step before the rest."""
+        ...
+
 
 class Rest:
     """Asked before every step. What is changed from outside, by anybody, ends the rest."""
@@ -48,7 +52,7 @@ class Rest:
 
     def set_step(self, timestep: float) -> None:
         """Length of a step, s: how long something has to be still does not depend on it."""
-        self._look_every = max(1, round(LOOK_PERIOD / timestep))  # steps
+        self.look_every = max(1, round(LOOK_PERIOD / timestep))  # steps
         self.disturb()
 
     def disturb(self) -> None:
@@ -56,12 +60,17 @@ class Rest:
         self.reached = False
         self._motions.clear()
 
+    @property
+    def near(self) -> bool:
+        """Whether only one more look has to find everything still; `look_every` steps long."""
+        return len(self._motions) >= LOOKS - 1 and not self.reached
+
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be asked before each."""
         if self.reached:
             return False
         self._steps += 1
-        if self._steps % self._look_every == 0:
+        if self._steps % self.look_every == 0:
             self._look()
         return True
 

@@ -84,7 +84,7 @@ class OpenniKinectPlugin:
     def _publish_infos(self, time: float) -> None:
         """At no more than `<updateRate>`, which thins nothing else here."""
         rate_hz = self._eye.settings.rate_hz
-        if rate_hz > 0 and time - self._info_time < 1 / rate_hz - 1e-6:
+        if rate_hz > 0 and time - self._info_time < 1 / rate_hz - self._host.world.timestep:
             return
         self._info_time = time
         self._eye.topics.publish_info(time)

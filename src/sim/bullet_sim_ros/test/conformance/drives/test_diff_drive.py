@@ -40,7 +40,8 @@ def test_it_drives_as_told_for_ever_and_tells_where_the_model_is(bench, robot, c
     bench.send("/cmd_vel", command(0.3, 0.5))
     bench.run(2.0)  # no time-out
     twist, pose = odometry[-1].twist.twist, odometry[-1].pose.pose
-    assert twist.linear.x == pytest.approx(0.3, rel=0.02)
+    # In a bend a wheel stands on one of its edges, 2 cm beside the middle that the plugin knows of.
+    assert twist.linear.x == pytest.approx(0.3, abs=0.5 * 0.02)
     assert twist.angular.z == pytest.approx(0.5, rel=0.03)
     assert pose.position.x == pytest.approx(car.pose.position[0], abs=1e-3)
     assert pose.position.y == pytest.approx(car.pose.position[1], abs=1e-3)
@@ -195,8 +196,8 @@ def test_what_is_wrong_is_said_and_what_can_go_on_goes_on(bench, robot, caplog):
     with caplog.at_level(logging.INFO):
         bench.spawn(robot(odometrySource="moon"))
     assert "<odometrySource> is 'moon'; there are world and encoder; world is used" in caplog.text
-    assert "Starting plugin DiffDrive(ns = //)" in caplog.text
-    assert "DiffDrive(ns = //): Subscribe to cmd_vel" in caplog.text
+    assert "Starting plugin DiffDrive(ns = /)" in caplog.text
+    assert "DiffDrive(ns = /): Subscribe to cmd_vel" in caplog.text
     caplog.clear()
     bench.spawn(robot("other", leftJoint="nope", robotNamespace=None))
     assert "is not loaded: no joint of model other named 'nope'" in caplog.text
@@ -204,7 +205,7 @@ def test_what_is_wrong_is_said_and_what_can_go_on_goes_on(bench, robot, caplog):
     assert "/other/cmd_vel" not in bench.subscribed()
     caplog.clear()
     bench.spawn(robot("third", publishTf=None))
-    assert "DiffDrive(ns = //): missing <publishTf> default is true" in caplog.text
+    assert "DiffDrive(ns = /): missing <publishTf> default is true" in caplog.text
 
 
 @pytest.mark.parametrize("text", ["nan", "fast"])
