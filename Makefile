@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials drive test bench setup build lint clean
+.PHONY: help course race race-trials drive viewer test bench setup build lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -20,6 +20,10 @@ race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRAC
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh
+
+viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [PORT=8080] [ADDRESS=0.0.0.0]
+	@scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
+	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)")
 
 test: ## run every check and test [JOBS=2]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")

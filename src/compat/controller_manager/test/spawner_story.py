@@ -5,9 +5,11 @@ import signal
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 import rospy
 import rostest
+from controller_manager_msgs.srv import SwitchControllerResponse
 from fake_manager import TYPE, FakeManager
 from std_msgs.msg import Bool
 from tool_process import Tool, run, until
@@ -157,7 +159,17 @@ class SpawnerStory(unittest.TestCase):
         self.until_states({"c1": "running"}, manager)
         manager.close()
         self.assertEqual(spawner.end(signal.SIGINT), 0)
-        self.assertIn("Controller Spawner error while taking down controllers:", spawner.said)
+        self.assertIn("The controller manager has ended, its controllers with it:", spawner.said)
+        self.assertNotIn("[WARN]", spawner.said)
+
+    def test_world_that_ends_at_the_same_time(self):
+        spawner = self.spawner("c1", "c3")
+        spawner.until_says("Started controllers: c1, c3")
+        with unittest.mock.patch.object(self.manager, "switch_controller",
+                                        lambda _request: SwitchControllerResponse(False)):
+            self.assertEqual(spawner.end(signal.SIGINT), 0)
+        self.assertIn("Could not stop c1, c3: the world is ending", spawner.said)
+        self.assertNotIn("[WARN]", spawner.said)
 
     def test_before_the_clock(self):
         rospy.set_param("/use_sim_time", True)

@@ -5,7 +5,7 @@
 
 A table is a model. Its keys (SI units):
   name        the model's own name where it is not that of the folder
-  like, paint another model's table with the look of its first part changed
+  like, paint another model's table, but for its name, with the look of its first part changed
   static, mass (1), link ("link"), pose and link_pose [x, y, z], as in SDF
   size        [x, y, z], m, of the box round all that is solid (round all, where nothing is)
   ordinary    the size is an ordinary one of its kind; without it, upstream's own numbers
@@ -42,7 +42,7 @@ def read_props(folder: Path = DATA / "props") -> dict[str, dict]:
 
 def _complete(table: dict, tables: dict[str, dict]) -> dict:
     if "like" in table:
-        model = tables[table["like"]]
+        model = {key: tables[table["like"]][key] for key in tables[table["like"]] if key != "name"}
         first = {**model["parts"][0], "look": table["paint"]}
         table = {**model, **table, "parts": [first, *model["parts"][1:]]}
     return {**table, "parts": [plain for part in table["parts"] for plain in _plain(part)]}

@@ -22,13 +22,6 @@ BOMB = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "lol"}">' for n in
     ('<sdf version="1.6"><model name="m"><link', "not well-formed XML: unclosed token"),
     ("", "not well-formed XML: no element found"),
     ("\x00\x01\x02", "not well-formed XML"),
-    (MODEL.format("<pose>nan 0 0 0 0 0</pose>"), "<pose>: 'nan 0 0 0 0 0' is not 6 numbers"),
-    (MODEL.format("<pose>1e308 0 0 0 0 0</pose>"), "<pose>: 1e+308 is too large"),
-    (MODEL.format("<pose>1,2,3,0,0,0</pose>"), "'1,2,3,0,0,0' is not 6 numbers"),
-    (MODEL.format("<inertial><mass>1e300</mass></inertial>"), "<mass>: 1e+300 is too large"),
-    (MODEL.format("<pose>" + "9 " * 100_000 + "</pose>"), "…' is not 6 numbers"),
-    (MODEL.format('<collision name="c"><geometry><box><size>1 inf 1</size></box></geometry>'
-                  "</collision>"), "'1 inf 1' is not finite"),
 ])
 def test_one_line_and_little_memory(text, message):
     # conforms: SDF 1.2 to 1.7/entities of one's own
@@ -40,6 +33,22 @@ def test_one_line_and_little_memory(text, message):
     assert message in str(raised.value)
     assert "\n" not in str(raised.value) and len(str(raised.value)) < 500
     assert peak < 300e6
+
+
+@pytest.mark.parametrize("text, message", [
+    (MODEL.format("<pose>nan 0 0 0 0 0</pose>"), "<pose>: 'nan 0 0 0 0 0' is not 6 numbers"),
+    (MODEL.format("<pose>1e308 0 0 0 0 0</pose>"), "<pose>: 1e+308 is too large"),
+    (MODEL.format("<pose>1,2,3,0,0,0</pose>"), "'1,2,3,0,0,0' is not 6 numbers"),
+    (MODEL.format("<inertial><mass>1e300</mass></inertial>"), "<mass>: 1e+300 is too large"),
+    (MODEL.format("<pose>" + "9 " * 100_000 + "</pose>"), "…' is not 6 numbers"),
+    (MODEL.format('<collision name="c"><geometry><box><size>1 inf 1</size></box></geometry>'
+                  "</collision>"), "'1 inf 1' is not finite"),
+])
+def test_a_number_that_is_none_is_one_short_error_line(text, message, caplog):
+    load_model(text, RESOURCES)
+    (record,) = caplog.records
+    assert message in record.getMessage() and "is used instead" in record.getMessage()
+    assert "\n" not in record.getMessage() and len(record.getMessage()) < 500
 
 
 def test_the_number_of_elements_is_bounded(monkeypatch):

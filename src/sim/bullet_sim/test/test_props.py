@@ -131,3 +131,41 @@ def test_a_world_that_is_not_there_is_answered_with_those_that_are():
     with pytest.raises(ResourceNotFound, match=r"worlds/shape.world not found \(searched: .*\); "
                        r"there are: .*worlds/empty.world, .*worlds/shapes.world"):
         RESOURCES.find_world("worlds/shape.world")
+
+
+def saved(scale: str = "1 1 1", folder: str = "model://jersey_barrier") -> str:
+    """A barrier as Gazebo's window saves it: no include, only the names of its meshes."""
+    mesh = f"<mesh><uri>{folder}/meshes/jersey_barrier.dae</uri><scale>{scale}</scale></mesh>"
+    return f"""<sdf version="1.6"><model name="barrier"><pose>1 2 0 0 0 0</pose><link name="link">
+      <visual name="visual"><pose>0 0 1 0 0 1.5707963</pose><geometry>{mesh}</geometry>
+        <transparency>0.25</transparency></visual>
+      <collision name="collision"><pose>0 0 1 0 0 1.5707963</pose><geometry>{mesh}</geometry>
+        <surface><friction><ode><mu>0.125</mu></ode></friction></surface></collision>
+      </link></model></sdf>"""
+
+
+@pytest.mark.parametrize("folder", [
+    "model://jersey_barrier", "/home/somebody/.gazebo/models/jersey_barrier"])
+def test_a_mesh_of_a_prop_that_is_not_here_is_the_props_own_shapes(caplog, folder):
+    caplog.set_level("INFO", logger="bullet_sim")
+    whole, link = load("jersey_barrier").links[0], load_model(saved(folder=folder),
+                                                              RESOURCES).links[0]
+    assert [part.geometry for part in link.visuals] == [part.geometry for part in whole.visuals]
+    assert [part.material for part in link.visuals] == [part.material for part in whole.visuals]
+    assert [part.geometry for part in link.collisions] == [
+        part.geometry for part in whole.collisions]
+    assert len({part.name for part in link.collisions}) == len(whole.collisions)
+    placed = Pose.from_xyz_rpy((0, 0, 1), (0, 0, 1.5707963)) * whole.collisions[-1].pose
+    assert link.collisions[-1].pose == placed == link.visuals[-1].pose
+    assert {part.transparency for part in link.visuals} == {0.25}
+    assert {part.surface.mu for part in link.collisions} == {0.125}
+    assert [record.levelname for record in caplog.records] == ["INFO"]
+    assert "the plain shapes of model://jersey_barrier are taken" in caplog.text
+
+
+def test_other_missing_meshes_are_left_out(caplog):
+    for text in (saved("2 2 2"), saved(folder="model://no_such"), saved(folder="model://..")):
+        caplog.clear()
+        link = load_model(text, RESOURCES).links[0]
+        assert not link.visuals and not link.collisions
+        assert "left out" in caplog.text

@@ -16,7 +16,6 @@ from bullet_sim.description import (
     Strip,
     Visual,
 )
-from bullet_sim.errors import FormatError
 from bullet_sim.extrusion import dark_rectangles, trapezoids
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.meshes import collision_mesh, load_mesh
@@ -161,9 +160,10 @@ def test_polyline_is_a_solid_with_a_hole(shape):
     assert link_shape([Visual("v", only(model))]).radius == pytest.approx(1.436, abs=0.01)
 
 
-def test_polyline_with_two_points_is_an_error(shape):
-    with pytest.raises(FormatError, match="<polyline>: an outline needs three <point>s or more"):
-        shape("<polyline><point>0 0</point><point>1 0</point></polyline>")
+def test_polyline_with_two_points_is_an_error_line_and_left_out(shape, caplog):
+    model = shape("<polyline><point>0 0</point><point>1 0</point></polyline>")
+    assert model.links[0].collisions == ()
+    assert "<polyline>: an outline needs three <point>s or more; left out" in caplog.text
 
 
 def test_dark_pixels_become_walls(shape, tmp_path):
@@ -210,6 +210,8 @@ def test_what_encloses_nothing_is_left_out_with_a_warning(shape, tmp_path, geome
     world.close()
 
 
-def test_lengths_that_cannot_be_squared_are_refused(shape):
-    with pytest.raises(FormatError, match=r"<polyline> <point>: 1e\+200 is too large"):
-        shape("<polyline><point>0 0</point><point>1e200 0</point><point>1 1</point></polyline>")
+def test_lengths_that_cannot_be_squared_are_left_out(shape, caplog):
+    model = shape(
+        "<polyline><point>0 0</point><point>1e200 0</point><point>1 1</point></polyline>")
+    assert model.links[0].collisions == ()
+    assert "<polyline> <point>: 1e+200 is too large" in caplog.text

@@ -7,7 +7,6 @@ import pytest
 
 from bullet_sim.actors import pose_at
 from bullet_sim.description import Box, Strip, Trajectory
-from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_world
 from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.resources import DATA_FOLDER
@@ -103,8 +102,8 @@ def test_links_of_an_actor_go_with_it_and_are_seen_by_lasers(load):
 def test_a_bad_actor_is_one_error_line_and_the_world_loads(load, caplog):
     world = load(f"""<actor name="a"><script><trajectory id="0"><waypoint><time>x</time></waypoint>
         </trajectory></script></actor><model name="m">{BOX}</model>""")
-    assert [model.name for model in world.models] == ["m"]
-    assert "actor 'a' <script> <waypoint> <time>: 'x' is not a number; going on" in caplog.text
+    assert [model.name for model in world.models] == ["a", "m"]
+    assert "<script> <waypoint> <time>: 'x' is not a number; 0 is used instead" in caplog.text
 
 
 # --- populations
@@ -155,7 +154,7 @@ def test_population_on_a_grid_and_in_a_row(load):
 
 def test_a_population_without_bounds_is_refused(load, caplog):
     assert load(population("<model_count>1000000000</model_count>")).models == ()
-    assert "1000000000 models are not possible; 0 to 1000 are; going on without it" in caplog.text
+    assert "1000000000 models are not possible; 0 to 1000 are; left out" in caplog.text
 
 
 # --- roads
@@ -210,10 +209,16 @@ def test_state_of_a_saved_world(load):
     world.close()
 
 
-def test_a_state_that_scales_to_nothing_is_an_error(load):
-    with pytest.raises(FormatError, match="<state> of model 'm' <scale>: 0 leaves nothing"):
-        load(f'''<model name="m">{BOX}</model>
-            <state><model name="m"><scale>1 0 1</scale></model></state>''')
+def test_what_is_wrong_in_a_state_is_an_error_line_and_does_not_count(load, caplog):
+    world = load(f'''<model name="m"><pose>7 0 0 0 0 0</pose>{BOX}</model>
+        <state><sim_time>x</sim_time><model name="m"><pose>1 2 3</pose><scale>1 0 1</scale></model>
+        </state>''')
+    assert world.models[0].pose.position == (7, 0, 0)
+    assert world.sim_time == 0
+    for said in ("<state> of model 'm' <scale>: 0 leaves nothing; 1 1 1 is used instead",
+                 "<pose>: '1 2 3' is not 6 numbers; 7 0 0 0 0 0 is used instead",
+                 "<sim_time>: 'x' is not a number; 0 is used instead"):
+        assert said in caplog.text
 
 
 # --- frames

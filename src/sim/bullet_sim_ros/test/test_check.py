@@ -1,8 +1,10 @@
 """rosrun bullet_sim_ros check: what it finds, how it says so, and its exit code."""
 
+import threading
 from pathlib import Path
 
 import pytest
+import rospy
 
 from bullet_sim_ros.check.command import main
 
@@ -65,6 +67,97 @@ def test_a_missing_mesh_and_broken_xml_are_problems(check):
     assert code == 1 and "PROBLEM       robot:" in said
 
 
+JOINTED = ROBOT.format("""<link name="wheel"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="j" type="continuous"><parent link="base"/><child link="wheel"/></joint>{}""")
+DRIVE = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+  <{tag}>j</{tag}><rightJoint>j</rightJoint><odometryTopic>odom</odometryTopic></plugin></gazebo>"""
+CAMERA = """<gazebo {}><plugin name="eye" filename="libgazebo_ros_camera.so">
+  <cameraName>eye</cameraName></plugin></gazebo>"""
+SENSOR = """<gazebo reference="base"><sensor name="s" type="{}"><camera><image>
+  <width>8</width><height>8</height><format>{}</format></image></camera>
+  <plugin name="eye" filename="libgazebo_ros_camera.so"><cameraName>eye</cameraName></plugin>
+  </sensor></gazebo>"""
+CONTROL = """<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>"""
+
+
+@pytest.mark.parametrize("wrong, right, why", [
+    (DRIVE.format(tag="leftJont"), DRIVE.format(tag="leftJoint"), ") is not loaded: no joint"),
+    (CAMERA.format(""), SENSOR.format("camera", "R8G8B8"), ") is not loaded: it belongs"),
+    (SENSOR.format("camera", "RGB9"), SENSOR.format("camera", "L8"), "format RGB9 is not supp"),
+    (SENSOR.format("camra", "L8"), SENSOR.format("camera", "L8"), "there is no type 'camra'"),
+    ('<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
+     '<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName>'
+     "<topicName>t</topicName></plugin></gazebo>", "it needs a <bodyName>"),
+    ('<gazebo><plugin name="p"/></gazebo>', CONTROL, "plugin p: it has no filename"),
+])
+def test_a_plugin_that_will_not_be_loaded_is_a_problem(check, wrong, right, why):
+    code, said = check("robot.urdf", JOINTED.format(wrong))
+    assert code == 1
+    assert [line for line in said.splitlines() if line.startswith("  PROBLEM") and why in line]
+    assert not ("is not loaded" in said and "works         plugin" in said)
+    assert check("robot.urdf", JOINTED.format(right))[0] == 0
+
+
+def test_what_a_plugin_only_remarks_does_not_count(check):
+    drive = DRIVE.format(tag="leftJoint")
+    code, said = check("robot.urdf", JOINTED.format(drive), "--all")
+    assert code == 0 and "it says" not in said  # which tags are left to their defaults
+    code, said = check("robot.urdf", JOINTED.format(CONTROL))
+    assert code == 0 and "approximated  it says: " in said and "no usable <transmission>" in said
+    arm = """<transmission name="t"><type>transmission_interface/SimpleTransmission</type>
+      <joint name="j"><hardwareInterface>EffortJointInterface</hardwareInterface></joint>
+      <actuator name="a"/>
+      </transmission>"""
+    code, said = check("robot.urdf", JOINTED.format(CONTROL + arm))
+    assert code == 0 and "approximated  it says: Deprecated syntax" in said
+
+
+def test_no_master_and_no_thread_is_left(check):
+    before = rospy.Publisher, rospy.get_param, rospy.names._caller_id
+    text = JOINTED.format(CONTROL.replace("/>", "><robotParam>later</robotParam></plugin>"))
+    assert check("robot.urdf", text)[0] == 0
+    assert (rospy.Publisher, rospy.get_param, rospy.names._caller_id) == before
+    for waiting in [thread for thread in threading.enumerate() if thread.name == "urdf"]:
+        waiting.join(5)
+        assert not waiting.is_alive()
+
+
+def test_it_looks_into_what_a_world_includes(check, tmp_path, monkeypatch):
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / "model.sdf").write_text("""<sdf version="1.6"><model name="m">
+      <link name="l"/><plugin name="p" filename="libmy_own.so"/></model></sdf>""")
+    (tmp_path / "pair").mkdir()
+    (tmp_path / "pair" / "model.sdf").write_text("""<sdf version="1.6"><model name="two">
+      <link name="l"/><include><uri>model://robot</uri></include></model></sdf>""")
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path))
+    for name in ("robot", "pair"):
+        code, said = check("a.world", WORLD.format(f"<include><uri>model://{name}</uri></include>"))
+        assert code == 1
+        assert "a.world, included model://robot\n  NOT THERE     plugin p (libmy_own.so)" in said
+
+
+def test_a_light_and_plugins_that_do_not_matter_here(check):
+    light = '<light name="l" type="{}"/>'
+    code, said = check("a.world", WORLD.format(light.format("sunny")))
+    assert code == 1 and "PROBLEM       light l: there is no type 'sunny'; there are point" in said
+    assert check("a.world", WORLD.format(light.format("spot")))[0] == 0
+    gui = """<gui><plugin name="g" filename="libmy_window.so"/></gui>
+      <plugin name="paths" filename="libgazebo_ros_paths_plugin.so"/>"""
+    assert check("a.world", WORLD.format(gui))[0] == 0
+
+
+def test_a_material_that_is_not_there_is_one_line(check):
+    visual = """<visual name="{}"><geometry><sphere><radius>1</radius></sphere></geometry>
+      <material><script><uri>model://no_such/materials/scripts</uri>
+      <uri>model://no_such/materials/textures</uri><name>{}</name></script></material></visual>"""
+    model = '<sdf version="1.6"><model name="m"><link name="l">{}</link></model></sdf>'
+    code, said = check("m.sdf", model.format(visual.format("a", "No/Such")
+                                             + visual.format("b", "No/Such")))
+    assert code == 1 and said.count("PROBLEM") == 1 and "material 'No/Such' not found" in said
+    assert check("m.sdf", model.format(visual.format("a", "Gazebo/Grey")))[0] == 0
+
+
 def test_xacro_is_expanded_with_arguments(check):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="$(arg n)">
       <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
@@ -107,3 +200,61 @@ def test_nothing_to_check_and_a_wrong_launch_file(capsys):
     assert main(["learning_topic", "0curse.launch"]) == 1
     assert "not there; there are: 0course.launch" in capsys.readouterr().out
     assert not Path("no_such_package").exists()
+
+
+def test_controllers_of_a_launch_file(check, tmp_path):
+    (tmp_path / "robot.urdf").write_text(ROBOT.format(""))
+    (tmp_path / "c.yaml").write_text("""
+state: {type: joint_state_controller/JointStateController}
+arm: {type: my_things/Controller}
+other: {type: their_things/Planner}
+wheel: {type: velocity_controllers/JointVelocityControler, joint: j}""")
+    code, said = check("a.launch", """<launch><rosparam file="$(dirname)/c.yaml" ns="r"/>
+      <node name="s" pkg="controller_manager" type="spawner" ns="r" args="state arm"/></launch>""")
+    assert code == 1
+    assert "works         controller /r/state (joint_state_controller/JointStateController" in said
+    assert ("NOT THERE     controller /r/wheel (velocity_controllers/JointVelocityControler): "
+            "there is no such type of controller here; did you mean velocity_controllers/JointVeloc"
+            "ityController?") in said
+    assert "NOT THERE     controller /r/arm (my_things/Controller)" in said
+    assert "their_things" not in said
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A package with files of these names and texts; its folder."""
+    def make(**texts: str) -> str:
+        (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+        for name, text in texts.items():
+            (tmp_path / name.replace("__", ".")).write_text(text)
+        return str(tmp_path)
+    return make
+
+
+def test_robots_that_are_only_shown(package, capsys):
+    shown = '<robot name="r"><link name="base"><visual><geometry><sphere radius="1"/></geometry>' \
+            "</visual></link></robot>"
+    folder = package(robot__urdf=shown)
+    assert main([folder]) == 0
+    said = capsys.readouterr().out
+    assert "approximated  robot: only to be shown: nothing in it has mass" in said
+    assert main([f"{folder}/robot.urdf"]) == 1
+    package(broken__urdf=shown.replace("sphere", "cone"))
+    assert main([folder]) == 1
+    assert "broken.urdf\n  PROBLEM       robot: link 'base' <visual>" in capsys.readouterr().out
+    package(broken__urdf=shown)
+    package(spawn__launch=LAUNCH.format("robot_description", "gazebo_ros", "spawn_model"))
+    assert main([folder]) == 1
+    assert "parameter /robot_description\n  PROBLEM       robot: " in capsys.readouterr().out
+
+
+def test_launch_files_that_need_arguments(package, capsys):
+    folder = package(part__launch="""<launch><arg name="model"/><arg name="x" default="0"/>
+      <arg name="world"/></launch>""")
+    assert main([folder]) == 0
+    said = capsys.readouterr().out
+    assert "not checked   launch file: it needs model:=… world:=…; rosrun bullet_sim_ros" in said
+    assert said.endswith("all that was checked will work\n")
+    assert main([f"{folder}/part.launch", "world:=w"]) == 1
+    assert "PROBLEM       launch file: it needs model:=…; " in capsys.readouterr().out
+    assert main([f"{folder}/part.launch", "world:=w", "model:=m"]) == 0

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from bullet_sim.errors import SimulationError
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 
@@ -26,12 +25,14 @@ def test_real_time_factor_becomes_the_update_rate(words, rate_hz):
 
 
 @pytest.mark.parametrize("words", [(), ("--real-time-factor=1",)])
-def test_a_step_of_nothing_is_the_worlds_error_with_and_without_a_factor(tmp_path, words):
+def test_a_step_of_nothing_is_an_error_line_with_and_without_a_factor(tmp_path, caplog, words):
     path = tmp_path / "step.world"
     path.write_text("<sdf version='1.6'><world name='w'><physics type='ode'>"
                     "<max_step_size>0</max_step_size></physics></world></sdf>")
-    with pytest.raises(SimulationError, match="a time step of 0 s is not possible"):
-        open_world(parse(["--world", str(path), *words]), open_resources())
+    world = open_world(parse(["--world", str(path), *words]), open_resources())
+    assert world.timestep == 0.001
+    assert [record.getMessage() for record in caplog.records] == [
+        "<physics>: a time step of 0 s is not possible; 1e-05 to 0.1 is; 0.001 is used instead"]
 
 
 def test_seed_and_pause():

@@ -1,5 +1,6 @@
 """What packages export to gazebo_ros becomes search paths."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,31 @@ def test_exports_of_packages_are_search_paths(packages):
     assert resources.find_world("worlds/small.world") == folder / "media/worlds/small.world"
     assert not any("not_for_us" in str(path) for path in resources.model_paths)
     assert Path(resources.package_folder("full")) == folder
+
+
+@pytest.mark.parametrize("broken, said", [
+    ("<package><name>bad</name><maintainer email='a@b.c'>a</maintainer>EXPORT</package>", None),
+    ("<package>EXPORT</package>", None),
+    ("<package format='2'><name>bad</name><version>one</version>EXPORT</package>", None),
+    ("<package><name>bad</name>EXPORT", "bad/package.xml is not well-formed XML"),
+    ("<package><name>bad</name>EXPORT<version>&nbsp;</version></package>", "is not well-formed"),
+])
+def test_a_manifest_that_rospkg_refuses_does_not_end_the_simulator(packages, caplog, broken, said):
+    good = packages("good", '<gazebo_ros gazebo_model_path="${prefix}/models"/>')
+    bad = packages("bad", "")
+    (bad / "package.xml").write_text(
+        broken.replace("EXPORT", '<export><gazebo_ros gazebo_model_path="${prefix}/m"/></export>'))
+    paths = open_resources().model_paths
+    assert good / "models" in paths
+    assert (bad / "m" in paths) == (said is None)
+    lines = [record.getMessage() for record in caplog.records]
+    assert len(lines) == (said is not None) and all(said in line for line in lines)
+
+
+def test_a_manifest_of_another_kind_is_not_waited_for(packages):
+    os.remove(packages("pipe", "") / "package.xml")
+    os.mkfifo(Path(os.environ["ROS_ROOT"]) / "pipe/manifest.xml")
+    open_resources()
 
 
 def test_a_package_that_is_not_there(packages):

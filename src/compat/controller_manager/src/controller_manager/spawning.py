@@ -3,6 +3,7 @@
 import argparse
 import threading
 import time
+from collections.abc import Callable
 
 import rospy
 from std_msgs.msg import Bool
@@ -69,10 +70,9 @@ class Spawner:
             return
         rospy.loginfo("Shutting down spawner. Stopping and unloading controllers...")
         try:
-            self._stop()
-            self._unload()
+            self._unload(complain=rospy.logwarn if self._stop() else rospy.loginfo)
         except (rospy.ServiceException, rospy.ROSException) as error:
-            rospy.logwarn(f"Controller Spawner error while taking down controllers: {error}")
+            rospy.loginfo(f"The controller manager has ended, its controllers with it: {error}")
 
     def _wait(self, service: str) -> bool:
         rospy.loginfo(f"Controller Spawner: Waiting for service {self._manager.name(service)}")
@@ -125,17 +125,23 @@ class Spawner:
         reason = diagnosis.switch_failure(self._manager.controllers(), self._mine, ())
         rospy.logerr(f"Failed to start controllers: {names}: {reason}")
 
-    def _stop(self) -> None:
+    def _stop(self) -> bool:
+        """Whether the manager goes on; after Ctrl-C it refuses, as its world ends as well."""
         rospy.loginfo("Stopping all controllers...")
         running = [state.name for state in self._manager.controllers()
                    if state.name in self._mine and state.state == "running"]
         began = time.monotonic()
-        if running and not self._manager.switch(stop=running, timeout=STOP_TIMEOUT):
-            waited = time.monotonic() - began
-            why = "is the world paused?" if waited > 0.9 * STOP_TIMEOUT else "the world is ending"
-            rospy.logwarn(f"Could not stop {', '.join(running)} within {waited:.0f} s: {why}")
+        if not running or self._manager.switch(stop=running, timeout=STOP_TIMEOUT):
+            return True
+        waited = time.monotonic() - began
+        if waited < 0.9 * STOP_TIMEOUT:
+            rospy.loginfo(f"Could not stop {', '.join(running)}: the world is ending")
+            return False
+        rospy.logwarn(f"Could not stop {', '.join(running)} within {waited:.0f} s: is the world "
+                      "paused?")
+        return True
 
-    def _unload(self) -> None:
+    def _unload(self, complain: Callable[[str], None]) -> None:
         rospy.loginfo("Unloading all loaded controllers...")
         for name in reversed(self._mine):
             rospy.loginfo(f"Trying to unload {name}")
@@ -143,7 +149,7 @@ class Spawner:
                 rospy.loginfo(f"Succeeded in unloading {name}")
             else:
                 reason = diagnosis.unload_failure(self._manager, name)
-                rospy.logwarn(f"Failed to unload {name}: {reason}")
+                complain(f"Failed to unload {name}: {reason}")
 
 
 def main() -> int:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from bullet_sim.description import Inertial, LinkDescription
 from bullet_sim.physics.attachments import Attachment
 from bullet_sim.physics.body import Body
+from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.pose import Pose, Vector3
+from bullet_sim.seat import put_in_joint
 from bullet_sim.twist import Twist, twist_difference
 
 if TYPE_CHECKING:
@@ -38,20 +40,28 @@ class Link:
     def move(self, pose: Pose, twist: Twist) -> None:
         """Put it there, with that velocity (world axes), and all that joints hold it to.
 
-        Joints keep their positions and rates.
+        Joints keep their positions and rates. Of what is held to the world, the link's own joint
+        alone moves, as far as it can.
         """
+        if self._body.tree.held and not self.model.static:
+            put_in_joint(self, self._body, pose, twist)
+            return
         self.model.move_body(self._body, pose * self.pose.inverse())
         if not self._body.tree.held:
             self._body.add_twist(twist_difference(twist, self.twist), pose.position)
             self.model.forget()
 
     def change(self, inertial: Inertial, gravity: bool) -> None:
-        """Other mass, centre of mass and inertia, and whether gravity pulls at it."""
-        self.description = replace(self.description, inertial=inertial, gravity=gravity)
-        self.model.note_weightless()
+        """Other mass, centre of mass and inertia, and whether gravity pulls at it.
+
+        SimulationError, and nothing changes, where no body is like that.
+        """
+        check_inertial(inertial)
         if not self.model.static:
             self._body.change_inertial(self.name, inertial)
             self.model.forget()
+        self.description = replace(self.description, inertial=inertial, gravity=gravity)
+        self.model.note_weightless()
 
     def attach(self, other: Link | None = None) -> Attachment:
         """Hold it where it is now, on another model's link or in the world, until released."""

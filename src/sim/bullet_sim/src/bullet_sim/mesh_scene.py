@@ -12,14 +12,25 @@ from typing import Any
 import numpy as np
 
 from bullet_sim.description import Material
+from bullet_sim.files import check_file
 from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
+
+LARGEST_PART = 200_000_000  # bytes
 
 
 def read_scene(path: Path, split: bool) -> list[NamedPart]:
     """One part per geometry at its place in the scene, named after its node."""
     import trimesh
+    from trimesh.resolvers import FilePathResolver
 
-    scene = trimesh.load_scene(str(path), process=False)
+    class Beside(FilePathResolver):
+        """What the file names: buffers and pictures beside it."""
+
+        def get(self, name: str) -> bytes:
+            check_file(Path(self.parent) / name, LARGEST_PART)
+            return super().get(name)
+
+    scene = trimesh.load_scene(str(path), resolver=Beside(str(path)), process=False)
     parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]

@@ -7,7 +7,9 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from bullet_sim.description import Material
+from bullet_sim.files import check_file
 
+LARGEST_LIBRARY = 4 * 2**20  # bytes
 _log = logging.getLogger(__name__)
 
 Entry = dict[str, list[str]]  # keyword in small letters -> its words
@@ -29,6 +31,7 @@ def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
 def _entries(library: Path) -> dict[str, Entry]:
     values: dict[str, Entry] = {}
     current: Entry = {}
+    check_file(library, LARGEST_LIBRARY)
     for line in library.read_text(errors="replace").splitlines():
         key, *words = line.split() or [""]
         if key.lower() == "newmtl":

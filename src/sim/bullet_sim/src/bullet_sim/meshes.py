@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import logging
-import os
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 
 from bullet_sim.description import Generated, Mesh
 from bullet_sim.errors import FormatError
+from bullet_sim.files import check_file
 from bullet_sim.generated import generated_parts
 from bullet_sim.mesh_collada import read_collada
 from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
@@ -49,12 +49,9 @@ def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)
     try:
-        status = os.stat(geometry.path)
-    except OSError as error:
-        raise FormatError(f"mesh {geometry.path} cannot be read: {error.strerror}") from None
-    if status.st_size > LARGEST_FILE:
-        raise FormatError(f"mesh {geometry.path} cannot be read: {status.st_size // 10**6} MB, "
-                          f"more than {LARGEST_FILE // 10**6}; export it with fewer triangles")
+        status = check_file(geometry.path, LARGEST_FILE, "export it with fewer triangles")
+    except FormatError as error:
+        raise FormatError(f"mesh {error}") from None
     return _load(_FileVersion(geometry, status.st_mtime_ns))
 
 

@@ -8,12 +8,13 @@ from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.joint import HeldJoint, Joint, LoopJoint, OddGroup
 from bullet_sim.link import Link, gravity_compensation
-from bullet_sim.physics.assembly import WORLD, assemble, loose_joints
+from bullet_sim.physics.assembly import WORLD, Tree, assemble, loose_joints
 from bullet_sim.physics.axes import SECOND
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.filters import Filters
 from bullet_sim.physics.joint_group import JointGroup
+from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loops import Closures
 from bullet_sim.pose import Pose, Vector3
 from bullet_sim.twist import STILL, Twist, shifted_twist
@@ -31,18 +32,23 @@ class Model:
         self.was_mended = False  # whether its motion has been no number once
         self.bodies: list[Body] = []
         self._rest = client.rest
+        self._set_pose = pose  # of a model without links
+        self._states: dict[str, tuple[Pose, Twist]] | None = None
+        trees = assemble(description)
+        check_trees(name, trees)
         try:
-            trees = assemble(description)
-            for tree in trees:
-                self.bodies.append(Body(client, tree, pose))
-            loose = loose_joints(description, trees)
-            Closures(client, description, self.bodies, loose)
-            Filters(client, description, self.bodies)
+            self._build(client, trees, pose)
         except Exception:
             self.remove()  # what was made before the failure
             raise
-        self._set_pose = pose  # of a model without links
-        self._states: dict[str, tuple[Pose, Twist]] | None = None
+
+    def _build(self, client: PhysicsClient, trees: Sequence[Tree], pose: Pose) -> None:
+        description = self.description
+        for tree in trees:
+            self.bodies.append(Body(client, tree, pose))
+        loose = loose_joints(description, trees)
+        Closures(client, description, self.bodies, loose)
+        Filters(client, description, self.bodies)
         owner = {link.described: body for body in self.bodies for link in body.tree.links}
         self.links = {
             link.name: Link(self, link, owner[link.name]) for link in description.links
@@ -122,10 +128,15 @@ class Model:
         self.forget()
 
     def move_body(self, body: Body, change: Pose) -> None:
-        """Move one of its bodies by a displacement that is given in the world."""
-        body.set_base_frame(change * body.base_frame())
+        """Move one of its bodies, all of a static one's, by a displacement given in the world."""
+        for moved in self.bodies if self.static else [body]:
+            moved.set_base_frame(change * moved.base_frame())
         self._set_pose = change * self._set_pose
         self.forget()
+
+    def reset_axis(self, name: str, position: float, rate: float) -> None:
+        """Put what turns or slides in a joint, the second axis of one that has two among them."""
+        self._axes[name].reset(position, rate)
 
     def set_twist(self, twist: Twist) -> None:
         """Move as a rigid whole whose model frame has that twist; joints stop turning."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 import zlib
@@ -12,23 +13,24 @@ import numpy as np
 
 from bullet_sim.actors import Walker
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
-from bullet_sim.errors import NameTaken, UnknownName
+from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.forces import Forces
 from bullet_sim.link import Link
 from bullet_sim.model import Model
-from bullet_sim.nested import find_part
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
-from bullet_sim.physics.limits import check_physics
-from bullet_sim.physics.mending import mend
+from bullet_sim.physics.limits import check_kept, check_physics, possible_physics
+from bullet_sim.physics.mending import lost_models, mend
+from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene import Scene
+from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
 from bullet_sim.snapshot import Snapshot, take_snapshot
 from bullet_sim.stages import Stages
 from bullet_sim.twist import Twist
 
-INERTIAL_FRAMES = ("", "world", "map", "/map")  # other names of the world's frame
+_log = logging.getLogger(__name__)
 
 
 class World:
@@ -36,8 +38,8 @@ class World:
 
     def __init__(self, description: WorldDescription | None = None, seed: int = 0,
                  initial_time: float = 0.0):
-        self.description = description or WorldDescription()
-        check_physics(self.description.physics)
+        description = description or WorldDescription()
+        self.description = replace(description, physics=possible_physics(description.physics))
         self.seed = seed
         self._initial_time = initial_time
         # A saved world goes on when it was saved; a reset takes it to the beginning.
@@ -49,13 +51,18 @@ class World:
         self.forces = Forces()
         self.stages = Stages()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
+        self.each_removal: list[Callable[[str], None]] = []  # with the name of a model that went
         self._moving: list[Model] = []
         self._walkers: dict[str, Walker] = {}
+        self._told: set[str] = set()  # errors of the engine that nothing could be done about
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
             self.add_light(light)
         for model in self.description.models:
-            self.spawn(model)
+            try:
+                self.spawn(model)
+            except SimulationError as error:
+                _log.error("model %r: %s; left out", model.name, error)
         for name, visual in self.description.scenery:
             self.scene.add_link(("", name), (visual,), IDENTITY)
 
@@ -79,24 +86,35 @@ class World:
             self.tick += count
             return
         start = time.perf_counter()
-        step, moving, each_step = self._client.step, self._moving, self.each_step
-        gravity = self.description.gravity
-        for _ in range(count):
-            if self.forces:  # first: they may end the rest in which models do nothing
-                self.forces.apply((self.tick + 1) * self.timestep, self.timestep)
-            for model in moving:
-                model.before_step(gravity)
-            step()
-            self.tick += 1
-            if self._client.rest.broken:
-                mend(self._client, self.models.values())
-            for model in moving:
-                model.forget()
-            for walker in self._walkers.values():
-                walker.walk(self.time)
-            for function in each_step:
-                function()
+        for tick in range(self.tick + 1, self.tick + count + 1):
+            try:
+                self._step_once()
+            except EngineError as error:
+                self.tick = tick
+                self.outlive(error)
         self.stages.add("physics", time.perf_counter() - start, count)
+
+    def _step_once(self) -> None:
+        moving, gravity = self._moving, self.description.gravity
+        if self.forces:  # first: they may end the rest in which models do nothing
+            self.forces.apply((self.tick + 1) * self.timestep, self.timestep)
+        for model in moving:
+            model.before_step(gravity)
+        self._client.step()
+        self.tick += 1
+        if self._client.rest.broken:
+            mend(self._client, self.models.values())
+        for model in moving:
+            model.forget()
+        for walker in self._walkers.values():
+            walker.walk(self.time)
+        for function in self.each_step:
+            function()
+
+    def outlive(self, error: EngineError) -> None:
+        """After an error of the engine: models that it has lost are taken out; the rest goes on."""
+        for name in lost_models(self.models.values(), error, self._told):
+            self.delete(name)
 
     def random(self, name: str, tick: int | None = None) -> np.random.Generator:
         """A generator for a named thing at one tick (now): the same in every run with one seed.
@@ -114,12 +132,11 @@ class World:
         name = name or description.name
         if name in self.models:
             raise NameTaken(f"a model named {name!r} is already there; delete it or choose another")
-        model = Model(name, description, pose * description.pose, self._client)
-        self.models[name] = model
+        model = self.models[name] = Model(name, description, pose * description.pose, self._client)
         self._note_moving()
-        if description.trajectory:
-            self._walkers[name] = Walker(model, description.trajectory)
         try:
+            if description.trajectory:
+                self._walkers[name] = Walker(model, description.trajectory)
             self._show(model)
         except Exception:
             self.delete(name)
@@ -134,8 +151,8 @@ class World:
         for link in model.links.values():
             self.scene.add_link((model.name, link.name), link.description.visuals, link.pose)
             for light in link.description.lights:
-                scoped = f"{link.scoped_name}::{light.name}"
-                self.add_light(replace(light, name=scoped, pose=link.pose * light.pose))
+                self.add_light(replace(light, name=light_name(link, light),
+                                       pose=link.pose * light.pose))
 
     def delete(self, name: str) -> None:
         """Take a model out."""
@@ -144,10 +161,13 @@ class World:
         self._walkers.pop(name, None)
         self._note_moving()
         self.scene.remove_model(name)
-        for light in [light for light in self.lights if light.startswith(f"{name}::")]:
-            self.remove_light(light)
+        for light in carried_lights(model):
+            if light in self.lights:
+                self.remove_light(light)
         self.forces.drop_model(model)
         model.remove()
+        for function in self.each_removal:
+            function(name)
 
     def model(self, name: str) -> Model:
         """The model of that name."""
@@ -157,26 +177,11 @@ class World:
 
     def link(self, name: str) -> Link:
         """A link by scoped name `model::link`, or by an unscoped name that only one model has."""
-        model, _, rest = name.partition("::")
-        if rest and model in self.models:
-            return self.models[model].link(rest)
-        found = [m.links[name] for m in self.models.values() if name in m.links]
-        if len(found) == 1:
-            return found[0]
-        known = [link.scoped_name for m in self.models.values() for link in m.links.values()]
-        raise UnknownName("link", name, known)
+        return find_link(self.models, name)
 
     def frame(self, name: str) -> tuple[Pose, Twist]:
         """Pose and twist of a reference frame: a model, a link, or the world by its usual names."""
-        if part := find_part(self.models.values(), name):
-            return part.pose, part.twist
-        try:
-            link = self.link(name)
-        except UnknownName:
-            if name in INERTIAL_FRAMES:
-                return IDENTITY, Twist()
-            raise
-        return link.pose, link.twist
+        return find_frame(self.models, name)
 
     def add_light(self, light: LightDescription) -> None:
         """Switch a light on."""
@@ -236,6 +241,7 @@ class World:
         gravity = changes.pop("gravity", self.description.gravity)
         physics = replace(self.description.physics, **changes)
         check_physics(physics)
+        check_kept(self.description.physics, physics)
         self._client.configure(physics, gravity)
         # Up to a whole number of the new steps: time must not go back.
         self.tick = math.ceil(self.time / physics.max_step_size - 1e-6)

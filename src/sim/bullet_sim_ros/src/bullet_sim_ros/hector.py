@@ -8,10 +8,10 @@ from dataclasses import replace
 from bullet_sim.link import Link
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
-from bullet_sim_ros.control.value_server import Value, ValueServer
+from bullet_sim_ros.control.value_server import Value, offer_values
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.parameters import PluginParameters
+from bullet_sim_ros.plugins.parameters import PluginParameters, read_numbers
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
         "gaussian_noise": "gaussianNoise", "scale_error": "scaleError"}
@@ -63,9 +63,8 @@ class HectorError(ErrorModel):
 
         means = {name: math.fsum(values) / len(values)
                  for name, values in vars(self.parameters).items()}
-        server = ValueServer(namespace, {
+        offer_values(self._host, namespace, {
             name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, change)
-        self._host.on_close(server.close)
 
     def _set(self, values: dict[str, float]) -> None:
         size = len(self.parameters.offset)
@@ -92,10 +91,7 @@ def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tu
     words = p.text(tag).split()
     if not words:
         return default
-    try:
-        values = tuple(float(word) for word in words)
-    except ValueError:
-        values = ()
+    values = tuple(read_numbers(p.text(tag)))
     if len(values) == 1:
         values *= len(default)
     if len(values) != len(default) or not all(map(math.isfinite, values)):

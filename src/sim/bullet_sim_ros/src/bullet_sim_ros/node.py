@@ -17,7 +17,7 @@ from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_world
-from bullet_sim.physics.limits import check_physics
+from bullet_sim.physics.limits import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split
@@ -77,7 +77,7 @@ def open_world(options: argparse.Namespace, resources) -> World:
     """The world of the command line."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
-    check_physics(description.physics)
+    description = replace(description, physics=possible_physics(description.physics))
     if options.real_time_factor is not None:
         rate_hz = options.real_time_factor / description.physics.max_step_size
         physics = replace(description.physics, real_time_update_rate=rate_hz)

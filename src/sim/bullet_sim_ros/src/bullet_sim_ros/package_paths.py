@@ -9,17 +9,18 @@ import rospkg
 
 from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats import Resources
+from bullet_sim_ros.package_list import Package, list_packages
 
 
 def open_resources() -> Resources:
     """Search paths of this process, as Gazebo with its ROS paths plugin has them."""
-    packages = rospkg.RosPack()
+    ros_paths = rospkg.get_ros_paths()
+    packages = list_packages(ros_paths)
 
     def find_package(name: str) -> str:
-        try:
-            return packages.get_path(name)
-        except rospkg.ResourceNotFound:
-            raise ResourceNotFound(f"package://{name}", packages.get_ros_paths()) from None
+        if name not in packages:
+            raise ResourceNotFound(f"package://{name}", ros_paths)
+        return str(packages[name].folder)
 
     return Resources.from_environment(
         os.environ,
@@ -29,20 +30,11 @@ def open_resources() -> Resources:
     )
 
 
-def _exports(packages: rospkg.RosPack, attribute: str) -> list[Path]:
+def _exports(packages: dict[str, Package], attribute: str) -> list[Path]:
     """`<export><gazebo_ros ATTRIBUTE="${prefix}/a:${prefix}/b"/>` of every package."""
     found: dict[Path, None] = {}
-    for name in packages.list():
-        folder = packages.get_path(name)
-        if not _manifest_mentions(Path(folder), attribute):
-            continue
-        for value in packages.get_manifest(name).get_export("gazebo_ros", attribute):
-            value = value.replace("${prefix}", folder)
+    for package in packages.values():
+        for export in package.manifest.findall("export/gazebo_ros"):
+            value = export.get(attribute, "").replace("${prefix}", str(package.folder))
             found.update((Path(part), None) for part in value.split(":") if part)
     return list(found)
-
-
-def _manifest_mentions(folder: Path, word: str) -> bool:
-    """Whether it is worth parsing: to parse all of them takes longer than to load a world."""
-    manifests = [folder / "package.xml", folder / "manifest.xml"]
-    return any(word.encode() in file.read_bytes() for file in manifests if file.is_file())

@@ -7,6 +7,7 @@ from rosgraph_msgs.msg import Clock
 
 from bullet_sim.description import ModelDescription
 from bullet_sim.model import Model
+from bullet_sim.physics.quiet import EngineError
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
@@ -41,6 +42,7 @@ class Simulation:
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
         self._shared = Shared(world, self.mailbox, self.agenda, self._drawing, self._lockstep)
         self._plugins: dict[str, list[Host]] = {}
+        world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
         self.agenda.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
@@ -62,10 +64,13 @@ class Simulation:
         left = iterations or float("inf")
         while left and not self._stopped():
             self._wait()
-            if self._scene:
-                self._scene.update()
-            if not self.world.paused and not self._stopped():
-                left -= self._advance(left)
+            try:
+                if self._scene:
+                    self._scene.update()
+                if not self.world.paused and not self._stopped():
+                    left -= self._advance(left)
+            except EngineError as error:  # of a topic that tells where things are
+                self.world.outlive(error)
 
     def stop(self) -> None:
         """From a signal handler: end the loop soon."""
@@ -128,15 +133,17 @@ class Simulation:
     def spawn(self, description: ModelDescription, pose: Pose, name: str) -> Model:
         """Put a model in and load its plugins."""
         model = self.world.spawn(description, pose, name)
-        self._load_plugins(model)
+        try:
+            self._load_plugins(model)
+        except Exception:
+            self.world.delete(name)
+            raise
         self._lockstep.listen()
         return model
 
     def delete(self, name: str) -> None:
         """Take a model out; its topics disappear."""
         self.world.delete(name)
-        for host in self._plugins.pop(name, ()):
-            host.close()
         self._lockstep.listen()
 
     def reset(self) -> None:
@@ -161,6 +168,10 @@ class Simulation:
         self._drawing.close()
         self.speed.close()
         self.world.close()
+
+    def _close_plugins(self, model: str) -> None:
+        for host in self._plugins.pop(model, ()):
+            host.close()
 
     def _load_plugins(self, model: Model) -> None:
         self._plugins[model.name] = load_plugins(self._shared, model)

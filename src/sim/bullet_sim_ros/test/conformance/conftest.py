@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import io
 import threading
-from collections import defaultdict
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 
 import pytest
 import rospy
@@ -19,6 +17,7 @@ from bullet_sim.formats import load_model, load_world
 from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World
+from bullet_sim_ros.check.stand_ins import Graph, without_master
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.services import offer_services
@@ -31,119 +30,6 @@ GROUND = """<sdf version="1.6"><world name="default">
   <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
 </world></sdf>"""
 LIMIT = 20.0  # s, wall, for one service call
-
-
-@dataclass
-class Topic:
-    """One topic as the graph has it; `messages` are what was published while it was open."""
-
-    kind: type | None = None
-    messages: list = field(default_factory=list)
-    publishers: list = field(default_factory=list)
-    subscribers: list = field(default_factory=list)
-    listeners: int = 0  # how many others listen, as get_num_connections tells
-
-
-class Graph:
-    """Topics, services and parameters by resolved name."""
-
-    def __init__(self):
-        self.topics: dict[str, Topic] = defaultdict(Topic)
-        self.services: dict[str, tuple[type, Callable]] = {}
-        self.parameters: dict[str, object] = {}
-
-    def parameter(self, name: str) -> object:
-        """A parameter or the tree below a name; KeyError if there is none."""
-        name = rospy.resolve_name(name).rstrip("/")
-        if name in self.parameters:
-            return self.parameters[name]
-        tree: dict = {}
-        for key, value in self.parameters.items():
-            if key.startswith(f"{name}/"):
-                *path, last = key[len(name) + 1:].split("/")
-                branch = tree
-                for part in path:
-                    branch = branch.setdefault(part, {})
-                branch[last] = value
-        if not tree:
-            raise KeyError(name)
-        return tree
-
-
-def stand_ins(graph: Graph) -> dict[str, object]:
-    """What replaces rospy's own: they write into `graph`."""
-
-    class Publisher:
-        def __init__(self, name, data_class, **options):
-            self.name, self.resolved_name = name, rospy.resolve_name(name)
-            self.options = options
-            self._topic = graph.topics[self.resolved_name]
-            self._topic.kind = data_class
-            self._topic.publishers.append(self)
-
-        def publish(self, *args, **fields):
-            made = args and isinstance(args[0], self._topic.kind)
-            message = args[0] if made else self._topic.kind(*args, **fields)
-            message.serialize(io.BytesIO())  # what cannot be sent is an error here, too
-            if self in self._topic.publishers:
-                self._topic.messages.append(message)
-
-        def get_num_connections(self):
-            return self._topic.listeners
-
-        def unregister(self):
-            if self in self._topic.publishers:
-                self._topic.publishers.remove(self)
-
-    class Subscriber:
-        def __init__(self, name, data_class, callback=None, callback_args=None, **_options):
-            self.resolved_name = rospy.resolve_name(name)
-            self.callback, self.args = callback, callback_args
-            self._topic = graph.topics[self.resolved_name]
-            self._topic.kind = self._topic.kind or data_class
-            self._topic.subscribers.append(self)
-
-        def take(self, message):
-            if self.callback is not None:
-                self.callback(message, *([] if self.args is None else [self.args]))
-
-        def get_num_connections(self):
-            return 1
-
-        def unregister(self):
-            if self in self._topic.subscribers:
-                self._topic.subscribers.remove(self)
-
-    class Service:
-        def __init__(self, name, service_class, handler, **_options):
-            self.resolved_name = rospy.resolve_name(name)
-            if self.resolved_name in graph.services:
-                raise rospy.ServiceException(f"service [{self.resolved_name}] already registered")
-            graph.services[self.resolved_name] = (service_class, handler)
-
-        def shutdown(self, _reason=""):
-            graph.services.pop(self.resolved_name, None)
-
-    def get_param(name, *default):
-        try:
-            return graph.parameter(name)
-        except KeyError:
-            if default:
-                return default[0]
-            raise
-
-    def has_param(name):
-        try:
-            graph.parameter(name)
-        except KeyError:
-            return False
-        return True
-
-    def set_param(name, value):
-        graph.parameters[rospy.resolve_name(name)] = value
-
-    return {"Publisher": Publisher, "Subscriber": Subscriber, "Service": Service,
-            "get_param": get_param, "has_param": has_param, "set_param": set_param}
 
 
 class Bench:
@@ -232,15 +118,10 @@ class Bench:
 
 
 @pytest.fixture
-def graph(monkeypatch) -> Graph:
+def graph() -> Iterator[Graph]:
     """An empty ROS graph."""
-    made = Graph()
-    for name, stand_in in stand_ins(made).items():
-        monkeypatch.setattr(rospy, name, stand_in)
-    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
-    monkeypatch.setattr(rospy.rostime, "_rostime_current", rospy.Time(0))
-    monkeypatch.setattr(rospy.names, "_caller_id", "/gazebo")  # what ~ stands for
-    return made
+    with without_master() as made:
+        yield made
 
 
 @pytest.fixture

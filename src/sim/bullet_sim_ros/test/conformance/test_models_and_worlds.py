@@ -220,7 +220,7 @@ def test_the_lift_goes_up_when_called(make_bench):
                    "mud_pit_thin", "mud_pit_thick", "mud_patch"}),
     ("rubble.world", {"ground_plane", "cylinder_0", "box_1"}),
     ("stacks.world", {"ground_plane", "box_1", "sphere_1", "sphere_1a", "cylinder_1"}),
-    ("cafe.world", {"ground_plane", "Cafe", "table1", "table5", "actor1", "actor2"}),
+    ("cafe.world", {"ground_plane", "cafe", "table1", "table5", "actor1", "actor2"}),
 ])
 def test_a_world_of_gazebos_media_has_its_models(make_bench, world, models):
     # conforms: worlds/blank.world, worlds/empty.world, worlds/empty_sky.world

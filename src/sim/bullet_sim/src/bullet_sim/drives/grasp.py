@@ -78,8 +78,8 @@ class Grasp:
         return found
 
     def _may_be_held(self, name: str) -> bool:
-        model = self._world.models.get(name.partition("::")[0])
-        return model is not None and model is not self._palm.model and not model.static
+        model = self._world.link(name).model
+        return model is not self._palm.model and not model.static
 
     def _gripped(self, contacts: dict[str, list[Contact]]) -> bool:
         """Whether two fingers push against each other."""

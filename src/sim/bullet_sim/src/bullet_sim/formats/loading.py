@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats import sdf_model, sdf_world
+from bullet_sim.formats.mistakes import reading
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf_include import read_include
 from bullet_sim.formats.sdf_light import read_light
@@ -31,13 +32,17 @@ COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
     """The model of a URDF or SDF text; `name` replaces the one in the text."""
     root = _parse_model(text)
+    named = root
     if root.tag == "robot":
-        root = parse_xml(_with_package_folders(text, resources), "model")
-        if name:
-            root.set("name", name)
-    elif root.tag not in SDF_ROOTS:
+        named = root = parse_xml(_with_package_folders(text, resources), "model")
+    elif root.tag in SDF_ROOTS:
+        named = _model_of(root)
+    else:
         raise FormatError(f"{NOT_A_MODEL} (the root element is <{root.tag}>)")
-    model = _read_root(root, Source(resources))
+    if name and named is not None:
+        named.set("name", name)
+    with reading():
+        model = _read_root(root, Source(resources))
     return replace(model, name=name) if name else model
 
 
@@ -46,12 +51,17 @@ def load_light(text: str, resources: Resources, name: str | None = None) -> Ligh
     root = _parse_model(text)
     if root.tag not in SDF_ROOTS or len(root) == 0 or root[0].tag != "light":
         return None
-    light = read_light(root[0])
+    with reading():
+        light = read_light(root[0])
     return replace(light, name=name) if name else light
 
 
 def load_world(path: Path | str, resources: Resources) -> WorldDescription:
-    """The first world of a file; `Resources.find_world` finds the file."""
+    """The first world of a file; `Resources.find_world` finds the file.
+
+    FormatError where the file is no XML or has no `<world>`; all else that is wrong in it is an
+    error line, and the rest is read.
+    """
     path = Path(path)
     if not path.is_file():
         raise ResourceNotFound(f"world file {path}", [str(path.parent)])
@@ -61,10 +71,8 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
         raise FormatError(f"{path} has no <world> in an <sdf> root (the root is <{root.tag}>)")
     source = Source(resources).entering(path.resolve()).of_root(root)
     warn_of_unknown_elements(root, source, str(path))
-    try:
+    with reading(str(path)):
         return sdf_world.read_world(world, source, _read_model, _read_include)
-    except FormatError as error:
-        raise FormatError(f"{path}: {error}") from error
 
 
 def _parse_model(text: str) -> Element:
@@ -91,9 +99,7 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
         return read_robot(root, source)
     source = source.of_root(root)
     warn_of_unknown_elements(root, source, str(source.including[-1]) if source.including else "")
-    model = root.find("model")
-    if model is None:
-        model = root.find("world/model")
+    model = _model_of(root)
     if model is not None:
         return _read_model(model, source)
     # what spawn_model -database sends: a world that only includes the model
@@ -106,6 +112,12 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
         raise FormatError(f"<include> of {uri!r} brings in no model")
     # The service writes a <pose> into the include, and that takes the place of the model's own.
     return found if include.find("pose") is not None else replace(found, pose=IDENTITY)
+
+
+def _model_of(root: Element) -> Element | None:
+    """The one model of an SDF text."""
+    model = root.find("model")
+    return root.find("world/model") if model is None else model
 
 
 def _read_model(element: Element, source: Source) -> ModelDescription:

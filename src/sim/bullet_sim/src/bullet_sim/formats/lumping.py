@@ -20,7 +20,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.formats.urdf_extensions import put
 from bullet_sim.formats.urdf_tree import UrdfJoint, UrdfTree
-from bullet_sim.formats.xml_values import numbers, vector_text
+from bullet_sim.formats.xml_values import numbers, or_default, vector_text
 from bullet_sim.pose import IDENTITY, Pose, rotation_matrix
 
 LUMP = "_fixed_joint_lump__"
@@ -166,4 +166,4 @@ def follow_lumping(
 
 def _offset(element: Element, tag: str, plugin: str) -> tuple[float, ...]:
     text = (element.findtext(tag) or "").strip() or "0 0 0"
-    return numbers(text, 3, f"plugin {plugin!r} <{tag}>")
+    return or_default(lambda: numbers(text, 3, f"plugin {plugin!r} <{tag}>"), (0.0, 0.0, 0.0))

@@ -18,6 +18,7 @@ from bullet_sim.description import (
     Visual,
 )
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import all_that_can
 from bullet_sim.formats.sdf_frames import Frames, add_model_frames
 from bullet_sim.formats.sdf_link import read_link
 from bullet_sim.formats.sdf_sensor import read_plugins
@@ -38,7 +39,7 @@ def read_actor(element: Element, source: Source) -> ModelDescription:
     where = f"actor {name!r}"
     frames = Frames(source, name)
     add_model_frames(frames, element, where)
-    links = [read_link(link, source, where, frames) for link in element.findall("link")]
+    links = all_that_can(read_link, element.findall("link"), source, where, frames)
     if element.find("skin") is not None or not links:
         scale = amount(element, "skin/scale", 1.0, f"{where} <skin>")
         links.insert(0, _figure(f"{name}_pose", scale or 1.0))

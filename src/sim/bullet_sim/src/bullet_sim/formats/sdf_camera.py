@@ -6,8 +6,9 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import CameraDescription, Lens
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf_noise import read_noise
-from bullet_sim.formats.xml_values import child_text, flag, integer, number, numbers, pose
+from bullet_sim.formats.xml_values import child_text, flag, integer, number, pose, shown, vector
 
 DISTORTION = ("k1", "k2", "p1", "p2", "k3")  # the order of OpenCV and of camera_info
 LENSES = {  # type: c1, c2, function of r = c1 f fun(theta / c2)
@@ -17,6 +18,7 @@ LENSES = {  # type: c1, c2, function of r = c1 f fun(theta / c2)
     "equisolid_angle": (2.0, 2.0, "sin"),
     "orthographic": (1.0, 1.0, "sin"),
 }
+USUAL_LENS = "stereographic"
 FUNCTIONS = ("sin", "tan", "id")
 
 
@@ -25,7 +27,6 @@ def read_camera(element: Element, sensor: str) -> CameraDescription:
     name = element.get("name", "")
     where = f"{sensor} <camera name={name!r}>" if name else f"{sensor} <camera>"
     usual = CameraDescription()
-    centre = child_text(element, "distortion/center")
     return CameraDescription(
         name=name,
         pose=pose(element, where),
@@ -37,8 +38,7 @@ def read_camera(element: Element, sensor: str) -> CameraDescription:
         far=number(element, "clip/far", usual.far, where),
         noise=read_noise(element.find("noise"), where),
         distortion=tuple(number(element, f"distortion/{key}", 0.0, where) for key in DISTORTION),
-        distortion_centre=numbers(centre, 2, f"{where} <distortion/center>") if centre
-        else usual.distortion_centre,
+        distortion_centre=vector(element, "distortion/center", usual.distortion_centre, where),
         lens=_lens(element.find("lens"), f"{where} <lens>"),
     )
 
@@ -47,7 +47,7 @@ def _lens(element: Element | None, where: str) -> Lens:
     if element is None:
         return Lens()
     usual = Lens()
-    kind = child_text(element, "type", "stereographic")
+    kind = child_text(element, "type", USUAL_LENS)
     own = "custom_function/"
     if kind == "custom":
         function = child_text(element, own + "fun", usual.function)
@@ -56,11 +56,13 @@ def _lens(element: Element | None, where: str) -> Lens:
     elif kind in LENSES:
         c1, c2, function = LENSES[kind]
     else:
-        raise FormatError(f"{where} <type>: no lens named {kind!r}; there are: "
-                          f"{', '.join(LENSES)}, custom")
+        c1, c2, function = LENSES[USUAL_LENS]
+        instead(FormatError(f"{where} <type>: no lens named {kind!r}; there are: "
+                            f"{', '.join(LENSES)}, custom"), shown(USUAL_LENS))
     if function not in FUNCTIONS:
-        raise FormatError(f"{where} <fun>: no function named {function!r}; there are: "
-                          f"{', '.join(FUNCTIONS)}")
+        instead(FormatError(f"{where} <fun>: no function named {function!r}; there are: "
+                            f"{', '.join(FUNCTIONS)}"), shown(usual.function))
+        function = usual.function
     return Lens(
         c1=c1,
         c2=c2,

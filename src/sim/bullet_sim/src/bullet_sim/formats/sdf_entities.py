@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription, ModelDescription, Visual
-from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.sdf_actor import read_actor
 from bullet_sim.formats.sdf_frames import Frames, relative_to
 from bullet_sim.formats.sdf_light import read_light
@@ -16,9 +15,6 @@ from bullet_sim.formats.sdf_population import read_population
 from bullet_sim.formats.sdf_road import read_road
 from bullet_sim.formats.source import Source
 
-logger = logging.getLogger(__name__)
-
-EXTRAS = ("actor", "population", "road")  # a world without them is still of use
 Entity = ModelDescription | LightDescription
 IncludeReader = Callable[[Element, Source], Entity | None]
 ModelReader = Callable[[Element, Source], ModelDescription]
@@ -50,14 +46,7 @@ def read_entities(
     found = []
     entities = Entities()
     for child in element:
-        try:
-            read = _read(child, source, read_model, read_include)
-        except FormatError as error:
-            if child.tag not in EXTRAS:
-                raise
-            logger.error("%s; going on without it", error)
-            continue
-        for entity in read:
+        for entity in or_without(_read, child, source, read_model, read_include) or ():
             if isinstance(entity, Visual):
                 name = _own_name(entity.name, "road", entities.roads, source)
                 entities.roads[name] = entity

@@ -15,7 +15,15 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import amount, bounded, child_text, integer, numbers, vector
+from bullet_sim.formats.xml_values import (
+    amount,
+    bounded,
+    child_text,
+    integer,
+    length,
+    numbers,
+    vector,
+)
 
 IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
 # What a texture of Gazebo's media folder stands for, by a word in its file name: we have none.
@@ -55,7 +63,7 @@ def read_polylines(geometry: Element, source: Source, where: str) -> Polyline:
     )
     if any(len(outline) < 3 for outline in outlines):
         raise FormatError(f"{where}: an outline needs three <point>s or more")
-    return Polyline(outlines, amount(elements[0], "height", 1.0, where))
+    return Polyline(outlines, length(elements[0], "height", 1.0, where))
 
 
 def read_image(element: Element, source: Source, where: str) -> ImageExtrusion | None:
@@ -66,9 +74,9 @@ def read_image(element: Element, source: Source, where: str) -> ImageExtrusion |
         return None
     return ImageExtrusion(
         path=path,
-        scale=amount(element, "scale", 1.0, where),
+        scale=length(element, "scale", 1.0, where),
         threshold=integer(element, "threshold", 200, where),
-        height=amount(element, "height", 1.0, where),
+        height=length(element, "height", 1.0, where),
     )
 
 

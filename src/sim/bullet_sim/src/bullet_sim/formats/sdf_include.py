@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,12 +9,11 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription, ModelDescription
 from bullet_sim.errors import FormatError, ResourceNotFound, SimulationError
+from bullet_sim.formats.mistakes import mistake, reading
 from bullet_sim.formats.sdf_light import read_light
 from bullet_sim.formats.sdf_sensor import read_plugins
 from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
-
-logger = logging.getLogger(__name__)
 
 RootReader = Callable[[Element, Source], ModelDescription]
 MANIFESTS = ("model.config", "manifest.xml")
@@ -34,9 +32,9 @@ def read_include(
     try:
         return _read(include, uri, source, read_root)
     except ResourceNotFound as error:
-        logger.error("<include>: %s; going on without it", error)
+        mistake(f"<include>: {error}; going on without it")
     except SimulationError as error:
-        logger.error("<include> of %s: %s; going on without it", uri, error)
+        mistake(f"<include> of {uri}: {error}; going on without it")
     return None
 
 
@@ -54,9 +52,13 @@ def _read(
     root = read_xml_file(file)
     inner = source.entering(file).of_root(root)
     light = root.find("light")
-    if root.tag != "robot" and root.find("model") is None and light is not None:
-        return _placed_light(read_light(light), include)
-    return overridden(read_root(root, inner), include)
+    with reading(str(file)):
+        if root.tag != "robot" and root.find("model") is None and light is not None:
+            found = read_light(light)
+        else:
+            found = read_root(root, inner)
+    place = _placed_light if isinstance(found, LightDescription) else overridden
+    return place(found, include)
 
 
 def overridden(model: ModelDescription, include: Element) -> ModelDescription:
@@ -65,15 +67,16 @@ def overridden(model: ModelDescription, include: Element) -> ModelDescription:
     return replace(
         model,
         name=child_text(include, "name", model.name),
-        pose=pose(include, where) if child_text(include, "pose") else model.pose,
+        pose=pose(include, where, model.pose),
         static=flag(include, "static", model.static),
         plugins=model.plugins + read_plugins(include),
     )
 
 
 def _placed_light(light: LightDescription, include: Element) -> LightDescription:
-    placed = pose(include, "<include>") if child_text(include, "pose") else light.pose
-    return replace(light, name=child_text(include, "name", light.name), pose=placed)
+    where = f"<include> of {child_text(include, 'uri')}"
+    return replace(light, name=child_text(include, "name", light.name),
+                   pose=pose(include, where, light.pose))
 
 
 def model_file(found: Path) -> Path:

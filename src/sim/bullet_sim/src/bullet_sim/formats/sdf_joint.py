@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import JointDescription, SecondAxis
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf_frames import MODEL, Frames, end_of
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import amount, child_text, flag, number, numbers, vector
+from bullet_sim.formats.xml_values import (
+    amount,
+    child_text,
+    flag,
+    number,
+    numbers,
+    or_default,
+    shown,
+    vector,
+)
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
 
 TYPES = (
@@ -17,6 +28,7 @@ TYPES = (
     "continuous",
 )
 AXES = ("axis", "axis2")
+UPWARD = (0.0, 0.0, 1.0)  # the axis of a joint that says nothing
 LIMITS = ("lower", "upper", "effort", "velocity")
 UNLIMITED = JointDescription("", "", "", "")
 AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the joint frame
@@ -61,7 +73,8 @@ def read_joint(
 def _not_zero(element: Element, tag: str, where: str) -> float:
     value = number(element, tag, 1.0, where)
     if value == 0.0:
-        raise FormatError(f"{where} <{tag}>: 0 is not possible; leave it out for 1")
+        instead(FormatError(f"{where} <{tag}>: 0 is not possible"), "1")
+        return 1.0
     return value
 
 
@@ -75,7 +88,8 @@ def _end(element: Element, role: str, known: set[str], where: str) -> str:
 
 def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
     limits = {
-        key: read_limit(text, key, f"{where} <limit/{key}>")
+        key: or_default(partial(read_limit, text, key, f"{where} <limit/{key}>"),
+                        getattr(UNLIMITED, key))
         for key in LIMITS if (text := child_text(axis, f"limit/{key}"))
     }
     return limits | {
@@ -97,17 +111,22 @@ def _direction(
     axis: Element, joint: str, source: Source, frames: Frames, where: str
 ) -> Vector3:
     """Unit axis in the joint frame."""
-    written = vector(axis, "xyz", (0.0, 0.0, 1.0), where)
-    length = math.sqrt(sum(part * part for part in written))
-    if length == 0.0:
-        raise FormatError(f"{where} <xyz>: the axis 0 0 0 has no direction")
-    unit = tuple(part / length for part in written)
+    unit = unit_axis(vector(axis, "xyz", UPWARD, where), UPWARD, f"{where} <xyz>")
     given_in = _axis_frame(axis, source)
     if not given_in:
         return unit
     joint_in_model = frames.joint_in_model(joint).orientation
     frame_in_model = frames.in_model(given_in).orientation
     return rotate(multiply(conjugate(joint_in_model), frame_in_model), unit)
+
+
+def unit_axis(written: Vector3, usual: Vector3, where: str) -> Vector3:
+    """An axis of length 1; `usual`, with an error line, for one without a direction."""
+    length = math.hypot(*written)
+    if length == 0.0:
+        instead(FormatError(f"{where}: the axis {shown(written)} has no direction"), shown(usual))
+        return usual
+    return tuple(part / length for part in written)
 
 
 def _axis_frame(axis: Element, source: Source) -> str:

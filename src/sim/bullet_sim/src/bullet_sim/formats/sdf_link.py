@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Inertial, LinkDescription
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.prop_shapes import read_parts
 from bullet_sim.formats.sdf_frames import Frames, relative_to
 from bullet_sim.formats.sdf_light import read_light
 from bullet_sim.formats.sdf_sensor import read_sensor
@@ -36,15 +37,16 @@ def read_link(
         frames = Frames(source, model)
         frames.add(name, "", IDENTITY)
     place = _PartPlaces(name, frames, source, where)
-    visuals = [place(read_visual(part, source, where), part) for part in element.findall("visual")]
-    collisions = [
-        place(read_collision(part, source, where), part) for part in element.findall("collision")]
+    visuals = [place(visual, part) for part in element.findall("visual")
+               for visual in read_parts(read_visual, part, source, where)]
+    collisions = [place(collision, part) for part in element.findall("collision")
+                  for collision in read_parts(read_collision, part, source, where)]
     return LinkDescription(
         name=name,
         pose=frames.in_model(name),
         inertial=place(read_inertial(element, where), element.find("inertial")),
-        visuals=tuple(visual for visual in visuals if visual),
-        collisions=tuple(collision for collision in collisions if collision),
+        visuals=tuple(visuals),
+        collisions=tuple(collisions),
         sensors=tuple(
             place(read_sensor(sensor, where), sensor) for sensor in element.findall("sensor")),
         lights=tuple(

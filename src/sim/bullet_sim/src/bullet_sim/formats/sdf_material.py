@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.files import check_file
 from bullet_sim.formats import ogre
 from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.source import Source
@@ -15,6 +16,7 @@ from bullet_sim.formats.xml_values import child_text, colour, flag, number
 
 BUILTIN_SCRIPT = "media/materials/scripts/gazebo.material"
 PBR_WORKFLOWS = ("metal", "specular")
+LARGEST_SCRIPT = 4 * 2**20  # bytes
 COLOURS = ("ambient", "diffuse", "specular", "emissive")
 
 
@@ -126,10 +128,11 @@ def _imports(script: Path, source: Source) -> list[Path]:
 def _parsed(script: Path, source: Source) -> dict[str, ogre.ScriptMaterial]:
     if script not in source.scripts:
         try:
+            check_file(script, LARGEST_SCRIPT)
             text = script.read_text(encoding="utf-8", errors="replace")
             source.scripts[script] = ogre.parse_script(text)
         except (FormatError, OSError) as error:
-            source.warn_once(f"{script}: {error}")
+            source.warn_once(f"material script {script}: {error}")
             source.scripts[script] = {}
     return source.scripts[script]
 

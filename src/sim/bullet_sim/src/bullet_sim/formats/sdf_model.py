@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import all_that_can, mistake, or_without
 from bullet_sim.formats.sdf_frames import MODEL, Frames, add_model_frames, relative_to
 from bullet_sim.formats.sdf_joint import read_joint
 from bullet_sim.formats.sdf_link import read_link
@@ -33,20 +34,17 @@ def read_model(
     frames = Frames(source, name)
     add_model_frames(frames, element, where)
     nested = _place(_nested_models(element, source, read_include, where), frames)
-    _refuse_twins(element, "link", where)
-    _refuse_twins(element, "joint", where)
-    links = [
-        read_link(link, source, where, frames) for link in element.findall("link")
-    ] + [link for model in nested for link in model.links]
+    links = all_that_can(read_link, without_twins(element, "link", where), source, where, frames)
+    links += [link for model in nested for link in model.links]
     if not links:
         raise FormatError(f"{where}: a model must have at least one link")
     for model in nested:
         for link in model.links:
             frames.add(link.name, MODEL, link.pose)
     names = {link.name for link in links}
-    joints = [
-        read_joint(joint, source, where, frames, names) for joint in element.findall("joint")
-    ] + [joint for model in nested for joint in model.joints]
+    joints = all_that_can(
+        read_joint, without_twins(element, "joint", where), source, where, frames, names)
+    joints += [joint for model in nested for joint in model.joints]
     return ModelDescription(
         name=name,
         pose=pose(element, where),
@@ -66,7 +64,9 @@ def _nested_models(
 ) -> Iterator[tuple[ModelDescription, str]]:
     """Nested models and the frames their poses are given in."""
     for nested in element.findall("model"):
-        yield read_model(nested, source, read_include, where), relative_to(nested)
+        model = or_without(read_model, nested, source, read_include, where)
+        if model is not None:
+            yield model, relative_to(nested)
     for include in element.findall("include"):
         model = read_include(include, source)
         if model is not None:
@@ -124,10 +124,11 @@ def _with_scoped_names(plugin: PluginDescription, renamed: dict[str, str]) -> Pl
     return plugin
 
 
-def _refuse_twins(element: Element, tag: str, where: str) -> None:
-    seen: set[str] = set()
+def without_twins(element: Element, tag: str, where: str) -> list[Element]:
+    """The links or joints in an element; a second one of a name is left out, with an error line."""
+    found: dict[str, Element] = {}
     for part in element.findall(tag):
         name = part.get("name", "")
-        if name in seen:
-            raise FormatError(f"{where}: two {tag}s are named {name!r}")
-        seen.add(name)
+        if found.setdefault(name, part) is not part:
+            mistake(f"{where}: two {tag}s are named {name!r}; the second one is left out")
+    return list(found.values())

@@ -6,7 +6,8 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Fog, SceneDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xml_values import child_text, colour, flag, number
+from bullet_sim.formats.mistakes import instead
+from bullet_sim.formats.xml_values import child_text, colour, flag, number, shown
 
 FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
         "constant": "exp", "quadratic": "exp2"}  # the last two are how SDF's own text calls them
@@ -33,7 +34,9 @@ def _fog(element: Element | None, where: str) -> Fog:
         return usual
     kind = child_text(element, "type", usual.type)
     if kind not in FOGS:
-        raise FormatError(f"{where} <type>: no fog named {kind!r}; there are: {', '.join(FOGS)}")
+        instead(FormatError(f"{where} <type>: no fog named {kind!r}; there are: "
+                            f"{', '.join(FOGS)}"), shown(usual.type))
+        kind = usual.type
     return Fog(
         type=FOGS[kind],
         colour=colour(element, "color", usual.colour, where),

@@ -40,6 +40,11 @@ def warn_of_unknown_elements(root: Element, source: Source, file: str = "") -> N
         source.warn_once(f"{prefix}{place}: <{tag}> is not known, left out{hint}")
 
 
+def _is_old_pose(element: Element) -> bool:
+    """The pose of the oldest files, which `xml_values.pose` reads; a URDF origin is no such."""
+    return element.tag == "origin" and element.get("pose") is not None
+
+
 def _strange(element: Element, parent: str, place: str) -> Iterator[tuple[str, str, str]]:
     """Unknown elements with `parent/tag` of what they stand in, and the names on the way there."""
     tables = known_children()
@@ -55,5 +60,5 @@ def _strange(element: Element, parent: str, place: str) -> Iterator[tuple[str, s
     for child in element:
         if child.tag in known:
             yield from _strange(child, element.tag, place)
-        elif ":" not in child.tag:
+        elif ":" not in child.tag and not _is_old_pose(child):
             yield path, child.tag, place

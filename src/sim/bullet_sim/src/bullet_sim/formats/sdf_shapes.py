@@ -18,6 +18,7 @@ from bullet_sim.description import (
     Visual,
 )
 from bullet_sim.errors import ResourceNotFound
+from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.sdf_generated import read_heightmap, read_image, read_polylines
 from bullet_sim.formats.sdf_material import read_material
 from bullet_sim.formats.sdf_sensor import read_plugins
@@ -27,23 +28,25 @@ from bullet_sim.formats.xml_values import (
     child_text,
     flag,
     integer,
+    length,
     not_negative,
     number,
-    numbers,
+    or_default,
     pose,
     vector,
 )
 
 ONES = (1.0, 1.0, 1.0)
+SIDES = (1.0, 1.0)  # m, of a plane
 UNLIMITED_FRICTION = 1e6
 NEVER_BOUNCES, FASTEST_BOUNCE = 1e5, 1e3  # m/s; the first is SDF's default
 
 
 def read_visual(element: Element, source: Source, link: str) -> Visual | None:
-    """A visual; None, with a warning given, where its shape cannot be had."""
+    """A visual; None, with one line given, where its shape cannot be had."""
     name = element.get("name", "")
     where = _part(link, element)
-    shape = read_geometry(element.find("geometry"), source, where)
+    shape = or_without(read_geometry, element.find("geometry"), source, where)
     if shape is None:
         return None
     material = element.find("material")
@@ -59,10 +62,10 @@ def read_visual(element: Element, source: Source, link: str) -> Visual | None:
 
 
 def read_collision(element: Element, source: Source, link: str) -> Collision | None:
-    """A collision; None, with a warning given, where its shape cannot be had."""
+    """A collision; None, with one line given, where its shape cannot be had."""
     name = element.get("name", "")
     where = _part(link, element)
-    shape = read_geometry(element.find("geometry"), source, where)
+    shape = or_without(read_geometry, element.find("geometry"), source, where)
     if shape is None:
         return None
     if _is_flat(shape):
@@ -150,18 +153,19 @@ def _box(element: Element, source: Source, where: str) -> Box:
 
 def _cylinder(element: Element, source: Source, where: str) -> Cylinder:
     where = f"{where} <cylinder>"
-    return Cylinder(amount(element, "radius", 1.0, where), amount(element, "length", 1.0, where))
+    return Cylinder(length(element, "radius", 1.0, where), length(element, "length", 1.0, where))
 
 
 def _sphere(element: Element, source: Source, where: str) -> Sphere:
-    return Sphere(amount(element, "radius", 1.0, f"{where} <sphere>"))
+    return Sphere(length(element, "radius", 1.0, f"{where} <sphere>"))
 
 
 def _plane(element: Element, source: Source, where: str) -> Plane:
     where = f"{where} <plane>"
-    size = numbers(child_text(element, "size", "1 1"), 2, f"{where} <size>")
+    size = vector(element, "size", SIDES, where)
     return Plane(
-        vector(element, "normal", (0.0, 0.0, 1.0), where), not_negative(size, f"{where} <size>")
+        vector(element, "normal", (0.0, 0.0, 1.0), where),
+        or_default(lambda: not_negative(size, f"{where} <size>"), SIDES),
     )
 
 

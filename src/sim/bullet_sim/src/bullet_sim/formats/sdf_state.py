@@ -8,11 +8,21 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.scaling import scaled_model
 from bullet_sim.formats.sdf_state_joints import with_saved_joints
-from bullet_sim.formats.xml_values import child_text, not_negative, numbers, pose, vector
+from bullet_sim.formats.xml_values import (
+    child_text,
+    not_negative,
+    numbers,
+    or_default,
+    pose,
+    shown,
+    vector,
+)
 from bullet_sim.pose import Pose
 
+UNSCALED = (1.0, 1.0, 1.0)
 LATEST = 4e9  # s; ROS counts to 2**32
 
 
@@ -44,26 +54,29 @@ def _sim_time(state: Element, default: float) -> float:
         return default
     where = "<state> <sim_time>"
     count = 1 if len(text.split()) == 1 else 2
-    seconds, nanoseconds = (*not_negative(numbers(text, count, where), where), 0.0)[:2]
-    time = seconds + nanoseconds * 1e-9
-    if time > LATEST:
-        raise FormatError(f"{where}: {time:g} s is more than ROS can count; at most {LATEST:g}")
-    return time
+
+    def read() -> float:
+        seconds, nanoseconds = (*not_negative(numbers(text, count, where), where), 0.0)[:2]
+        time = seconds + nanoseconds * 1e-9
+        if time > LATEST:
+            raise FormatError(f"{where}: {time:g} s is more than ROS can count; "
+                              f"at most {LATEST:g}")
+        return time
+
+    return or_default(read, default)
 
 
 def _moved_light(light: LightDescription, state: Element) -> LightDescription:
-    if not child_text(state, "pose"):
-        return light
-    return replace(light, pose=pose(state, f"<state> of light {light.name!r}"))
+    return replace(light, pose=pose(state, f"<state> of light {light.name!r}", light.pose))
 
 
 def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
     where = f"<state> of model {model.name!r}"
-    if child_text(state, "pose"):
-        model = replace(model, pose=pose(state, where))
-    scale = vector(state, "scale", (1.0, 1.0, 1.0), where)
+    model = replace(model, pose=pose(state, where, model.pose))
+    scale = vector(state, "scale", UNSCALED, where)
     if min(scale) <= 0.0:
-        raise FormatError(f"{where} <scale>: {min(scale):g} leaves nothing; make it larger than 0")
+        instead(FormatError(f"{where} <scale>: {min(scale):g} leaves nothing"), shown(UNSCALED))
+        scale = UNSCALED
     model = scaled_model(model, scale)
     saved = dict(_link_poses(state, "", where))
     if model.joints and not model.static:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import PhysicsDescription, WorldDescription
+from bullet_sim.formats.mistakes import all_that_can
 from bullet_sim.formats.sdf_entities import IncludeReader, ModelReader, read_entities
 from bullet_sim.formats.sdf_light import read_light
 from bullet_sim.formats.sdf_scene import read_scene
@@ -49,12 +50,10 @@ def _with_insertions(
 ) -> WorldDescription:
     """What was put in after the world had been opened; what the file has by now stays as it is."""
     models = {model.name: model for model in world.models}
-    for element in state.findall("insertions/model"):
-        model = read_model(element, source)
+    for model in all_that_can(read_model, state.findall("insertions/model"), source):
         models.setdefault(model.name, model)
     lights = {light.name: light for light in world.lights}
-    for element in state.findall("insertions/light"):
-        light = read_light(element)
+    for light in all_that_can(read_light, state.findall("insertions/light")):
         lights.setdefault(light.name, light)
     return replace(world, models=tuple(models.values()), lights=tuple(lights.values()))
 

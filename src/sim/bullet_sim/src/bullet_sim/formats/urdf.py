@@ -8,9 +8,11 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import JointDescription, LinkDescription, ModelDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.lumping import Body, follow_lumping, lump
+from bullet_sim.formats.mistakes import all_that_can
 from bullet_sim.formats.sdf_frames import MODEL, Frames, add_model_frames
 from bullet_sim.formats.sdf_joint import read_joint
 from bullet_sim.formats.sdf_link import read_link
+from bullet_sim.formats.sdf_model import without_twins
 from bullet_sim.formats.sdf_sensor import read_plugins
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf_extensions import Extensions, extend_link
@@ -119,15 +121,11 @@ def _with_robot_level(
     for link in links:
         frames.add(link.name, MODEL, link.pose)
     add_model_frames(frames, extra, where)
-    links += [
-        read_link(link, source, where, frames)
-        for link in extra.findall("link")
-    ]
+    links += all_that_can(read_link, without_twins(extra, "link", where), source, where, frames)
     names = {link.name for link in links}
-    joints += [
-        read_joint(_with_survivors(joint, lumped), source, where, frames, names)
-        for joint in extra.findall("joint")
-    ]
+    joints += all_that_can(
+        read_joint, [_with_survivors(joint, lumped) for joint in extra.findall("joint")],
+        source, where, frames, names)
     return ModelDescription(
         name=tree.name,
         pose=read_origin(robot, where),

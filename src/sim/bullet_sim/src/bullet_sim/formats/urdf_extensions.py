@@ -6,6 +6,7 @@ import copy
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement
 
+from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.xml_values import not_negative, numbers
 
 SURFACE_PATHS = {
@@ -89,8 +90,8 @@ def _extend_part(part: Element, tag: Element, link: str) -> None:
     elif tag.tag in SURFACE_PATHS:
         count = 3 if tag.tag == "fdir1" else 1
         where = f"<gazebo reference={link!r}> <{tag.tag}>"
-        numbers(value_of(tag), count, where)
-        put(part, SURFACE_PATHS[tag.tag], value_of(tag))
+        if or_without(numbers, value_of(tag), count, where) is not None:
+            put(part, SURFACE_PATHS[tag.tag], value_of(tag))
     else:
         for child in tag:
             merge(part, child)
@@ -111,9 +112,9 @@ def _extend_link_itself(link: Element, tag: Element) -> None:
         put(link, "gravity", str(value.lower() in FALSE_WORDS).lower())
     elif tag.tag == "dampingFactor":
         where = f"<gazebo reference={link.get('name')!r}> <dampingFactor>"
-        not_negative(numbers(value, 1, where), where)
-        put(link, "velocity_decay/linear", value)
-        put(link, "velocity_decay/angular", value)
+        if or_without(lambda: not_negative(numbers(value, 1, where), where)) is not None:
+            put(link, "velocity_decay/linear", value)
+            put(link, "velocity_decay/angular", value)
     else:
         link.append(copy.deepcopy(tag))
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import logging
-import math
+from functools import partial
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import JointDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.sdf_joint import read_limit
+from bullet_sim.formats.sdf_joint import read_limit, unit_axis
 from bullet_sim.formats.urdf_extensions import Extensions, value_of
 from bullet_sim.formats.urdf_tree import UrdfJoint
-from bullet_sim.formats.xml_values import not_negative, numbers
+from bullet_sim.formats.xml_values import not_negative, numbers, or_default
 from bullet_sim.pose import Vector3
 
 logger = logging.getLogger(__name__)
 
+FORWARD = (1.0, 0.0, 0.0)  # the axis of a joint that says nothing
+NONE = (0.0,)
 SPRINGS = {"springReference": "spring_reference", "springStiffness": "spring_stiffness"}
 
 
@@ -56,11 +58,8 @@ def _kept_fixed(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointD
 def _axis(element: Element, where: str) -> Vector3:
     axis = element.find("axis")
     text = "1 0 0" if axis is None else axis.get("xyz", "1 0 0")
-    values = numbers(text, 3, f"{where} <axis xyz>")
-    length = math.sqrt(sum(value * value for value in values))
-    if length == 0.0:
-        raise FormatError(f"{where} <axis xyz>: the axis 0 0 0 has no direction")
-    return tuple(value / length for value in values)
+    where = f"{where} <axis xyz>"
+    return unit_axis(numbers(text, 3, where), FORWARD, where)
 
 
 def _limits(joint: UrdfJoint, where: str) -> dict[str, float]:
@@ -93,12 +92,16 @@ def _dynamics(element: Element, where: str) -> dict[str, float]:
     result = {}
     for key in ("damping", "friction"):
         place = f"{where} <dynamics {key}>"
-        result[key] = not_negative(numbers(dynamics.get(key, "0"), 1, place), place)[0]
+        written = numbers(dynamics.get(key, "0"), 1, place)
+        result[key], = or_default(partial(not_negative, written, place), NONE)
     return result
 
 
 def _springs(name: str, extensions: Extensions) -> dict[str, float]:
-    return {
-        SPRINGS[tag.tag]: numbers(value_of(tag), 1, f"<gazebo reference={name!r}> <{tag.tag}>")[0]
-        for tag in extensions.of(name) if tag.tag in SPRINGS
-    }
+    found = {}
+    for tag in extensions.of(name):
+        if tag.tag in SPRINGS:
+            where = f"<gazebo reference={name!r}> <{tag.tag}>"
+            found[SPRINGS[tag.tag]], = or_default(
+                partial(numbers, value_of(tag), 1, where), NONE)
+    return found

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
 from xml.etree.ElementTree import Element, SubElement
 
 from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.urdf_tree import read_origin
-from bullet_sim.formats.xml_values import not_negative, numbers, vector_text
+from bullet_sim.formats.xml_values import (
+    bounded,
+    not_negative,
+    numbers,
+    or_default,
+    vector_text,
+)
 from bullet_sim.pose import Pose
 
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ()}
@@ -35,13 +42,20 @@ def read_urdf_inertial(link: Element) -> Inertial | None:
     mass = _attribute(element.find("mass"), "value", f"{where} <mass value>")
     tensor = element.find("inertia")
     values = tuple(_attribute(tensor, key, f"{where} <inertia {key}>") for key in TENSOR)
-    not_negative([mass], f"{where} <mass value>")
-    for key, value in zip(TENSOR, values, strict=True):
-        if key in DIAGONAL:
-            not_negative([value], f"{where} <inertia {key}>")
     if mass == 0.0:
         return None
-    return Inertial(mass=mass, pose=read_origin(element, where), inertia=values)
+    return Inertial(
+        mass=_possible(mass, f"{where} <mass value>"),
+        pose=read_origin(element, where),
+        inertia=tuple(
+            _possible(value, f"{where} <inertia {key}>") if key in DIAGONAL
+            else or_default(partial(bounded, (value,), f"{where} <inertia {key}>"), (0.0,))[0]
+            for key, value in zip(TENSOR, values, strict=True)))
+
+
+def _possible(value: float, where: str) -> float:
+    """A mass or moment of inertia; SDF's default of 1, with an error line, for one below zero."""
+    return or_default(partial(not_negative, (value,), where), (1.0,))[0]
 
 
 def _attribute(element: Element | None, key: str, where: str) -> float:
@@ -93,8 +107,7 @@ def _geometry_as_sdf(shape: Element | None, where: str) -> Element:
         text = shape.get(key)
         if text is None:
             raise FormatError(f"{where} {key}> is missing")
-        values = numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
-        not_negative(values, f"{where} {key}>")
+        numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
         SubElement(target, key).text = text
     if shape.tag == "mesh":
         _mesh_as_sdf(shape, target, where)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from xml.etree.ElementTree import Element
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xml_values import numbers
+from bullet_sim.formats.xml_values import bounded, numbers, or_default
 from bullet_sim.pose import Pose
 
 WORLD = "world"
@@ -71,9 +72,13 @@ def read_origin(element: Element, where: str) -> Pose:
     if origin is None:
         return Pose()
     return Pose.from_xyz_rpy(
-        numbers(origin.get("xyz", "0 0 0"), 3, f"{where} <origin xyz>"),
-        numbers(origin.get("rpy", "0 0 0"), 3, f"{where} <origin rpy>"),
-    )
+        *(_possible(numbers(origin.get(key, "0 0 0"), 3, f"{where} <origin {key}>"),
+                    f"{where} <origin {key}>") for key in ("xyz", "rpy")))
+
+
+def _possible(values: tuple[float, ...], where: str) -> tuple[float, ...]:
+    """Zeros, with an error line, for numbers that urdfdom takes and no engine can."""
+    return or_default(partial(bounded, values, where), (0.0, 0.0, 0.0))
 
 
 def _named(robot: Element, tag: str, where: str) -> dict[str, Element]:

@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Material, Visual
 from bullet_sim.errors import FormatError, SimulationError
+from bullet_sim.formats.mistakes import reading
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf_link import read_link
 from bullet_sim.formats.source import Source
@@ -34,10 +35,11 @@ def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks
     source = Source(resources)
     named = {element.get("name", ""): element for element in robot.findall("material")}
     poses = _poses(tree)
-    return tree.name, {
-        name: (poses[name], tuple(visual for part in link.findall("visual")
-                                  for visual in _visuals(name, part, named, source)))
-        for name, link in tree.links.items()}
+    with reading():
+        return tree.name, {
+            name: (poses[name], tuple(visual for part in link.findall("visual")
+                                      for visual in _visuals(name, part, named, source)))
+            for name, link in tree.links.items()}
 
 
 def _poses(tree: UrdfTree) -> dict[str, Pose]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 from typing import NoReturn
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from bullet_sim.errors import FormatError
+from bullet_sim.files import check_file
 
 LARGEST_TEXT = 32 * 2**20  # bytes; elements of it take about ten times that of memory
 MOST_ELEMENTS = 300_000
@@ -42,7 +44,7 @@ def parse_xml(text: str, what: str = "XML") -> Element:
 def read_xml_file(path: Path) -> Element:
     """Root element of a file; FormatError where it cannot be read."""
     try:
-        size = path.stat().st_size
+        size = check_file(path, sys.maxsize).st_size
         if size > LARGEST_TEXT:
             raise FormatError(_too_large(str(path), size))
         content = path.read_bytes()

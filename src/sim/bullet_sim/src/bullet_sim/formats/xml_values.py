@@ -1,20 +1,27 @@
-"""Numbers, vectors, colours and poses out of XML elements, with errors that say where."""
+"""Numbers, vectors, colours and poses out of XML elements, with errors that say where.
+
+The readers that take a default give one error line and the default for what cannot be read, as
+sdformat does; the checks that do not (`numbers`, `not_negative`, `bounded`) raise FormatError.
+"""
 
 from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Rgba
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.xml_text import parse_xml, read_xml_file
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 __all__ = [
-    "amount", "bounded", "child_text", "colour", "flag", "integer", "not_negative", "number",
-    "numbers", "parse_xml", "pose", "read_xml_file", "size", "vector", "vector_text",
+    "amount", "bounded", "child_text", "colour", "flag", "integer", "length", "not_negative",
+    "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file", "shown", "size",
+    "vector", "vector_text",
 ]
 
 TRUE_WORDS = ("true", "1")
@@ -22,6 +29,7 @@ TRUE_WORDS = ("true", "1")
 # (Limits of joints may be larger: saved files write the largest number there is.)
 LARGEST = 1e12
 LONGEST_QUOTE = 80  # characters
+Value = TypeVar("Value")
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
@@ -65,28 +73,73 @@ def child_text(parent: Element, path: str, default: str = "") -> str:
     return (parent.findtext(path) or "").strip() or default
 
 
+def or_default(read: Callable[[], Value], default: Value) -> Value:
+    """What `read` gives; the default, with an error line, where it raises FormatError."""
+    try:
+        return read()
+    except FormatError as error:
+        instead(error, shown(default))
+        return default
+
+
+def shown(value: float | Sequence[float] | Pose | str) -> str:
+    """A value as a file would have it, for an error line."""
+    match value:
+        case str():
+            return repr(value)
+        case Pose():
+            value = (*value.position, *value.rpy())
+        case int() | float():
+            value = (value,)
+    return " ".join(f"{part:g}" for part in value)
+
+
+def _number(
+    parent: Element, path: str, default: float, where: str,
+    check: Callable[[Sequence[float], str], Sequence[float]] | None = None,
+) -> float:
+    text = child_text(parent, path)
+    if not text:
+        return default
+    where = f"{where} <{path}>"
+
+    def read() -> float:
+        values = numbers(text, 1, where)
+        return (check(values, where) if check else values)[0]
+
+    return or_default(read, default)
+
+
 def number(parent: Element, path: str, default: float, where: str) -> float:
     """One number at `path`."""
-    text = child_text(parent, path)
-    return numbers(text, 1, f"{where} <{path}>")[0] if text else default
+    return _number(parent, path, default, where)
 
 
 def amount(parent: Element, path: str, default: float, where: str) -> float:
     """One number at `path` that is not below zero."""
+    return _number(parent, path, default, where, not_negative)
+
+
+def length(parent: Element, path: str, default: float, where: str) -> float:
+    """As `amount`, for a shape: one of a length that cannot be is an error, and no other shape."""
     return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 
 def size(parent: Element, path: str, default: float, where: str) -> float:
     """One number at `path` that is not beyond `LARGEST`, of either sign."""
-    return bounded([number(parent, path, default, where)], f"{where} <{path}>")[0]
+    return _number(parent, path, default, where, bounded)
 
 
 def integer(parent: Element, path: str, default: int, where: str) -> int:
     """One whole number at `path`; `8.0` counts as 8, as saved files write it."""
-    value = number(parent, path, float(default), where)
-    if value != int(value):
-        raise FormatError(f"{where} <{path}>: {value} is not a whole number")
-    return int(value)
+    return int(_number(parent, path, default, where, _whole))
+
+
+def _whole(values: Sequence[float], where: str) -> Sequence[float]:
+    for value in values:
+        if value != int(value):
+            raise FormatError(f"{where}: {value} is not a whole number")
+    return values
 
 
 def flag(parent: Element, path: str, default: bool) -> bool:
@@ -95,13 +148,15 @@ def flag(parent: Element, path: str, default: bool) -> bool:
     return text in TRUE_WORDS if text else default
 
 
-def vector(parent: Element, path: str, default: Vector3, where: str) -> Vector3:
-    """Three numbers at `path`."""
+def vector(
+    parent: Element, path: str, default: Sequence[float], where: str
+) -> Vector3 | tuple[float, ...]:
+    """As many numbers at `path` as the default has: most often three."""
     text = child_text(parent, path)
     if not text:
         return default
     where = f"{where} <{path}>"
-    return bounded(numbers(text, 3, where), where)
+    return or_default(lambda: bounded(numbers(text, len(default), where), where), default)
 
 
 def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
@@ -110,11 +165,12 @@ def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
     if not text:
         return default
     count = 3 if len(text.split()) == 3 else 4
-    return (*numbers(text, count, f"{where} <{path}>"), 1.0)[:4]
+    return or_default(
+        lambda: (*numbers(text, count, f"{where} <{path}>"), 1.0)[:4], default)
 
 
-def pose(parent: Element, where: str) -> Pose:
-    """The `<pose>` of an element in whatever frame it names; identity when absent.
+def pose(parent: Element, where: str, default: Pose = IDENTITY) -> Pose:
+    """The `<pose>` of an element in whatever frame it names; the default when absent.
 
     The oldest files write it as the attribute of an `<origin>`.
     """
@@ -123,10 +179,14 @@ def pose(parent: Element, where: str) -> Pose:
     if origin is not None:
         text = origin.get("pose", "").strip()
     if not text:
-        return IDENTITY
+        return default
     where = f"{where} <pose>"
-    values = bounded(numbers(text, 6, where), where)
-    return Pose.from_xyz_rpy(values[:3], values[3:])
+
+    def read() -> Pose:
+        values = bounded(numbers(text, 6, where), where)
+        return Pose.from_xyz_rpy(values[:3], values[3:])
+
+    return or_default(read, default)
 
 
 def vector_text(values: Sequence[float]) -> str:

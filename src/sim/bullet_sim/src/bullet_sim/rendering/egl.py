@@ -100,6 +100,11 @@ class EglRenderer:
             metres = None if raw is None else metres_from_depth(raw, view.near, view.far)
         return Frame(rgb, metres)
 
+    def trim(self) -> None:
+        self._targets.clear()
+        with self._context:
+            self._context.gc()
+
     def close(self) -> None:
         self._prepared.clear()
         self._targets.clear()

@@ -9,7 +9,16 @@ import numpy as np
 
 from bullet_sim.pose import Pose
 
-LARGEST_PX = 8192  # longest side of a picture: a square one takes 1 GB already
+LARGEST_PX = 8192  # longest side of a picture
+LARGEST_SQUARE_PX = 4096  # side of the largest square one: more takes seconds to draw and send
+
+
+def drawable_size(width: int, height: int, largest_px: int) -> tuple[int, int]:
+    """Size in px of the same shape that is drawn; `largest_px` is a renderer's longest side."""
+    most = LARGEST_SQUARE_PX ** 2
+    shrink = min(1.0, largest_px / max(width, height), math.sqrt(most / (width * height)))
+    return max(1, int(width * shrink)), max(1, int(height * shrink))
+
 
 @dataclass(frozen=True)
 class CameraView:

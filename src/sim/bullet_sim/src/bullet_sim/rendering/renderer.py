@@ -31,6 +31,10 @@ class Renderer(Protocol):
         """One picture, and its depth if asked for; the arrays are the caller's own."""
         ...
 
+    def trim(self) -> None:
+        """Give back the memory that pictures were drawn in; the next ones take it anew."""
+        ...
+
     def close(self) -> None:
         """Give back what the renderer holds; it draws no more."""
         ...

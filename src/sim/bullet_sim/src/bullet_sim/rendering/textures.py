@@ -7,6 +7,9 @@ import logging
 import cv2
 import numpy as np
 
+from bullet_sim.errors import FormatError
+from bullet_sim.files import LARGEST_IMAGE, check_file
+
 log = logging.getLogger(__name__)
 
 
@@ -15,6 +18,11 @@ def load_image(path: str, largest_px: int) -> np.ndarray | None:
 
     An image larger than `largest_px` on a side is shrunk to fit.
     """
+    try:
+        check_file(path, LARGEST_IMAGE)
+    except FormatError as error:
+        log.warning("texture %s; left out", error)
+        return None
     image = cv2.imread(path, cv2.IMREAD_COLOR)
     if image is None:
         log.warning("texture %s is left out: it is not an image that can be read", path)

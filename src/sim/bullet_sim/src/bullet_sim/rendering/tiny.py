@@ -14,6 +14,8 @@ import numpy as np
 import pybullet
 
 from bullet_sim.description import Material
+from bullet_sim.errors import FormatError
+from bullet_sim.files import LARGEST_IMAGE, check_file
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
@@ -70,6 +72,9 @@ class TinyRenderer:
             rgb[background] = np.clip(colour, 0, 255)
             metres[background] = np.inf
         return Frame(rgb, metres if depth else None)
+
+    def trim(self) -> None:
+        """It keeps only the last picture's."""
 
     def close(self) -> None:
         pybullet.disconnect(self._client)
@@ -131,8 +136,9 @@ class TinyRenderer:
     def _paint(self, body: int, path: str) -> None:
         if path not in self._textures:
             try:
+                check_file(path, LARGEST_IMAGE)
                 texture = pybullet.loadTexture(path, physicsClientId=self._client)
-            except pybullet.error:
+            except (pybullet.error, FormatError):
                 log.warning("texture %s is left out: TinyRenderer cannot read it", path)
                 texture = -1
             self._textures[path] = texture

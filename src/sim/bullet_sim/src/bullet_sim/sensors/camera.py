@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import logging
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bullet_sim.description import CameraDescription, SensorDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.link import Link
-from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.frame import LARGEST_SQUARE_PX, CameraView, drawable_size
 from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.rendering.scene import SceneState
 from bullet_sim.sensors.distortion import Distortion
 from bullet_sim.sensors.image_noise import ImageNoise
 from bullet_sim.sensors.wide_lens import WideLens, mistake_in_lens
 from bullet_sim.world import World
+
+log = logging.getLogger(__name__)
 
 WIDE_ANGLE = "wideanglecamera"  # the type of sensors that look through their <lens>
 
@@ -50,7 +53,8 @@ class Camera:
                  number: int = 0, border_crop: bool = True):
         if not sensor.cameras:
             raise FormatError(f"sensor {sensor.name} of {link.scoped_name} has no <camera>")
-        self.description: CameraDescription = sensor.cameras[number]
+        where = f"sensor {sensor.name} of {link.scoped_name}"
+        self.description = _drawable(sensor.cameras[number], renderer, where)
         self._world = world
         self._link = link
         self._sensor = sensor
@@ -60,7 +64,7 @@ class Camera:
         self._border_crop = border_crop
         mistake = _mistake(self.description, renderer, self.wide_angle)
         if mistake:
-            raise FormatError(f"sensor {sensor.name} of {link.scoped_name}: {mistake}")
+            raise FormatError(f"{where}: {mistake}")
         self._noise: ImageNoise | None = None
         self._distortion: Distortion | None = None
         self._lens: WideLens | None = None
@@ -118,14 +122,26 @@ class Camera:
             return self._noise.add(rgb, self._world.random(self._name, exposure.tick))
 
 
+def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> CameraDescription:
+    """The same, its picture smaller where it is too large to be drawn, and a line in the log."""
+    width, height = camera.width, camera.height
+    if min(width, height) < 1:
+        return camera
+    drawn = drawable_size(width, height, renderer.largest_px)
+    if drawn == (width, height):
+        return camera
+    log.warning("%s: an image of %dx%d px is not drawn, at most %d a side and %dx%d in all are; "
+                "%dx%d is used", where, width, height, renderer.largest_px,
+                LARGEST_SQUARE_PX, LARGEST_SQUARE_PX, *drawn)
+    return replace(camera, width=drawn[0], height=drawn[1])
+
+
 def _mistake(camera: CameraDescription, renderer: Renderer, wide_angle: bool) -> str | None:
     """What of a camera nobody can draw."""
-    size = f"an image of {camera.width}x{camera.height} px"
     if min(camera.width, camera.height) < 1:
-        return size
-    if max(camera.width, camera.height) > renderer.largest_px:
-        return f"{size}; {renderer.name} draws at most {renderer.largest_px} a side"
-    wrong_lens = mistake_in_lens(camera, renderer.largest_px) if wide_angle else None
+        return f"an image of {camera.width}x{camera.height} px"
+    side_px = min(renderer.largest_px, LARGEST_SQUARE_PX)
+    wrong_lens = mistake_in_lens(camera, side_px) if wide_angle else None
     if wrong_lens:
         return wrong_lens
     if not wide_angle and not 0 < camera.horizontal_fov < math.pi:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import logging
+import math
+
 import numpy as np
 
 from bullet_sim.description import SensorDescription
@@ -9,7 +12,10 @@ from bullet_sim.errors import FormatError
 from bullet_sim.link import Link
 from bullet_sim.world import World
 
-MOST_RAYS = 1_000_000  # more than any scanner has; a slip of the keyboard must not fill the memory
+log = logging.getLogger(__name__)
+
+# Of a sweep: a second or so in which nobody else is answered.
+MOST_RAYS = 100_000
 
 
 class RayFan:
@@ -27,8 +33,10 @@ class RayFan:
         columns, rows = count(ray.samples, ray.resolution), count(
             ray.vertical_samples, ray.vertical_resolution)
         if columns * rows > MOST_RAYS:
-            raise FormatError(f"sensor {description.name} of {link.scoped_name} has "
-                              f"{columns} x {rows} rays; more than {MOST_RAYS} are not cast")
+            asked, (columns, rows) = (columns, rows), fewer_rays(columns, rows)
+            log.warning("sensor %s of %s has %d x %d rays, and more than %d are not cast: %d x %d "
+                        "over the same angles are used", description.name, link.scoped_name,
+                        *asked, MOST_RAYS, columns, rows)
         self.shape = rows, columns
         self.azimuths = angles(ray.min_angle, ray.max_angle, columns)  # rad, (columns,)
         self.elevations = angles(ray.vertical_min_angle, ray.vertical_max_angle, rows)  # up is +
@@ -45,6 +53,15 @@ class RayFan:
                                      matrix[:3, 3] + beams * ray.range_max)
         distances = ray.range_min + hits.fraction * (ray.range_max - ray.range_min)
         return distances.reshape(self.shape), hits.retro.reshape(self.shape)
+
+
+def fewer_rays(columns: int, rows: int) -> tuple[int, int]:
+    """As many columns and rows as are cast; the longer of the two is thinned first."""
+    across = columns > rows
+    longer, shorter = max(columns, rows), min(columns, rows)
+    shorter = min(shorter, math.isqrt(MOST_RAYS))
+    longer = min(longer, MOST_RAYS // shorter)
+    return (longer, shorter) if across else (shorter, longer)
 
 
 def count(samples: int, resolution: float) -> int:

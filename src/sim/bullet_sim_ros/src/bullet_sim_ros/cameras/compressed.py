@@ -11,7 +11,7 @@ from sensor_msgs.msg import CompressedImage
 
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import encode
-from bullet_sim_ros.control.value_server import Value, ValueServer
+from bullet_sim_ros.control.value_server import Value, offer_values
 
 if TYPE_CHECKING:
     from bullet_sim_ros.plugins.host import Host
@@ -33,7 +33,7 @@ class CompressedTopic:
                                   "JPEG quality, percent"),
             "png_level": Value(self._parameter("png_level", PNG_LEVEL), 1, 9, "PNG effort"),
         }
-        host.on_close(ValueServer(self._topic, values, self._change).close)
+        offer_values(host, self._topic, values, self._change)
 
     def wanted(self) -> bool:
         """Whether anybody listens."""

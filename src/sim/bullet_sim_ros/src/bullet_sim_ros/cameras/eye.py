@@ -22,8 +22,10 @@ class Eye:
 
     def __init__(self, host: Host, number: int = 0, suffix: str = "",
                  baseline: float | None = None):
-        self._camera = Camera(host.world, host.link, host.sensor, host.shared.drawing.renderer(),
+        drawing = host.shared.drawing
+        self._camera = Camera(host.world, host.link, host.sensor, drawing.renderer(),
                               number, host.parameters.flag("borderCrop", True))
+        host.on_close(lambda: drawing.submit(drawing.renderer().trim))
         self.settings = CameraSettings(host, self._camera.description, suffix, baseline)
         self.topics = CameraTopics(host, self.settings)
         _tell_frame_time(host, self._camera, self.settings.image_topic)

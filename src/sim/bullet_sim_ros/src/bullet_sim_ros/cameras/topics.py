@@ -15,7 +15,7 @@ from bullet_sim.sensors.camera import CameraReading
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.cameras.compressed import CompressedTopic
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.control.value_server import Value, ValueServer
+from bullet_sim_ros.control.value_server import Value, offer_values
 
 if TYPE_CHECKING:
     from bullet_sim_ros.plugins.host import Host
@@ -95,4 +95,4 @@ def offer_rate(host: Host, settings: CameraSettings, change: Callable[[float], N
         begun.append(True)
 
     rate = Value(FIRST_RATE, SLOWEST, FASTEST, "Rate of the sensor, Hz")
-    host.on_close(ValueServer(settings.namespace, {"imager_rate": rate}, changed).close)
+    offer_values(host, settings.namespace, {"imager_rate": rate}, changed)

@@ -9,8 +9,14 @@ from pathlib import Path
 
 import rospkg
 
-from bullet_sim_ros.check.elements import problem
-from bullet_sim_ros.check.findings import ACCEPTED, Finding, is_serious, table
+from bullet_sim_ros.check.findings import (
+    ACCEPTED,
+    UNCHECKED,
+    Finding,
+    is_serious,
+    problem,
+    table,
+)
 from bullet_sim_ros.check.launches import LaunchChecker
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.interface import read_interface, rows_by_name
@@ -50,7 +56,9 @@ def main(argv: list[str] | None = None) -> int:
     if left_out:
         print(f"\n{left_out} ignored tags and elements are not listed: --all")
     serious = is_serious(findings)
-    print("\nsomething will be missing, see above" if serious else "\nall of it will work")
+    all_of_it = ("all that was checked" if any(found.status == UNCHECKED for found in findings)
+                 else "all of it")
+    print("\nsomething will be missing, see above" if serious else f"\n{all_of_it} will work")
     return 1 if serious else 0
 
 
@@ -60,8 +68,9 @@ class Check:
     def __init__(self, arguments: list[str]):
         self._arguments = arguments
         resources = open_resources()
-        self._texts = TextChecker(rows_by_name(read_interface()), resources)
-        self._launches = LaunchChecker(self._texts, resources)
+        rows = rows_by_name(read_interface())
+        self._texts = TextChecker(rows, resources)
+        self._launches = LaunchChecker(rows, self._texts, resources)
 
     def run(self, what: str, launch: str | None) -> list[Finding] | None:
         """None if there is no such thing."""
@@ -78,15 +87,16 @@ class Check:
             folder = path.resolve()
         return self._one_launch(folder, launch) if launch else self._package(folder)
 
-    def _file(self, path: Path) -> list[Finding]:
+    def _file(self, path: Path, alone: bool = True) -> list[Finding]:
+        """`alone`: it was asked for, and is not only met in a package."""
         if path.suffix == ".launch":
-            return self._launches.launch_file(path, self._arguments)
+            return self._launches.launch_file(path, self._arguments, alone)
         if path.suffix == ".world":
             return self._texts.world_file(path)
         values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
         if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
             return self._texts.world_file(path)
-        return self._texts.model_file(path, values)
+        return self._texts.model_file(path, values, shown_only=not alone)
 
     def _one_launch(self, folder: Path, name: str) -> list[Finding]:
         found = sorted(folder.rglob(name))
@@ -100,7 +110,7 @@ class Check:
         for pattern in ("*.urdf", "*.xacro", "*.world", "model.sdf", "*.launch"):
             for path in sorted(folder.rglob(pattern)):
                 if path.suffix != ".xacro" or _is_robot(path, folder):
-                    findings += self._file(path)
+                    findings += self._file(path, alone=False)
         return findings
 
 

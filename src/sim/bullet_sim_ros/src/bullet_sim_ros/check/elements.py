@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 from xml.etree.ElementTree import Element
 
-from bullet_sim_ros.check.findings import PROBLEM, Finding
-from bullet_sim_ros.interface import ABSENT, WORKS, Entry, Row
+from bullet_sim_ros.check.findings import Finding, problem
+from bullet_sim_ros.interface import ABSENT, ACCEPTED, WORKS, Entry, Row
+from bullet_sim_ros.plugins.registry import NOT_NEEDED
 
 EVERY_PLUGIN = ("robotNamespace", "alwaysOn", "always_on", "update_rate", "visualize", "plugin")
 MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or tells is missing",
            "world": "what it does to the world is missing", "visual": "only what is seen differs"}
+LIGHTS = ("point", "spot", "directional")
 
 
 class Lookup:
@@ -36,9 +38,13 @@ class Lookup:
     def _walk(self, element: Element, above: tuple[str, ...], language: str,
               joints: set) -> Iterator[Finding]:
         here = (*above, _label(element, joints))
-        if element.tag == "plugin" and element.get("filename"):
+        if element.tag == "plugin":
             yield from self._plugin(element, above[-1].split("@")[0] if above else "")
             return
+        kind = element.get("type", LIGHTS[0])
+        if element.tag == "light" and kind not in LIGHTS:
+            yield problem(self._where, f"light {element.get('name')}",
+                          f"there is no type {kind!r}; there are {', '.join(LIGHTS)}")
         entry = self._entry(language, here)
         if entry is not None and entry.status != WORKS:
             yield Finding(self._where, f"<{'/'.join(here[-2:])}>", entry.status, entry.how)
@@ -54,9 +60,15 @@ class Lookup:
         return None
 
     def _plugin(self, element: Element, parent: str) -> Iterator[Finding]:
-        library = PurePosixPath(element.get("filename", "")).name
-        library += "" if library.endswith(".so") else ".so"
-        name = f"plugin {element.get('name') or '(no name)'} ({library})"
+        library = PurePosixPath(element.get("filename", "").strip()).name
+        name = f"plugin {element.get('name') or '(no name)'}"
+        if not library:
+            yield problem(self._where, name, 'it has no filename="lib….so", so nothing is loaded')
+            return
+        name += f" ({library})"
+        if parent == "gui" or library in NOT_NEEDED:
+            yield Finding(self._where, name, ACCEPTED, "nothing is missing without it")
+            return
         row = self._plugins.get(library)
         if row is None:
             kind = parent if parent in MATTERS else "model"
@@ -77,8 +89,3 @@ def _label(element: Element, joints: set) -> str:
     if not reference:
         return element.tag
     return "gazebo@joint" if reference in joints else "gazebo@link"
-
-
-def problem(where: str, part: str, error: object) -> Finding:
-    """Something that stops it."""
-    return Finding(where, part, PROBLEM, " ".join(str(error).split()))

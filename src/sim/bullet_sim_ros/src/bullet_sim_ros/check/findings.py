@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS
 
 PROBLEM = "problem"
-ORDER = (PROBLEM, ABSENT, APPROXIMATED, ACCEPTED, WORKS)
-WORDS = {PROBLEM: "PROBLEM", ABSENT: "NOT THERE", APPROXIMATED: "approximated",
-         ACCEPTED: "ignored", WORKS: "works"}
+UNCHECKED = "unchecked"
+ORDER = (PROBLEM, ABSENT, UNCHECKED, APPROXIMATED, ACCEPTED, WORKS)
+WORDS = {PROBLEM: "PROBLEM", ABSENT: "NOT THERE", UNCHECKED: "not checked",
+         APPROXIMATED: "approximated", ACCEPTED: "ignored", WORKS: "works"}
 SERIOUS = (PROBLEM, ABSENT)  # what makes the exit code 1
 
 
@@ -36,6 +37,11 @@ def table(findings: Iterable[Finding]) -> str:
         how = f": {finding.how}" if finding.how else ""
         lines.append(f"  {WORDS[finding.status]:13s} {finding.part}{how}")
     return "\n".join(lines).lstrip("\n")
+
+
+def problem(where: str, part: str, error: object) -> Finding:
+    """Something that stops it."""
+    return Finding(where, part, PROBLEM, " ".join(str(error).split()))
 
 
 def is_serious(findings: Iterable[Finding]) -> bool:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import logging
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from xml.etree.ElementTree import ParseError, fromstring
 
@@ -13,34 +11,13 @@ from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
 from bullet_sim.formats.xacro_files import expand_file
 from bullet_sim.formats.xacro_limits import run_bounded
-from bullet_sim.world import World
-from bullet_sim_ros.check.elements import Lookup, problem
-from bullet_sim_ros.check.findings import WORKS, Finding
-from bullet_sim_ros.interface import Row
+from bullet_sim_ros.check.dry_run import Said, listening, try_model, try_world
+from bullet_sim_ros.check.elements import Lookup
+from bullet_sim_ros.check.findings import Finding, problem
+from bullet_sim_ros.check.included import included
+from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
 
-STEPS = 10  # enough for what only shows when time passes
-
-
-class _Listener(logging.Handler):
-    def __init__(self):
-        super().__init__(logging.WARNING)
-        self.lines: list[str] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.lines.append(record.getMessage())
-
-
-@contextmanager
-def _heard() -> Iterator[list[str]]:
-    """What the core warns of meanwhile; it does not reach the terminal."""
-    core, listener = logging.getLogger("bullet_sim"), _Listener()
-    propagated, core.propagate = core.propagate, False
-    core.addHandler(listener)
-    try:
-        yield listener.lines
-    finally:
-        core.removeHandler(listener)
-        core.propagate = propagated
+NEEDS_MASS = "an <inertial>"  # the end of what a robot without any is refused with
 
 
 class TextChecker:
@@ -50,15 +27,23 @@ class TextChecker:
         self._rows = rows
         self._resources = resources
 
-    def model_file(self, path: Path, arguments: dict[str, str]) -> list[Finding]:
-        """A .urdf, .xacro or .sdf file; xacro is expanded first."""
+    def model_file(self, path: Path, arguments: dict[str, str], shown_only: bool = False
+                   ) -> list[Finding]:
+        """A .urdf, .xacro or .sdf file; xacro is expanded first.
+
+        `shown_only`: nobody has said that it is to be spawned.
+        """
         where = str(path)
         try:
-            if path.suffix == ".xacro":
-                return self.model_text(self._expanded(path, arguments), where)
-            return self.model_text(path.read_text(encoding="utf-8-sig"), where)
+            text = (self._expanded(path, arguments) if path.suffix == ".xacro"
+                    else path.read_text(encoding="utf-8-sig"))
         except (SimulationError, OSError, UnicodeDecodeError) as error:
             return [problem(where, "robot", error)]
+        found = self.model_text(text, where)
+        if shown_only and is_for_show(text) and found[0].how.endswith(NEEDS_MASS):
+            how = "only to be shown: nothing in it has mass"
+            return [Finding(where, "robot", APPROXIMATED, how)]
+        return found
 
     def _expanded(self, path: Path, arguments: dict[str, str]) -> str:
         """The URDF of a xacro file; its expressions may want any time or memory."""
@@ -74,7 +59,7 @@ class TextChecker:
                 result.write_text(text, encoding="utf-8")
                 return 0
 
-            with _heard():
+            with listening():
                 code = run_bounded(expand_into_file, str(path))
             said = result.read_text(encoding="utf-8") if result.exists() else "it failed"
         if code:
@@ -84,44 +69,71 @@ class TextChecker:
     def _find_package(self, name: str) -> str:
         return str(self._resources.package_folder(name))
 
-    def model_text(self, text: str, where: str) -> list[Finding]:
-        """A robot or model, spawned into an empty world."""
-        with _heard() as lines:
+    def model_text(self, text: str, where: str, parameters: Mapping[str, object] | None = None,
+                   namespace: str = "") -> list[Finding]:
+        """A robot or model, spawned into an empty world with its plugins.
+
+        `parameters` are those of the parameter server by full name; without them the robot's own
+        text is where plugins look for it.
+        """
+        if parameters is None:
+            parameters = {"/robot_description": text}
+        with listening() as heard:
             try:
-                if load_light(text, self._resources) is not None:
-                    return [Finding(where, "light", WORKS)]
-                description = load_model(text, self._resources, None)
-                world = World()
-                try:
-                    world.spawn(description)
-                    world.step(STEPS)
-                finally:
-                    world.close()
+                light = load_light(text, self._resources) is not None
+                if not light:
+                    description = load_model(text, self._resources, None)
+                    try_model(description, parameters, namespace)
             except SimulationError as error:
                 return [problem(where, "robot", error)]
+        if light:
+            return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
         return [Finding(where, f"model {description.name} ({links})", WORKS),
-                *self._details(text, where), *(problem(where, "it warns", said) for said in lines)]
+                *_not_failed(self._details(text, where, None), heard), *_told(heard, where)]
 
-    def world_file(self, path: Path) -> list[Finding]:
+    def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
+                   ) -> list[Finding]:
         """A world with all that it includes."""
         where = str(path)
-        with _heard() as lines:
+        with listening() as heard:
             try:
-                world = World(load_world(path, self._resources))
-                try:
-                    world.step(STEPS)
-                finally:
-                    world.close()
+                description = load_world(path, self._resources)
+                try_world(description, parameters or {})
             except (SimulationError, OSError) as error:
                 return [problem(where, "world", error)]
-        name = f"world {world.description.name} ({len(world.description.models)} models)"
+        name = f"world {description.name} ({len(description.models)} models)"
         text = path.read_text(encoding="utf-8-sig", errors="replace")
-        return [Finding(where, name, WORKS), *self._details(text, where),
-                *(problem(where, "it warns", said) for said in lines)]
+        details = _not_failed(self._details(text, where, path.parent), heard)
+        return [Finding(where, name, WORKS), *details, *_told(heard, where)]
 
-    def _details(self, text: str, where: str) -> list[Finding]:
+    def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
+        """Plugins and elements of the text, which stands in `folder`, and of what it includes."""
         try:
-            return list(Lookup(self._rows, where).findings(fromstring(text)))
+            root = fromstring(text)
         except ParseError:
             return []  # the reader is more patient than the strict parser
+        found = list(Lookup(self._rows, where).findings(root))
+        for uri, inner in included(root, folder, self._resources, set()):
+            found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
+        return found
+
+
+def _told(heard: list[Said], where: str) -> list[Finding]:
+    return [Finding(where, "it says", said.status, " ".join(said.line.split())) for said in heard]
+
+
+def _not_failed(details: list[Finding], heard: list[Said]) -> list[Finding]:
+    """Without plugins that work by the table, and said here that they do not."""
+    return [found for found in details
+            if not any(f"{found.part} is not loaded" in said.line for said in heard)]
+
+
+def is_for_show(text: str) -> bool:
+    """Whether it is a URDF in which nothing has mass: RViz shows it, no simulator can move it."""
+    try:
+        root = fromstring(text)
+    except ParseError:
+        return False
+    return root.tag == "robot" and root.find("link") is not None and (
+        root.find("link/inertial") is None)

@@ -96,12 +96,12 @@ class ControllerHost:
         server = LoopActionServer(names.join(self.namespace, name), spec,
                                   lambda handle: self.leave(lambda: on_goal(handle)),
                                   lambda handle: self.leave(lambda: on_cancel(handle)))
-        self.on_unload(server.stop)
+        self.on_close(server.stop)
         self.every(server.STATUS_RATE, server.publish_status)
         server.start()
         return server
 
-    def on_unload(self, action: Callable[[], None]) -> None:
+    def on_close(self, action: Callable[[], None]) -> None:
         """Call `action` when the controller is unloaded, before its topics are closed."""
         self._host.on_close(action)
 

@@ -9,7 +9,7 @@ from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.parameters import ControllerParameters
-from bullet_sim_ros.control.reconfigure import GainsServer
+from bullet_sim_ros.control.reconfigure import offer_gains
 
 
 def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:
@@ -36,8 +36,7 @@ def open_pid(host: ControllerHost, group: str = "pid") -> Pid:
             pid.gains = gains
         host.leave(set_gains)
 
-    server = GainsServer(host.parameters.where(group), pid.gains, change)
-    host.on_unload(server.close)
+    offer_gains(host, host.parameters.where(group), pid.gains, change)
     return pid
 
 

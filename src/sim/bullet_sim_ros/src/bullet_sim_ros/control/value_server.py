@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
+import rospy
 from dynamic_reconfigure.server import Server
+
+log = logging.getLogger("bullet_sim.plugins")
 
 KINDS = {float: "double", bool: "bool", int: "int", str: "str"}
 
@@ -20,6 +25,27 @@ class Value:
     description: str
 
 
+class Owner(Protocol):
+    """What a server lives as long as: a plugin's host or a controller's."""
+
+    def describe(self) -> str:
+        """Whose log line it is."""
+
+    def on_close(self, action: Callable[[], None]) -> None:
+        """Call `action` at its end."""
+
+
+def offer_values(owner: Owner, namespace: str, values: Mapping[str, Value],
+                 change: Callable[[dict[str, float | bool]], None]) -> None:
+    """Let values be changed as long as `owner` lives; a name that is taken is a warning."""
+    try:
+        server = ValueServer(namespace, values, change)
+    except rospy.ServiceException as error:
+        log.warning("%s: dynamic_reconfigure is not offered: %s", owner.describe(), error)
+        return
+    owner.on_close(server.close)
+
+
 class ValueServer(Server):
     """`change(values)` is called in a ROS thread, at once and whenever somebody changes one."""
 
@@ -29,14 +55,21 @@ class ValueServer(Server):
             change({name: config[name] for name in values})
             return config
 
-        super().__init__(_Type(values), changed, namespace)
+        try:
+            super().__init__(_Type(values), changed, namespace)
+        except rospy.ServiceException:
+            self._close_topics()
+            raise
 
     def _copy_from_parameter_server(self) -> None:
         """They were read already; here a whole number would turn into another type."""
 
     def close(self) -> None:
         """End topics and service."""
-        self.set_service.shutdown("the controller was unloaded")
+        self.set_service.shutdown("what it belongs to has ended")
+        self._close_topics()
+
+    def _close_topics(self) -> None:
         self.descr_topic.unregister()
         self.update_topic.unregister()
 

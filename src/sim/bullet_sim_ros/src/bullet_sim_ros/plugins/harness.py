@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
@@ -12,6 +13,7 @@ from bullet_sim.drives.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.parameters import read_numbers
 from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -39,21 +41,21 @@ class HarnessPlugin:
     def _joint(self, joints: dict[str, Element], path: str) -> Element:
         """The joint that a tag names, else the first one."""
         name = (self._host.description.element.findtext(path) or "").strip()
+        if name in joints:
+            return joints[name]
         first = next(iter(joints))
-        if name not in joints:
-            log.warning("%s: <%s> is %r; there are: %s; %s is used", self._host.describe(), path,
-                        name, ", ".join(joints), first)
-            return joints[first]
-        return joints[name]
+        log.warning("%s: <%s> is %r; there are: %s; %s is used", self._host.describe(), path, name,
+                    ", ".join(filter(None, joints)) or "joints without a name",
+                    first or "the first joint")
+        return joints[first]
 
     @staticmethod
     def _axis(joint: Element) -> tuple[float, float, float]:
         text = joint.findtext("axis/xyz") or "0 0 1"
-        try:
-            x, y, z = (float(part) for part in text.split())
-        except ValueError:
-            raise PluginError(f"<axis><xyz> is {text!r}, which is not three numbers") from None
-        return (x, y, z)
+        values = read_numbers(text)
+        if len(values) != 3 or not all(map(math.isfinite, values)):
+            raise PluginError(f"<axis><xyz> is {text!r}, which is not three finite numbers")
+        return (values[0], values[1], values[2])
 
     def _take_speed(self, msg: Float32) -> Callable[[], None] | None:
         if not abs(msg.data) <= convert.LARGEST:

@@ -11,7 +11,7 @@ from sensor_msgs.msg import NavSatFix, NavSatStatus
 from bullet_sim.description import SphericalDescription
 from bullet_sim.sensors.gps import GeoReference
 from bullet_sim_ros import convert, hector, names
-from bullet_sim_ros.control.value_server import Value, ValueServer
+from bullet_sim_ros.control.value_server import Value, offer_values
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.registry import plugin
 
@@ -76,9 +76,8 @@ class HectorGpsPlugin:
             known.append(True)
 
         usual = {"STATUS_FIX": True, **dict.fromkeys(FIXES, False), **dict.fromkeys(SERVICES, True)}
-        server = ValueServer(namespace, {
+        offer_values(self._host, namespace, {
             name: Value(now, False, True, name) for name, now in usual.items()}, change)
-        self._host.on_close(server.close)
 
     def _set_status(self, values: dict[str, bool]) -> None:
         fix = sum(FIXES[name] for name in FIXES if values[name])

@@ -45,6 +45,8 @@ class LinkAttacherPlugin:
     def _attach(self, ends: Ends) -> bool:
         world = self._host.world
         first, second = (world.model(ends[at]).link(ends[at + 1]) for at in (0, 2))
+        if first is second:
+            raise SimulationError(f"{first.scoped_name} is one link; it takes two")
         self._detach(ends)
         self._held[ends] = second.attach(first)
         return True

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from bullet_sim_ros.plugins.parameters import PluginParameters
 
 log = logging.getLogger("bullet_sim.plugins")
+defaults = logging.getLogger("bullet_sim.plugins.defaults")
 
 
 class LoggedParameters:
@@ -15,9 +16,9 @@ class LoggedParameters:
 
     def __init__(self, parameters: PluginParameters, kind: str, namespace: str):
         self._parameters = parameters
-        self.label = f"{kind}(ns = {namespace}/)"
+        self.label = f"{kind}(ns = {namespace.rstrip('/')}/)"
         if not parameters.has("robotNamespace"):
-            log.warning("%s missing <robotNamespace>, defaults is %s", kind, namespace)
+            defaults.warning("%s missing <robotNamespace>, defaults is %s", kind, namespace)
         log.info("Starting plugin %s", self.label)
 
     def text(self, tag: str, default: str) -> str:
@@ -46,4 +47,4 @@ class LoggedParameters:
 
     def _tell(self, tag: str, default: str) -> None:
         if not self._parameters.has(tag):
-            log.warning("%s: missing <%s> default is %s", self.label, tag, default)
+            defaults.warning("%s: missing <%s> default is %s", self.label, tag, default)

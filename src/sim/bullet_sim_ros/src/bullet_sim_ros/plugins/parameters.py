@@ -13,6 +13,14 @@ log = logging.getLogger("bullet_sim.plugins")
 TRUE, FALSE = ("true", "1"), ("false", "0")
 
 
+def read_numbers(text: str) -> list[float]:
+    """What is written between white space; empty where a word is no number to a C++ reader."""
+    try:
+        return [math.nan if "_" in word else float(word) for word in text.split()]
+    except ValueError:
+        return []
+
+
 class PluginParameters:
     """Typed access to the children of one `<plugin>` element."""
 
@@ -38,17 +46,21 @@ class PluginParameters:
         return found
 
     def number(self, tag: str, default: float) -> float:
-        """A float."""
+        """A finite number."""
+        value = self.bound(tag, default)
+        if self.text(tag) and math.isinf(value):
+            raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
+        return value
+
+    def bound(self, tag: str, default: float) -> float:
+        """A number that may be infinite: there is no such bound."""
         text = self.text(tag)
         if not text:
             return default
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if math.isnan(value):
+        values = read_numbers(text)
+        if len(values) != 1 or math.isnan(values[0]):
             raise PluginError(f"<{tag}> is {text!r}, which is no number")
-        return value
+        return values[0]
 
     def deviation(self, tag: str) -> float:
         """A standard deviation; 0 if absent."""
@@ -74,11 +86,10 @@ class PluginParameters:
     def vector(self, tag: str) -> tuple[float, float, float]:
         """Three numbers; zeros if absent."""
         text = self.text(tag, "0 0 0")
-        try:
-            x, y, z = (float(part) for part in text.split())
-        except ValueError:
-            raise PluginError(f"<{tag}> is {text!r}, which is not three numbers") from None
-        return (x, y, z)
+        values = read_numbers(text)
+        if len(values) != 3 or not all(map(math.isfinite, values)):
+            raise PluginError(f"<{tag}> is {text!r}, which is not three finite numbers")
+        return (values[0], values[1], values[2])
 
     def namespace(self, missing: str, empty: str) -> str:
         """`robotNamespace`; families of plugins differ in what an absent or an empty one means."""

@@ -17,7 +17,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 _registry: dict[str, Callable[[Host], object]] = {}
 # Libraries that only make sense inside Gazebo's own process: nothing is missing without them.
-_NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
+NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 
 
 def plugin(*filenames: str) -> Callable[[type], type]:
@@ -51,7 +51,7 @@ def load_world_plugins(shared: Shared) -> list[Host]:
 def _load(host: Host) -> bool:
     """Make the plugin, which tells its host what to call when."""
     filename = PurePosixPath(host.description.filename).name
-    if filename in _NOT_NEEDED:
+    if filename in NOT_NEEDED:
         return False
     made = _registry.get(filename)
     if made is None:

@@ -26,6 +26,7 @@ log = logging.getLogger("bullet_sim.control")
 
 SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim")
 ROUNDING = 1e-9  # of a step
+MOST_STEPS = 1e15  # of a control period: that is for ever
 
 
 @plugin("libgazebo_ros_control.so")
@@ -52,7 +53,8 @@ class RosControlPlugin:
     def _set_period(self) -> None:
         """Count the control period in steps, from now."""
         self._timestep = self._host.world.timestep
-        self._steps = max(1, math.ceil(self._control_period / self._timestep - ROUNDING))
+        steps = min(self._control_period / self._timestep, MOST_STEPS)
+        self._steps = max(1, math.ceil(steps - ROUNDING))
         self._updated = self._host.world.tick
 
     def _check_period(self) -> None:

@@ -16,12 +16,12 @@ GAZEBO_ONLY = ("logical_camera", "rfid", "rfidtag", "sonar", "wireless_receiver"
 
 
 def warn_of_sensor(model: str, sensor: SensorDescription) -> None:
-    """One warning for a sensor whose type is not simulated, unless a plugin speaks for it."""
+    """One line for a sensor whose type is not simulated, unless a plugin speaks for it."""
     if sensor.type in READ or (sensor.type in GAZEBO_ONLY and sensor.plugins):
         return
     if sensor.type in GAZEBO_ONLY:
         log.warning("model %s: sensor %s: type %s is not simulated; without a plugin it has no ROS "
                     "topic in Gazebo either", model, sensor.name, sensor.type)
         return
-    log.warning("model %s: sensor %s: there is no type %r; there are %s", model, sensor.name,
-                sensor.type, ", ".join((*READ, *GAZEBO_ONLY)))
+    log.error("model %s: sensor %s: there is no type %r; there are %s", model, sensor.name,
+              sensor.type, ", ".join((*READ, *GAZEBO_ONLY)))

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from bullet_sim_ros.plugins.host import Host
 
-log = logging.getLogger("bullet_sim.plugins")
+log = logging.getLogger("bullet_sim.plugins.unknown")
 
 # Beginnings of file names, and what a world without them lacks. Gazebo's own plugins speak its own
 # transport, so a ROS node has never heard of most of them.

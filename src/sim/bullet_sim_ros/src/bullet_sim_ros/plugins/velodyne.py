@@ -30,9 +30,9 @@ class VelodynePlugin:
         p = host.parameters
         self._host = host
         self._laser = Laser(host.world, host.link, host.sensor)
-        self._nearest = max(p.number("min_range", 0.0), self._laser.ray.range_min)
-        self._farthest = min(p.number("max_range", math.inf), self._laser.ray.range_max)
-        self._faintest = p.number("min_intensity", -math.inf)
+        self._nearest = max(p.bound("min_range", 0.0), self._laser.ray.range_min)
+        self._farthest = min(p.bound("max_range", math.inf), self._laser.ray.range_max)
+        self._faintest = p.bound("min_intensity", -math.inf)
         self._noise = p.deviation("gaussianNoise")
         self._name = f"{host.link.scoped_name}::{host.sensor.name} points"
         self._organised = p.flag("organize_cloud", False)

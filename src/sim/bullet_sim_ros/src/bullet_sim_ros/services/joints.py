@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import GetJointProperties, SetJointProperties
 
 from bullet_sim.joint import Joint
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from bullet_sim_ros.simulation import Simulation
 
 USED = ("damping", "hiStop", "loStop", "fmax", "vel")  # of gazebo_msgs/ODEJointProperties
+NOT_NEGATIVE = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax")
 
 
 def offer_joint_services(simulation: Simulation) -> None:
@@ -40,13 +42,23 @@ def set_joint_properties(world: World, request, response) -> None:
     """Empty arrays leave what is; of the others the first number counts, joints have one axis."""
     _, _, joint = find_joint(world, request.joint_name, "SetJointProperties: joint not found")
     config = request.ode_joint_config
+    _check(config)
     values = {field: getattr(config, field)[0] for field in USED if getattr(config, field)}
-    if not all(abs(value) <= convert.LARGEST for value in values.values()):
-        raise ServiceError(
-            f"SetJointProperties: numbers must be finite and not beyond {convert.LARGEST:g}")
     if joint is not None:
         _change(joint, values)
     done(response, "SetJointProperties: properties set")
+
+
+def _check(config: ODEJointProperties) -> None:
+    """All numbers are looked at, those that have no effect here too."""
+    for field in config.__slots__:
+        for value in getattr(config, field):
+            if not abs(value) <= convert.LARGEST:
+                raise ServiceError(f"SetJointProperties: {field} is {value:g}; numbers must be "
+                                   f"finite and not beyond {convert.LARGEST:g}")
+            if value < 0 and field in NOT_NEGATIVE:
+                raise ServiceError(f"SetJointProperties: {field} is {value:g}, which cannot be "
+                                   "negative")
 
 
 def _change(joint: Joint, values: dict[str, float]) -> None:

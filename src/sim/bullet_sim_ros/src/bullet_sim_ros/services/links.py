@@ -14,9 +14,11 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import Point, Quaternion
 
 from bullet_sim.description import Inertial
+from bullet_sim.errors import SimulationError
 from bullet_sim.pose import Pose
+from bullet_sim.scopes import INERTIAL_FRAMES
 from bullet_sim.twist import twist_difference, twist_in
-from bullet_sim.world import INERTIAL_FRAMES, World
+from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
 from bullet_sim_ros.services.lookup import LINK_UNKNOWN, find_frame, find_link
@@ -88,14 +90,18 @@ def set_link_properties(world: World, request, response) -> None:
     """Writes every field but the orientation of the inertia's axes."""
     link = find_link(world, request.link_name, f"SetLinkProperties: {LINK_UNKNOWN}")
     inertia = tuple(getattr(request, field) for field in INERTIA)
-    if not (convert.is_sane(request.com) and all(
-            0 < value <= convert.LARGEST for value in (request.mass, *inertia[::3], inertia[5]))):
+    if not (convert.is_sane(request.com)
+            and all(abs(value) <= convert.LARGEST for value in (request.mass, *inertia))
+            and all(value > 0 for value in (request.mass, *inertia[::3], inertia[5]))):
         raise ServiceError(
             "SetLinkProperties: mass, ixx, iyy and izz must be above 0, and all numbers finite; "
             "get_link_properties tells the present ones")
     old = link.description.inertial
     position = request.com.position
-    link.change(Inertial(request.mass, Pose((position.x, position.y, position.z),
-                                            old.pose.orientation), inertia),
-                request.gravity_mode)
+    try:
+        link.change(Inertial(request.mass, Pose((position.x, position.y, position.z),
+                                                old.pose.orientation), inertia),
+                    request.gravity_mode)
+    except SimulationError as error:
+        raise ServiceError(f"SetLinkProperties: {error}") from None
     done(response, "SetLinkProperties: properties set")

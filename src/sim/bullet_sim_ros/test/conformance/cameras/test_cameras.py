@@ -29,6 +29,25 @@ def info(bench, tags="", camera=SMALL):
     return one(bench, "/eye/camera_info")
 
 
+def test_a_picture_that_is_too_large_is_smaller_in_all_that_tells_of_it(bench, caplog):
+    # conforms: libgazebo_ros_camera.so
+    told = info(bench, camera="<image><width>40000</width><height>400</height></image>")
+    assert (told.width, told.height) == (8192, 81)
+    assert "an image of 40000x400 px is not drawn" in caplog.text
+    assert "8192x81 is used" in caplog.text
+
+
+def test_the_memory_of_pictures_goes_with_the_camera(bench):
+    # conforms: libgazebo_ros_camera.so
+    bench.spawn(eye(CAMERA))
+    one(bench, "/eye/image_raw")
+    renderer = bench.simulation._drawing.renderer()
+    assert renderer._targets
+    bench.delete("eye")
+    bench.simulation._drawing.settle()
+    assert not renderer._targets
+
+
 def test_topics_are_below_namespace_and_camera_name(bench):
     # conforms: libgazebo_ros_camera.so, libgazebo_ros_camera.so/cameraName
     # conforms: libgazebo_ros_camera.so/robotNamespace
@@ -265,6 +284,29 @@ def test_without_a_camera_name_nothing_can_be_reconfigured(bench, caplog):
     assert "/image_raw" in bench.advertised()
     assert "/set_parameters" not in bench.graph.services
     assert "without a <cameraName> there is no dynamic_reconfigure" in caplog.text
+
+
+def test_two_cameras_of_one_name_both_publish(bench, caplog):
+    # conforms: libgazebo_ros_camera.so, topics of cameras
+    before = bench.advertised()
+    bench.spawn(eye(CAMERA))
+    one_alone = {name: len(bench.graph.topics[name].publishers) for name in bench.advertised()}
+    caplog.clear()
+    bench.spawn(eye(CAMERA), name="second")
+    taken = [record.getMessage() for record in caplog.records]
+    assert len(taken) == 3 and all("is not offered" in line for line in taken), taken
+    images = bench.listen("/eye/image_raw")
+    bench.run(0.2)
+    assert len(images) == 4  # 10 Hz, twice
+    assert {name for name, count in one_alone.items()
+            if len(bench.graph.topics[name].publishers) > count} == {
+                "/eye/image_raw", "/eye/image_raw/compressed", "/eye/camera_info"}
+    bench.delete("eye")
+    images.clear()
+    bench.run(0.2)
+    assert len(images) == 2
+    bench.delete("second")
+    assert bench.advertised() == before
 
 
 def test_all_ends_with_the_model(bench):

@@ -126,6 +126,20 @@ def test_a_wrench_is_in_the_childs_axes(bench):
     assert xyz(found.wrench.force) == pytest.approx([0, -WEIGHT, 0], abs=0.2)
 
 
+def test_a_wrench_at_rest_is_that_of_what_stands_still(bench):
+    # conforms: libgazebo_ros_ft_sensor.so
+    standing = HANGING.format(tags=FT, roll=0, type="fixed").replace("0 0 -1 0", "0 0 0.3 0")
+    standing = standing.replace("<parent>world</parent><child>beam</child>",
+                                "<parent>beam</parent><child>foot</child>")
+    side = "<box><size>0.4 0.4 0.4</size></box>"
+    bench.spawn(standing.replace("<link name=\"beam\">", f"""<link name="foot"><collision name="c">
+      <geometry>{side}</geometry></collision></link><link name="beam">"""), Pose((0, 0, 0.2)))
+    found = bench.listen("/wrench")
+    bench.run(3.0)
+    assert bench.world._client.rest.reached
+    assert xyz(found[-1].wrench.force) == pytest.approx([0, 0, -WEIGHT], abs=0.02)
+
+
 def test_noise_and_rate_of_a_wrench(bench):
     # conforms: libgazebo_ros_ft_sensor.so/gaussianNoise, libgazebo_ros_ft_sensor.so/updateRate
     bench.spawn(crane(FT + "<gaussianNoise>0.5</gaussianNoise><updateRate>300</updateRate>"),

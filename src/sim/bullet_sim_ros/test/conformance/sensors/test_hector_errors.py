@@ -45,6 +45,19 @@ def test_defaults_names_and_link(bench, kind, topic):
     bench.delete("bot")
 
 
+@pytest.mark.parametrize("kind, topic", [("imu", "/imu"), ("gps", "/fix")])
+def test_a_second_robot_in_the_same_namespace_is_not_lost(bench, caplog, kind, topic):
+    # conforms: libhector_gazebo_ros_imu.so, libhector_gazebo_ros_gps.so
+    bench.spawn(hector(kind))
+    bench.spawn(hector(kind), name="second")
+    assert "dynamic_reconfigure is not offered: service [" in caplog.text
+    assert len(bench.graph.topics[topic].publishers) == 2
+    bench.delete("bot")
+    told = bench.listen(topic)
+    bench.run(0.3)
+    assert told
+
+
 @pytest.mark.parametrize("kind, topic, usual", [
     ("imu", "/imu", 1000), ("gps", "/fix", 4), ("magnetic", "/magnetic", 1000),
     ("baro", "/altimeter", 1000)])

@@ -8,6 +8,8 @@ import rospy
 from sensor_models import ACROSS, eye, look
 from sensor_msgs.msg import LaserScan
 
+from bullet_sim.sensors.ray_fan import fewer_rays
+
 LASERS = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 OTHERS = ("libgazebo_ros_block_laser.so", "libgazebo_ros_range.so")
 VELODYNES = ("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
@@ -124,10 +126,18 @@ def test_a_laser_works_at_its_sensors_rate_and_only_while_somebody_listens(bench
     assert len(scans) == 50
 
 
-def test_too_many_rays_are_an_error_that_says_so(bench, caplog):
-    # conforms: sdf sensor/ray/scan/horizontal/samples
-    bench.spawn(eye(LASERS[0], across="<samples>99999999</samples>"))
-    assert "99999999 x 1 rays; more than 1000000 are not cast" in caplog.text
+def test_of_too_many_rays_some_are_cast_over_the_same_angles(bench, caplog):
+    # conforms: sdf sensor/ray/scan/horizontal/samples, sdf sensor/ray/scan/vertical/samples
+    angles = "<samples>{}</samples><min_angle>-0.5</min_angle><max_angle>0.5</max_angle>"
+    scan, = look(bench, "/world", eye(LASERS[0], across=angles.format(99_999_999),
+                                      up=angles.format(2)))
+    assert ("sensor s of eye::l has 99999999 x 2 rays, and more than 100000 are not cast: "
+            "50000 x 2 over the same angles are used") in caplog.text
+    assert len(scan.ranges) == 100_000
+    assert (scan.angle_min, scan.angle_max) == (-0.5, 0.5)
+    for asked, cast in (((4000, 64), (1562, 64)), ((2, 10 ** 9), (2, 50_000)),
+                        ((10 ** 9, 10 ** 9), (316, 316))):
+        assert fewer_rays(*asked) == cast
 
 
 def noisy(bench, noise: str) -> np.ndarray:

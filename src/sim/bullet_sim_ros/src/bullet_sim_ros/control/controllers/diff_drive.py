@@ -12,7 +12,7 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
-from bullet_sim_ros.control.value_server import Value, ValueServer
+from bullet_sim_ros.control.value_server import Value, offer_values
 from bullet_sim_ros.control.wheel_states import WheelStates
 from bullet_sim_ros.errors import PluginError
 
@@ -70,9 +70,8 @@ class DiffDriveController(MobileBaseController):
         values["publish_rate"] = Value(host.parameters.number("publish_rate", 50.0), *RATES,
                                        "odometry and transforms a second")
         values["enable_odom_tf"] = Value(self.enable_odom_tf, False, True, "publish the transform")
-        server = ValueServer(host.namespace, values, lambda new: host.leave(
-            lambda: self._change(new)))
-        host.on_unload(server.close)
+        offer_values(host, host.namespace, values,
+                     lambda new: host.leave(lambda: self._change(new)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
         self._drive.geometry = self._geometry(values)

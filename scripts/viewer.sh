@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# The line course, and a page in the browser that shows it; the page's address is printed.
+#
+#   scripts/viewer.sh [control:=true] [port:=8080] [address:=0.0.0.0] ...   as viewer.launch has them
+failure_code=2
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+"$root/scripts/setup.sh" || exit 2
+enter_workspace
+mkdir -p "$root/out"
+roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
+launched=$!
+trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
+trap 'exit 130' INT TERM HUP
+echo "The course starts; what its nodes say is in out/viewer.log. Ctrl-C ends course and page."
+until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
+  if ! kill -0 "$launched" 2> /dev/null; then
+    tail -n 5 "$root/out/viewer.log" >&2
+    echo "viewer: the course did not start; all of it is in out/viewer.log" >&2
+    exit 2
+  fi
+  sleep 0.2
+done
+roslaunch sim_viewer viewer.launch "$@"

@@ -1,0 +1,30 @@
+"""Looks at a file that a model names before it is opened: a pipe would keep its reader for ever."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from bullet_sim.errors import FormatError
+
+LARGEST_IMAGE = 100 * 10**6  # bytes
+
+
+def check_file(path: Path | str, largest: int, advice: str = "") -> os.stat_result:
+    """Its status; FormatError, of one line that begins with the path, if it is not to be opened.
+
+    It has to be a plain file of at most `largest` bytes; `advice` says how to make it smaller.
+    """
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
+        raise FormatError(
+            f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe or device"
+        raise FormatError(f"{path} cannot be read: it is {kind}, not a file")
+    if status.st_size > largest:
+        raise FormatError(f"{path} cannot be read: {status.st_size / 1e6:.0f} MB, "
+                          f"more than {largest / 1e6:.0f}{'; ' if advice else ''}{advice}")
+    return status

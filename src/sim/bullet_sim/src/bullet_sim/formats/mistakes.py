@@ -1,0 +1,87 @@
+"""Says what is wrong in a text and reads on without it, as sdformat does; so many times at most."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from bullet_sim.errors import SimulationError
+
+logger = logging.getLogger(__name__)
+
+MOST_LINES = 20  # of one world or robot with all that it includes
+LONGEST_LINE = 500  # characters
+Read = TypeVar("Read")
+
+
+@dataclass
+class _Said:
+    """Of one load: the lines, without those that came again, and the files being read."""
+
+    lines: set[str] = field(default_factory=set)
+    files: list[str] = field(default_factory=list)
+
+
+_said: ContextVar[_Said | None] = ContextVar("said", default=None)
+
+
+@contextmanager
+def reading(file: str = "") -> Iterator[None]:
+    """Around the reading of a text, or of a `file` within it, which then begins each line.
+
+    The outermost one counts the lines, and ends with how many more there would have been.
+    """
+    outer = _said.get()
+    said = outer or _Said()
+    said.files.append(file)
+    token = _said.set(said)
+    try:
+        yield
+    finally:
+        _said.reset(token)
+        said.files.pop()
+        if outer is None and len(said.lines) > MOST_LINES:
+            logger.error("and %d more such lines%s", len(said.lines) - MOST_LINES,
+                         f", in {file} and what it includes" if file else "")
+
+
+def mistake(message: object) -> None:
+    """One error line, once per load."""
+    said = _said.get() or _Said()
+    file = said.files[-1] if said.files else ""
+    line = f"{file}: {message}" if file else str(message)
+    if line in said.lines:
+        return
+    said.lines.add(line)
+    if len(said.lines) <= MOST_LINES:
+        logger.error("%s", _shortened(line))
+
+
+def _shortened(line: str) -> str:
+    """Both ends of a line that is too long: where it is, and what is done about it."""
+    half = LONGEST_LINE // 2
+    return line if len(line) <= LONGEST_LINE else f"{line[:half]} … {line[-half:]}"
+
+
+def instead(error: SimulationError, used: object) -> None:
+    """The error line for a value in whose place another one, as text, is `used`."""
+    mistake(f"{error}; {used} is used instead")
+
+
+def or_without(read: Callable[..., Read], *arguments: object) -> Read | None:
+    """What `read` makes of the arguments; None, with an error line, where it cannot."""
+    try:
+        return read(*arguments)
+    except SimulationError as error:
+        mistake(f"{error}; left out")
+        return None
+
+
+def all_that_can(read: Callable[..., Read | None], elements: list, *others: object) -> list[Read]:
+    """What `read` makes of each of the elements, without those of which it makes nothing."""
+    found = (or_without(read, element, *others) for element in elements)
+    return [one for one in found if one is not None]

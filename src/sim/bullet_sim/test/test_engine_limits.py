@@ -1,0 +1,166 @@
+"""What the engine cannot hold, refuses or loses: said in one line, and all else goes on."""
+
+import itertools
+import logging
+import math
+
+import numpy as np
+import pytest
+
+from bullet_sim.description import PhysicsDescription
+from bullet_sim.errors import SimulationError
+from bullet_sim.formats import Resources, load_model
+from bullet_sim.physics.filters import Filters
+from bullet_sim.physics.limits import KEPT, MOST_POSITIONS
+from bullet_sim.physics.quiet import EngineError, pybullet
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+
+BOX = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>"
+PLANE = """<model name="m"><static>true</static><link name="l"><collision name="c"><geometry>
+  <plane><normal>0 0 1</normal></plane></geometry></collision></link></model>"""
+
+
+def read(body: str):
+    return load_model(f'<sdf version="1.6">{body}</sdf>', Resources())
+
+
+def star(*kinds: str):
+    """Links around one, each on a joint of that kind."""
+    arms = "".join(f'<link name="l{n}"/><joint name="j{n}" type="{kind}"><parent>hub</parent>'
+                   f"<child>l{n}</child></joint>" for n, kind in enumerate(kinds))
+    return read(f'<model name="m"><link name="hub"/>{arms}</model>')
+
+
+@pytest.fixture
+def world():
+    made = World()
+    yield made
+    made.close()
+
+
+def engine_bodies(world: World) -> int:
+    return world._client.read(pybullet.getNumBodies)
+
+
+def assert_empty(world: World) -> None:
+    """Nothing is left of what was to be there."""
+    assert not world.models and not world._client.rest.bodies and not world.lights
+    assert not world._client.planes._places
+    assert engine_bodies(world) == 0
+    world.step(100)
+
+
+def test_as_many_joints_as_the_engine_can_tell_of(world):
+    for kinds in (["revolute"] * MOST_POSITIONS, ["ball"] * 30 + ["revolute"]):
+        model = world.spawn(star(*kinds), name=f"of {len(kinds)}")
+        last = model.joint(f"j{len(kinds) - 1}")
+        last.reset(0.25, 1.5)
+        assert (last.position, last.velocity) == (0.25, 1.5)
+
+
+@pytest.mark.parametrize("kinds, said", [
+    (["revolute"] * 122, "m has 122 moving joints in one piece; the engine takes at most 121"),
+    (["ball"] * 31, r"has 31 moving joints .*\(31 balls among them, which count 4 times\)"),
+    (["universal"] * 61, "has 122 moving joints"),
+    (["fixed"] * 128, "model m has 129 links in one piece, .* the engine takes at most 128"),
+])
+def test_more_joints_are_refused_before_anything_is_built(world, kinds, said):
+    with pytest.raises(SimulationError, match=said):
+        world.spawn(star(*kinds))
+    assert_empty(world)
+
+
+def test_a_static_model_may_have_any_number_of_links(world):
+    body = "".join(f'<link name="l{n}"><pose>{n} 0 0 0 0 0</pose>{BOX}</link>' for n in range(300))
+    model = world.spawn(read(f'<model name="m"><static>true</static>{body}</model>'),
+                        Pose((0, 0, 2)))
+    assert model.links["l299"].pose.position == pytest.approx((299, 0, 2))
+    below = np.array([(n, 0.0, 0.0) for n in range(300)])
+    assert all(world.cast_rays(below + (0, 0, 9), below).fraction < 1.0)
+    model.links["l299"].move(Pose((299, 5, 2)), model.links["l299"].twist)
+    assert model.links["l0"].pose.position == pytest.approx((0, 5, 2))
+    world.delete("m")
+    assert_empty(world)
+
+
+@pytest.mark.parametrize("fails", ["attach", "_has_to_be_told", "Body", "show"])
+def test_what_a_failed_spawn_made_is_taken_out(world, monkeypatch, fails):
+    def refuse(*_args, **_keywords):
+        raise EngineError("no")
+
+    if fails == "Body":  # in the middle of a body
+        monkeypatch.setattr("bullet_sim.physics.body.Body._set_up_joints", refuse)
+    elif fails == "show":
+        monkeypatch.setattr(world, "_show", refuse)
+    else:
+        monkeypatch.setattr(Filters, fails, refuse)
+    for text in (PLANE, f'<model name="m"><link name="a">{BOX}</link><link name="b">{BOX}</link>'
+                 "</model>"):
+        if fails == "_has_to_be_told" and text is PLANE:
+            continue  # there is nothing to tell
+        with pytest.raises(EngineError):
+            world.spawn(read(text))
+        assert_empty(world)
+
+
+def test_pairs_that_a_failed_spawn_told_the_engine_of_are_untold(world, monkeypatch):
+    told, tell, asked = [], world._client.call, []
+
+    def note(function, *args, **keywords):
+        if function is pybullet.setCollisionFilterPair:
+            told.append((args[:4], args[4]))
+        return tell(function, *args, **keywords)
+
+    def refuse_the_second(*_args):
+        asked.append(_args)
+        if len(asked) > 1:
+            raise EngineError("no")
+        return True
+
+    monkeypatch.setattr(world._client, "call", note)
+    monkeypatch.setattr(Filters, "_has_to_be_told", refuse_the_second)
+    links = "".join(f'<link name="{name}">{BOX}</link>' for name in "abc")
+    with pytest.raises(EngineError):
+        world.spawn(read(f'<model name="m">{links}</model>'))
+    assert told == [(told[0][0], 0), (told[0][0], 1)]
+    assert_empty(world)
+
+
+def test_a_text_that_the_engine_refuses_is_our_own_error(world, monkeypatch):
+    monkeypatch.setattr("bullet_sim.physics.client.urdf_text", lambda *_: "nonsense")
+    with pytest.raises(SimulationError, match="the engine refuses link a and what hangs on it"):
+        world.spawn(read('<model name="m"><link name="a"/></model>'))
+    assert_empty(world)
+
+
+def test_a_body_that_the_engine_has_lost_takes_its_model_with_it(world, caplog):
+    gone = []
+    world.each_removal.append(gone.append)
+    lost = world.spawn(read(f'<model name="m"><link name="a">{BOX}</link></model>'))
+    falls = world.spawn(read(f'<model name="other"><link name="a">{BOX}</link></model>'))
+    world._client.read(pybullet.removeBody, lost.bodies[0].number)
+    world.step(200)
+    assert world.tick == 200
+    assert gone == ["m"] and list(world.models) == ["other"]
+    assert falls.pose.position[2] < -0.15
+    said = [record for record in caplog.records if record.levelno >= logging.ERROR]
+    assert len(said) == 1 and "model m is taken out" in said[0].message
+
+
+def test_an_error_that_no_model_causes_is_said_once(world, caplog):
+    def refuse():
+        raise EngineError("not today")
+
+    world.each_step.append(refuse)
+    world.step(50)
+    assert world.tick == 50
+    assert [record.message for record in caplog.records] == [
+        "the engine did not do a step as it should: not today; the world goes on"]
+
+
+def test_numbers_that_are_only_kept_have_to_be_numbers(world):
+    for field, value in itertools.product(KEPT, (math.nan, math.inf, -1.0)):
+        with pytest.raises(SimulationError, match=f"{KEPT[field]} is .*finite and not below 0"):
+            world.configure_physics(**{field: value})
+        assert world.description.physics == PhysicsDescription()

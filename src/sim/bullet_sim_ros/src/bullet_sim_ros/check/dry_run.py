@@ -1,0 +1,96 @@
+"""Robots and worlds in a simulation without a master: what the plugins say when they are made."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from bullet_sim.description import ModelDescription, WorldDescription
+from bullet_sim.pose import IDENTITY
+from bullet_sim.world import World
+from bullet_sim_ros.check.findings import PROBLEM
+from bullet_sim_ros.check.stand_ins import without_master
+from bullet_sim_ros.interface import APPROXIMATED
+from bullet_sim_ros.params import NodeParameters
+from bullet_sim_ros.plugins.logged_parameters import defaults
+from bullet_sim_ros.plugins.unknown import log as unknown_plugins
+from bullet_sim_ros.services.models import with_namespace
+from bullet_sim_ros.simulation import Simulation
+
+STEPS = 10  # enough for what only shows when time passes
+LOGGERS = ("bullet_sim", "rosout")
+UNHEARD = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
+# Whose warnings are about what goes on otherwise; others' are about what is left out.
+GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.sensors",
+         "bullet_sim.meshes", "bullet_sim.formats.urdf_transmission")
+
+
+@dataclass(frozen=True)
+class Said:
+    """A line of the log, and what it means for the one who checks."""
+
+    line: str
+    status: str
+
+
+class _Listener(logging.Handler):
+    def __init__(self):
+        super().__init__(logging.WARNING)
+        self.heard: list[Said] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.name not in UNHEARD:
+            self.heard.append(Said(record.getMessage(), _status(record)))
+
+
+def _status(record: logging.LogRecord) -> str:
+    goes_on = record.levelno < logging.ERROR and record.name.startswith(GO_ON)
+    return APPROXIMATED if goes_on else PROBLEM
+
+
+@contextmanager
+def listening() -> Iterator[list[Said]]:
+    """What core and plugins warn of meanwhile; it does not reach the terminal."""
+    listener, loggers = _Listener(), [logging.getLogger(name) for name in LOGGERS]
+    propagated = [logger.propagate for logger in loggers]
+    for logger in loggers:
+        logger.propagate = False
+        logger.addHandler(listener)
+    try:
+        yield listener.heard
+    finally:
+        for logger, before in zip(loggers, propagated, strict=True):
+            logger.removeHandler(listener)
+            logger.propagate = before
+
+
+def try_model(description: ModelDescription, parameters: Mapping[str, object],
+              namespace: str = "") -> None:
+    """Spawn a model into an empty world, as with -robot_namespace; SimulationError if it cannot."""
+    if namespace.strip("/"):
+        description = with_namespace(description, namespace)
+    _try(World(), parameters,
+         lambda simulation: simulation.spawn(description, IDENTITY, description.name))
+
+
+def try_world(description: WorldDescription, parameters: Mapping[str, object]) -> None:
+    """A world with all that stands in it."""
+    _try(World(description), parameters, lambda _simulation: None)
+
+
+def _try(world: World, parameters: Mapping[str, object],
+         fill: Callable[[Simulation], object]) -> None:
+    """`parameters` are what the parameter server would have, by full name."""
+    with without_master() as graph:
+        graph.parameters.update(parameters)
+        simulation = Simulation(world, NodeParameters(enable_ros_network=False))
+        try:
+            fill(simulation)
+            simulation.pacer.factor = 0.0
+            simulation.run(STEPS)
+        finally:
+            for name in list(world.models):
+                simulation.delete(name)  # ends the threads that wait for a parameter
+            simulation.close()

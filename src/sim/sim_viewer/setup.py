@@ -1,0 +1,9 @@
+"""Tells catkin where the Python package is."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(
+    packages=["sim_viewer", "sim_viewer.tools"],
+    package_dir={"": "src"},
+))

@@ -1,0 +1,1 @@
+"""The page in the browser: a server between ROS and the modules in web/."""

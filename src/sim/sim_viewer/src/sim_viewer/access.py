@@ -1,0 +1,81 @@
+"""Who may speak to the server: a token, and names that no foreign page can borrow.
+
+A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding) or open a WebSocket here
+from its own origin. Browsers say so in the headers Host and Origin, so both are checked.
+"""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import socket
+from collections.abc import Awaitable, Callable
+from urllib.parse import urlsplit
+
+from aiohttp import web
+
+from sim_viewer.options import Options
+
+HEADERS = {
+    "Content-Security-Policy": "default-src 'self'; img-src 'self' blob: data:; "
+                               "style-src 'self' 'unsafe-inline'; frame-ancestors 'none'",
+    "Cache-Control": "no-cache",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+
+class Access:
+    """Decides on each request; a browser that showed the token once gets it as a cookie."""
+
+    def __init__(self, options: Options):
+        self._token = options.token
+        self._cookie = f"sim_viewer_{options.port}"
+        own = socket.gethostname().lower()
+        self._names = {"localhost", own, own.split(".")[0], f"{own.split('.')[0]}.local",
+                       options.address.lower(), *options.hosts}
+
+    @web.middleware
+    async def guard(self, request: web.Request,
+                    handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
+                    ) -> web.StreamResponse:
+        """aiohttp middleware: 403 with the reason, or the answer with safe headers."""
+        reason = self.refusal(request)
+        if reason:
+            return web.Response(status=403, text=reason + "\n", headers=HEADERS)
+        answer = await handler(request)
+        if not answer.prepared:
+            answer.headers.update(HEADERS)
+            if self._token and request.query.get("token"):
+                answer.set_cookie(self._cookie, self._token, httponly=True, samesite="Strict")
+        return answer
+
+    def refusal(self, request: web.Request) -> str:
+        """Why this request must not be answered; empty if it may be."""
+        host = request.headers.get("Host", "")
+        if not self._known(host):
+            return (f"This server does not go by the name {host!r}; open it by its address, "
+                    "or start it with hosts:=NAME.")
+        origin = request.headers.get("Origin")
+        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+            return f"A page of {origin!r} may not speak to this server."
+        if self._token and not self._shows_token(request):
+            return "Open the address with ?token=... that the server printed."
+        return ""
+
+    def _known(self, host: str) -> bool:
+        try:
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:
+            return False
+        if name in self._names:
+            return True
+        try:
+            ipaddress.ip_address(name)  # a number is nobody's name, so nobody can borrow it
+        except ValueError:
+            return False
+        return True
+
+    def _shows_token(self, request: web.Request) -> bool:
+        shown = request.query.get("token") or request.cookies.get(self._cookie, "")
+        return hmac.compare_digest(shown.encode(), self._token.encode())

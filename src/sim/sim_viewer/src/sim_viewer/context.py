@@ -1,0 +1,73 @@
+"""What operations and watchables are given: one browser's connection, and the node behind it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from sim_viewer.options import Options
+
+WORKERS = 16  # threads for what may block: services, the master, slow encoders
+
+
+class Node:
+    """Shared by all browsers: options, the loop, worker threads, and what modules keep for all."""
+
+    def __init__(self, options: Options, loop: asyncio.AbstractEventLoop):
+        self.options = options
+        self.loop = loop
+        self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="worker")
+        self._shared: dict[type, Any] = {}
+
+    @property
+    def control(self) -> bool:
+        """Whether browsers may change anything."""
+        return self.options.control
+
+    def shared(self, kind: type) -> Any:
+        """The one object of this class, made as `kind(node)` when it is first asked for; in the
+        loop's thread only."""
+        if kind not in self._shared:
+            self._shared[kind] = kind(self)
+        return self._shared[kind]
+
+    async def run_in_thread(self, function: Callable, *args: Any) -> Any:
+        """The result of what may block, worked out beside the loop."""
+        return await self.loop.run_in_executor(self._workers, function, *args)
+
+    def close(self) -> None:
+        """Objects kept for all that have a `close` are closed."""
+        for shared in self._shared.values():
+            if hasattr(shared, "close"):
+                shared.close()
+        self._workers.shutdown(wait=False, cancel_futures=True)
+
+
+class Context:
+    """One browser's connection."""
+
+    def __init__(self, node: Node, client: int):
+        self.node = node
+        self.client = client  # its number, of its own
+        self.loop = node.loop
+        self._on_close: list[Callable[[], None]] = []
+
+    @property
+    def control(self) -> bool:
+        """Whether this browser may change anything."""
+        return self.node.control
+
+    async def run_in_thread(self, function: Callable, *args: Any) -> Any:
+        """The result of what may block, worked out beside the loop."""
+        return await self.node.run_in_thread(function, *args)
+
+    def on_close(self, function: Callable[[], None]) -> None:
+        """Have `function` called in the loop when the connection has ended."""
+        self._on_close.append(function)
+
+    def closed(self) -> None:
+        """The connection has ended: tell who asked."""
+        for function in self._on_close:
+            function()

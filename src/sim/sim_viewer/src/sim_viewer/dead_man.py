@@ -1,0 +1,86 @@
+"""The dead man's handle of one driven topic: who holds it, until when, what to publish for that.
+
+No ROS, no thread and no clock: `now` is handed in, in seconds of a clock that never jumps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+HOLD = 0.25  # s that a command lasts; the page repeats a held key at 10 Hz
+
+
+@dataclass(frozen=True)
+class Command:
+    """What a held key asks for. Positive: forwards, and to the left."""
+
+    linear: float  # m/s
+    angular: float  # rad/s; for a car the steering angle in rad
+
+
+STOP = Command(0.0, 0.0)
+
+
+class HandleTaken(Exception):
+    """Another client drives now; this one must let go of its keys before it may drive again."""
+
+
+class DeadMan:
+    """One handle, one driver. Each method returns what to publish now, oldest first."""
+
+    def __init__(self, hold: float = HOLD) -> None:
+        self._hold = hold
+        self._driver: Hashable | None = None
+        self._until = math.inf
+        self._moving = False  # the last command that was published is no stop
+        self._ousted: dict[Hashable, float] = {}  # who still presses in vain, and when last
+
+    @property
+    def driver(self) -> Hashable | None:
+        return self._driver
+
+    @property
+    def until(self) -> float:
+        """When `expire` has something to say; infinite while nobody drives."""
+        return self._until
+
+    def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
+        """A command of a client. Who comes last gets the handle, and its first command is a stop.
+
+        So two people never pull at one robot in turn: the earlier one gets HandleTaken until
+        nothing came from it for the length of a command, or it released.
+        """
+        if now - self._ousted.get(client, -math.inf) < self._hold:
+            self._ousted[client] = now
+            raise HandleTaken
+        self._ousted.pop(client, None)
+        due = self.expire(now)
+        taken = self._driver not in (None, client)
+        if taken:
+            self._ousted[self._driver] = now
+        self._driver, self._until = client, now + self._hold
+        return self._stop() if taken else [*due, *self._go(command)]
+
+    def release(self, client: Hashable) -> list[Command]:
+        """The client let go of its keys, or is gone."""
+        self._ousted.pop(client, None)
+        return self._let_go() if client == self._driver else []
+
+    def expire(self, now: float) -> list[Command]:
+        """Nothing came from the driver for the length of a command."""
+        return self._let_go() if now >= self._until else []
+
+    def _let_go(self) -> list[Command]:
+        self._driver, self._until = None, math.inf
+        return self._stop()
+
+    def _stop(self) -> list[Command]:
+        stops = [STOP] if self._moving else []
+        self._moving = False
+        return stops
+
+    def _go(self, command: Command) -> list[Command]:
+        self._moving = command != STOP
+        return [command]

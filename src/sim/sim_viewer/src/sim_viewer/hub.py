@@ -1,0 +1,199 @@
+"""The browsers that are connected: their messages in, answers and what they watch out."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import itertools
+import json
+from typing import Any
+
+import rospy
+from aiohttp import WSMsgType, web
+
+from sim_viewer import registry
+from sim_viewer.context import Context, Node
+from sim_viewer.outbox import Outbox
+from sim_viewer.registry import Refused
+
+LARGEST_MESSAGE = 1 << 20  # bytes; more closes the connection
+MOST_AT_ONCE = 64  # operations of one browser under way, and things it watches
+LONGEST_ID = 64  # characters of a message's number, which is sent back
+GOODBYE = 1.0  # s for all browsers together, when the node ends
+PATIENCE = 15.0  # s between pings; a browser that does not answer is gone
+
+
+class Hub:
+    """Owns the connections; everything here runs in the loop's thread."""
+
+    def __init__(self, node: Node):
+        self._node = node
+        self._numbers = itertools.count(1)
+        self._sockets: set[web.WebSocketResponse] = set()
+
+    async def serve(self, request: web.Request) -> web.WebSocketResponse:
+        """The handler of /ws: returns when the connection has ended."""
+        socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=PATIENCE,
+                                       compress=False)
+        await socket.prepare(request)
+        client = Client(socket, Context(self._node, next(self._numbers)))
+        self._sockets.add(socket)
+        try:
+            await client.serve()
+        finally:
+            self._sockets.discard(socket)
+            await client.close()
+        return socket
+
+    async def close(self) -> None:
+        """Say goodbye to all who listen; the others are not waited for."""
+        goodbyes = [asyncio.ensure_future(socket.close()) for socket in self._sockets]
+        if goodbyes:
+            _, deaf = await asyncio.wait(goodbyes, timeout=GOODBYE)
+            for one in deaf:
+                one.cancel()
+
+
+class Client:
+    """One connection."""
+
+    def __init__(self, socket: web.WebSocketResponse, context: Context):
+        self._socket = socket
+        self._context = context
+        self._outbox = Outbox(context.loop)
+        self._tasks: set[asyncio.Task] = set()
+        self._watches: dict[int, Any] = {}
+        self._numbers = itertools.count(1)
+
+    async def serve(self) -> None:
+        """Until the connection ends."""
+        sender = asyncio.create_task(self._send_all())
+        try:
+            async for message in self._socket:
+                if message.type is WSMsgType.TEXT:
+                    self._take(message.data)
+                    await self._outbox.room()
+        finally:
+            sender.cancel()
+
+    async def close(self) -> None:
+        """End what it asked for and watched."""
+        self._context.closed()
+        for task in self._tasks:
+            task.cancel()
+        for watch in list(self._watches):
+            await self._unwatch(watch)
+
+    async def _send_all(self) -> None:
+        try:
+            while not self._socket.closed:
+                message = await self._outbox.next()
+                # Waits while the browser's connection is full.
+                if isinstance(message, bytes):
+                    await self._socket.send_bytes(message)
+                else:
+                    await self._socket.send_str(message)
+        except ConnectionError:
+            pass  # the browser went away in the middle
+        finally:
+            self._outbox.end()
+
+    # --- in
+
+    def _take(self, text: str) -> None:
+        number = None
+        try:
+            request = _decode(text)
+            number = _number(request.pop("id", None))
+            if len(self._tasks) >= MOST_AT_ONCE:
+                raise Refused(f"more than {MOST_AT_ONCE} operations at once")
+        except Refused as error:
+            self._refuse(number, str(error))
+            return
+        task = asyncio.create_task(self._answer(number, request))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _answer(self, number: Any, request: dict[str, Any]) -> None:
+        name = request.pop("op", None)
+        try:
+            data = await self._do(name, request)
+            self._outbox.answer({"id": number, "ok": True, "data": data})
+        except Refused as error:
+            self._refuse(number, str(error))
+        except Exception as error:
+            rospy.logwarn("operation %s: %s: %s", name, type(error).__name__, error)
+            self._refuse(number, f"{name}: {type(error).__name__}: {error}")
+
+    def _refuse(self, number: Any, reason: str) -> None:
+        self._outbox.answer({"id": number, "ok": False, "error": " ".join(reason.split())})
+
+    async def _do(self, name: Any, args: dict[str, Any]) -> Any:
+        if name == "watch":
+            return await self._watch(args)
+        if name == "unwatch":
+            await self._unwatch(args.get("watch"))
+            return None
+        operation = registry.find_operation(name)
+        if operation.control and not self._context.control:
+            raise Refused(f"{name}: this page may only look; start it with control:=true")
+        return await operation.function(self._context, **operation.arguments(args))
+
+    # --- watching
+
+    async def _watch(self, args: dict[str, Any]) -> dict[str, int]:
+        kind = registry.find_watchable(args.get("what"))
+        if len(self._watches) >= MOST_AT_ONCE:
+            raise Refused(f"more than {MOST_AT_ONCE} things watched at once")
+        number = next(self._numbers)
+        watched = kind(self._context, registry.argument(args, "args", dict, {}),
+                       lambda data, keep=False: self._outbox.post(number, data, keep))
+        self._watches[number] = watched
+        self._outbox.open(number)
+        # Before the first event, so that the browser knows whose it is.
+        answer = {"watch": number}
+        try:
+            await self._run(watched.start)
+        except BaseException:
+            await self._unwatch(number)
+            raise
+        return answer
+
+    async def _unwatch(self, number: Any) -> None:
+        watched = self._watches.pop(number, None) if isinstance(number, int) else None
+        if watched is None:
+            return
+        self._outbox.close(number)
+        try:
+            await self._run(watched.stop)
+        except Exception as error:
+            rospy.logwarn("end of a watch: %s: %s", type(error).__name__, error)
+
+    async def _run(self, function: Any) -> None:
+        """Coroutines in the loop, plain functions beside it."""
+        if inspect.iscoroutinefunction(function):
+            await function()
+        else:
+            await self._context.run_in_thread(function)
+
+
+def _decode(text: str) -> dict[str, Any]:
+    """A message's object; Refused where it is none."""
+    try:
+        request = json.loads(text, parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        raise Refused(f"this is no JSON: {error}") from None
+    if not isinstance(request, dict):
+        raise Refused("a message is an object: {\"id\": 1, \"op\": \"NAME\"}")
+    return request
+
+
+def _number(given: Any) -> int | float | str | None:
+    """A message's number; Refused where it is none that can be sent back."""
+    if given is None or (isinstance(given, (int, float, str)) and len(str(given)) <= LONGEST_ID):
+        return given
+    raise Refused(f"id is a number, or at most {LONGEST_ID} characters")
+
+
+def _no_number(name: str) -> None:
+    raise ValueError(f"{name} is no number")

@@ -1,0 +1,140 @@
+"""Any image topic, and any cv2 window that is one, as JPEG pictures while somebody watches."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from sensor_msgs.msg import CompressedImage, Image
+
+from sim_viewer.context import Context, Node
+from sim_viewer.pictures import to_jpeg
+from sim_viewer.registry import Refused, argument, operation, watchable
+from sim_viewer.tools.master import MasterView
+
+RATE_HZ = 20.0  # at most
+WIDTHS_PX = range(16, 961)
+WIDTH_PX = 640
+KINDS = {"sensor_msgs/Image": Image, "sensor_msgs/CompressedImage": CompressedImage}
+COMPRESSED = "/compressed"
+LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old picture waits in the socket
+
+
+@operation("image_topics")
+async def image_topics(context: Context) -> list[str]:
+    """Image topics that somebody publishes; a compressed twin stands behind its own image."""
+    return await context.run_in_thread(_offered, context.node.shared(MasterView))
+
+
+def _offered(master: MasterView) -> list[str]:
+    published, types = master.state().publishers, master.types()
+    topics = {topic for topic in published if types.get(topic) in KINDS}
+    return sorted(topic for topic in topics if not _is_twin(topic, topics))
+
+
+def _is_twin(topic: str, topics: set[str]) -> bool:
+    base, _, last = topic.rpartition("/")
+    return base in topics and last in ("compressed", "compressedDepth")
+
+
+class Stream:
+    """One topic at one width, shared by all who watch it. Messages come in rospy's thread, where
+    those that come too fast are dropped unread."""
+
+    def __init__(self, topic: str, kind: type, width: int):
+        self._kind = kind
+        self._width = width
+        self._watchers: list[Callable[..., None]] = []
+        self._due = 0.0  # s, monotonic
+        self._last: bytes | None = None
+        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, queue_size=1,
+                                            buff_size=LARGEST_MESSAGE)
+
+    def add(self, send: Callable[..., None]) -> None:
+        """Who comes late sees the last picture."""
+        if self._last is not None:
+            send(self._last)
+        self._watchers = [*self._watchers, send]
+
+    def remove(self, send: Callable[..., None]) -> bool:
+        """Whether that was the last one; then the topic is let go."""
+        self._watchers = [other for other in self._watchers if other is not send]
+        if not self._watchers:
+            self._subscriber.unregister()
+        return not self._watchers
+
+    def _take(self, raw: rospy.AnyMsg) -> None:
+        now = time.monotonic()
+        if now < self._due:
+            return
+        # A rate that is kept on the average: 30 pictures a second give 20, not 15.
+        self._due = max(self._due + 1 / RATE_HZ, now - 1 / RATE_HZ)
+        try:
+            self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)
+        except Refused as error:
+            self._tell({"error": str(error)})
+        except Exception as error:  # of a message that somebody else made
+            rospy.logwarn_throttle(10, f"{self._subscriber.resolved_name}: {error}")
+            self._tell({"error": f"{type(error).__name__}: {error}"})
+        else:
+            self._tell(self._last)
+
+    def _tell(self, data: Any) -> None:
+        for send in self._watchers:
+            send(data)
+
+
+class Streams:
+    """All that are watched."""
+
+    def __init__(self, node: Node):
+        self._streams: dict[tuple[str, int], Stream] = {}
+
+    def add(self, topic: str, kind: type, width: int, send: Callable[..., None]) -> None:
+        """In the loop's thread, as all here."""
+        key = (topic, width)
+        if key not in self._streams:
+            self._streams[key] = Stream(topic, kind, width)
+        self._streams[key].add(send)
+
+    def remove(self, topic: str, width: int, send: Callable[..., None]) -> None:
+        """Whoever watches no more."""
+        stream = self._streams.get((topic, width))
+        if stream is not None and stream.remove(send):
+            del self._streams[topic, width]
+
+
+@watchable("image")
+class ImageWatch:
+    """Arguments: `topic`, and `width` in px that is enough. Events are JPEG files, or an object
+    with an `error` where a picture cannot be shown."""
+
+    def __init__(self, context: Context, args: dict[str, Any], send: Callable[..., None]):
+        self._context, self._send = context, send
+        self._wished = argument(args, "topic", str)
+        width = argument(args, "width", int, WIDTH_PX)
+        self._width = max(WIDTHS_PX.start, min(width, WIDTHS_PX.stop - 1))
+        self._streams: Streams = context.node.shared(Streams)
+        self._topic: str | None = None
+
+    async def start(self) -> None:
+        """The compressed topic serves where there is one."""
+        master = self._context.node.shared(MasterView)
+        topic, kind = await self._context.run_in_thread(_find, master, self._wished)
+        self._topic = topic
+        self._streams.add(topic, kind, self._width, self._send)
+
+    async def stop(self) -> None:
+        if self._topic is not None:
+            self._streams.remove(self._topic, self._width, self._send)
+
+
+def _find(master: MasterView, wished: str) -> tuple[str, type]:
+    published, types = master.state().publishers, master.types()
+    for topic in (wished + COMPRESSED, wished):
+        if topic in published and types.get(topic) in KINDS:
+            return topic, KINDS[types[topic]]
+    raise Refused(f"{wished!r:.80} is no image topic that somebody publishes; "
+                  f"there are {', '.join(_offered(master)) or 'none'}")

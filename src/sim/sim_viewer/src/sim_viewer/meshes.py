@@ -1,0 +1,91 @@
+"""Triangles and textures of the scene, for the page: numbered, so that only they can be asked for.
+
+GET /mesh/N is one binary, little-endian: four uint32 (corners n, triangles m, 1 if there is uv, 0),
+then float32 positions (n, 3) in m, normals (n, 3), uv (n, 2) with (0, 0) at the lower left, then
+uint32 corners of triangles (m, 3). GET /texture/N is an image that browsers can show.
+"""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import cv2
+import numpy as np
+from aiohttp import web
+
+from bullet_sim.description import Visual
+from bullet_sim.mesh_part import MeshPart
+from bullet_sim.rendering.scene import LinkShape, link_shape
+from sim_viewer.context import Node
+
+SHOWN_AS_IS = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp")  # files that browsers can read
+
+
+class Meshes:
+    """What the present scene needs; shapes stay as long as a scene has them."""
+
+    def __init__(self, node: Node):
+        self._node = node
+        self._shapes: dict[tuple[Visual, ...], LinkShape] = {}
+        self._numbers: dict[MeshPart, int] = {}
+        self._parts: dict[int, MeshPart] = {}
+        self._textures: dict[int, str] = {}
+        self._next = itertools.count(1)
+
+    def shapes(self, links: list[tuple[Visual, ...]]) -> list[LinkShape]:
+        """What links with these visuals look like; those of earlier scenes are forgotten.
+
+        Reads files, so it may take a while; one call at a time.
+        """
+        self._shapes = {visuals: self._shapes.get(visuals) or link_shape(visuals)
+                        for visuals in links}
+        parts = [part for shape in self._shapes.values() for part in shape.parts]
+        self._numbers = {part: self._numbers.get(part) or next(self._next) for part in parts}
+        self._parts = {number: part for part, number in self._numbers.items()}
+        known = {path: number for number, path in self._textures.items()}
+        paths = {part.material.texture for part in parts if part.uv is not None} - {None}
+        self._textures = {known.get(path) or next(self._next): path for path in sorted(paths)}
+        return [self._shapes[visuals] for visuals in links]
+
+    def mesh_number(self, part: MeshPart) -> int:
+        """By which the page asks for a part of a present shape."""
+        return self._numbers[part]
+
+    def texture_numbers(self) -> dict[str, int]:
+        """By which the page asks for image files."""
+        return {path: number for number, path in self._textures.items() if Path(path).is_file()}
+
+    async def serve_mesh(self, request: web.Request) -> web.Response:
+        """The handler of /mesh/N."""
+        part = self._parts.get(int(request.match_info["number"]))
+        if part is None:
+            raise web.HTTPNotFound(text="no such mesh in the present scene\n")
+        return web.Response(body=await self._node.run_in_thread(mesh_bytes, part),
+                            content_type="application/octet-stream")
+
+    async def serve_texture(self, request: web.Request) -> web.StreamResponse:
+        """The handler of /texture/N."""
+        path = self._textures.get(int(request.match_info["number"]))
+        if path is None:
+            raise web.HTTPNotFound(text="no such texture in the present scene\n")
+        if path.lower().endswith(SHOWN_AS_IS):
+            return web.FileResponse(path)
+        return web.Response(body=await self._node.run_in_thread(_as_png, path),
+                            content_type="image/png")
+
+
+def mesh_bytes(part: MeshPart) -> bytes:
+    """As /mesh/N gives it."""
+    uv = part.uv if part.uv is not None else np.empty((0, 2))
+    head = np.array([len(part.vertices), len(part.faces), part.uv is not None, 0], "<u4")
+    arrays = [(part.vertices, "<f4"), (part.normals, "<f4"), (uv, "<f4"), (part.faces, "<u4")]
+    return head.tobytes() + b"".join(np.ascontiguousarray(array, kind).tobytes()
+                                     for array, kind in arrays)
+
+
+def _as_png(path: str) -> bytes:
+    image = cv2.imread(path, cv2.IMREAD_COLOR)
+    if image is None:
+        raise web.HTTPNotFound(text="no image that can be read\n")
+    return cv2.imencode(".png", image)[1].tobytes()

@@ -1,0 +1,69 @@
+"""The node /sim_viewer: asyncio and the server in the main thread, rospy's threads beside it."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+import webbrowser
+
+import rospy
+
+from sim_viewer import registry
+from sim_viewer.context import Node
+from sim_viewer.meshes import Meshes
+from sim_viewer.options import OptionError, read_options
+from sim_viewer.restart import restart, wait_for_other_master
+from sim_viewer.server import NoPort, Server, page_url
+
+
+def main() -> None:
+    """Until Ctrl-C, or until ROS ends the node."""
+    try:
+        # The loop takes the signals; roslaunch and Ctrl-C end this node with SIGINT.
+        rospy.init_node("sim_viewer", disable_signals=True)
+        registry.load_all()
+        asyncio.run(_serve())
+    except (OptionError, NoPort) as error:
+        rospy.signal_shutdown(str(error))
+        sys.exit(f"sim_viewer: {error}")
+    except (KeyboardInterrupt, rospy.ROSInterruptException):
+        pass  # before the loop took the signals
+    rospy.signal_shutdown("the page has ended")
+
+
+async def _serve() -> None:
+    loop = asyncio.get_running_loop()
+    end = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, end.set)
+    rospy.on_shutdown(lambda: loop.is_closed() or loop.call_soon_threadsafe(end.set))
+    options = read_options()
+    node = Node(options, loop)
+    meshes: Meshes = node.shared(Meshes)
+    server = Server(node, {"/mesh/{number:[0-9]{1,9}}": meshes.serve_mesh,
+                           "/texture/{number:[0-9]{1,9}}": meshes.serve_texture})
+    try:
+        port = await server.start()
+        await _announce(node, port)
+        ended = asyncio.create_task(end.wait())
+        renewed = asyncio.create_task(wait_for_other_master(node))
+        await asyncio.wait([ended, renewed], return_when=asyncio.FIRST_COMPLETED)
+        renewed.cancel()
+    finally:
+        await server.close()
+        node.close()
+    if not end.is_set():
+        print("viewer: another ROS master is there; starting anew", flush=True)
+        restart(options, port)
+
+
+async def _announce(node: Node, port: int) -> None:
+    """Say where the page is."""
+    if port != node.options.port:
+        print(f"viewer: port {node.options.port} is taken, so it is {port}")
+    url = page_url(node.options, port)
+    print(f"viewer: {url}", flush=True)
+    await node.run_in_thread(rospy.set_param, "~url", url)  # for who did not see the line
+    if node.options.open:
+        await node.run_in_thread(webbrowser.open, url)

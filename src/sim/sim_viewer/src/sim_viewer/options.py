@@ -1,0 +1,63 @@
+"""The node's parameters."""
+
+from __future__ import annotations
+
+import ipaddress
+import secrets
+from dataclasses import dataclass, replace
+
+import rospy
+
+PORTS = range(1, 65536)
+
+
+class OptionError(ValueError):
+    """A parameter of which nothing can be made."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """As viewer.launch has them."""
+
+    port: int = 8080
+    address: str = "127.0.0.1"
+    control: bool = False
+    token: str = ""  # empty: nobody is asked for one
+    hosts: tuple[str, ...] = ()  # further names by which browsers reach this machine
+    open: bool = False
+
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine itself can reach the page."""
+        if self.address == "localhost":
+            return True
+        try:
+            return ipaddress.ip_address(self.address).is_loopback
+        except ValueError:
+            return False
+
+
+def read_options() -> Options:
+    """From the node's private parameters; where a token is needed and none is set, one is made."""
+    options = Options(
+        port=_read("port", int, Options.port),
+        address=_read("address", str, Options.address),
+        control=_read("control", bool, Options.control),
+        token=str(rospy.get_param("~token", "")),
+        hosts=tuple(name.strip().lower() for name in _read("hosts", str, "").split(",")
+                    if name.strip()),
+        open=_read("open", bool, Options.open),
+    )
+    if options.port not in PORTS:
+        raise OptionError(f"port is {options.port}; give one from 1 to 65535, such as port:=8080")
+    if not options.loopback and not options.token:
+        return replace(options, token=secrets.token_urlsafe(12))
+    return options
+
+
+def _read(name: str, kind: type, default):
+    value = rospy.get_param(f"~{name}", default)
+    if type(value) is not kind:
+        raise OptionError(f"{name} is {value!r}, which is no {kind.__name__}; "
+                          f"the default is {name}:={str(default).lower()}")
+    return value

@@ -1,0 +1,99 @@
+"""What is still to be sent to one browser, so that a slow one costs no memory."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+from collections import deque
+from typing import Any
+
+MOST_ANSWERS = 100  # that a browser may leave unread before nothing more is read from it
+MOST_KEPT = 500  # of one thing watched; the oldest goes first
+
+
+class Outbox:
+    """Answers in order; of each thing watched the newest, and what is to be kept before it."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop):
+        self._loop = loop
+        self._answers: deque[str] = deque()
+        self._watched: dict[int, deque[tuple[bool, str | bytes]]] = {}
+        self._something = asyncio.Event()
+        self._room = asyncio.Event()
+        self._room.set()
+        self._ended = False
+
+    def answer(self, message: dict[str, Any]) -> None:
+        """In the loop's thread."""
+        self._answers.append(encode(message))
+        self._something.set()
+        if len(self._answers) >= MOST_ANSWERS and not self._ended:
+            self._room.clear()
+
+    async def room(self) -> None:
+        """Waits until the browser has read enough of its answers, or is gone."""
+        await self._room.wait()
+
+    def end(self) -> None:
+        """Nothing will be sent any more."""
+        self._ended = True
+        self._room.set()
+
+    def open(self, watch: int) -> None:
+        """From now on there is mail of this watch."""
+        self._watched[watch] = deque(maxlen=MOST_KEPT)
+
+    def close(self, watch: int) -> None:
+        """Throw away what is left of it, and what still comes."""
+        self._watched.pop(watch, None)
+
+    def post(self, watch: int, data: Any, keep: bool) -> None:
+        """From any thread. Bytes go as they are, behind the watch's number."""
+        message = (struct.pack("<I", watch) + data if isinstance(data, bytes)
+                   else encode({"watch": watch, "data": data}))
+        try:
+            self._loop.call_soon_threadsafe(self._put, watch, message, keep)
+        except RuntimeError:
+            pass  # the loop has ended
+
+    def _put(self, watch: int, message: str | bytes, keep: bool) -> None:
+        mail = self._watched.get(watch)
+        if mail is None:
+            return
+        if mail and not keep and not mail[-1][0]:
+            mail.pop()
+        mail.append((keep, message))
+        self._something.set()
+
+    async def next(self) -> str | bytes:
+        """Waits for something to send; watches take turns."""
+        while True:
+            if self._answers:
+                self._room.set()
+                return self._answers.popleft()
+            for watch, mail in self._watched.items():
+                if mail:
+                    message = mail.popleft()[1]
+                    self._watched[watch] = self._watched.pop(watch)  # to the end of the line
+                    return message
+            self._something.clear()
+            await self._something.wait()
+
+
+def encode(data: Any) -> str:
+    """JSON that every browser reads: numbers that are none, or infinite, become null."""
+    try:
+        return json.dumps(data, allow_nan=False, separators=(",", ":"))
+    except ValueError:
+        return json.dumps(_finite(data), allow_nan=False, separators=(",", ":"))
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, float):
+        return data if abs(data) < float("inf") else None
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_finite(value) for value in data]
+    return data

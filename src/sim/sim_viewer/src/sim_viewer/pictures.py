@@ -1,0 +1,75 @@
+"""Image messages as JPEG for the page: small enough, and in colours that people can see."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from cv_bridge import CvBridge, CvBridgeError
+from sensor_msgs.msg import CompressedImage, Image
+
+from sim_viewer.registry import Refused
+
+QUALITY = 80  # of 100
+JPEG_START = b"\xff\xd8"
+_bridge = CvBridge()
+
+
+def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
+    """At most `width` px wide. A JPEG that is small enough goes as it is; else Refused says why
+    the picture cannot be shown."""
+    if hasattr(msg, "format"):
+        data = bytes(msg.data)
+        if data.startswith(JPEG_START) and 0 < jpeg_width(data) <= width:
+            return data
+        picture = _decode(data, width)
+    else:
+        picture = visible(msg)
+    height_px, width_px = picture.shape[:2]
+    if width_px > width:
+        size = (width, max(1, round(height_px * width / width_px)))
+        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    return cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])[1].tobytes()
+
+
+def visible(msg: Image) -> np.ndarray:
+    """(h, w) or (h, w, 3) uint8, grey or BGR. Depths and 16 bit are spread from black to white
+    between the least and the largest in the picture; what is no number is black."""
+    if not msg.width or not msg.height:
+        raise Refused("the picture has no pixels")
+    try:
+        picture = _bridge.imgmsg_to_cv2(msg)
+        if picture.dtype == np.uint8 and msg.encoding != "mono8" and "8UC1" not in msg.encoding:
+            return _bridge.imgmsg_to_cv2(msg, "bgr8")
+    except (CvBridgeError, ValueError, TypeError) as error:
+        raise Refused(f"a picture of {msg.width} x {msg.height} in {msg.encoding!r} cannot be "
+                      f"shown: {error}") from None
+    return picture if picture.dtype == np.uint8 else _spread(picture)
+
+
+def _spread(values: np.ndarray) -> np.ndarray:
+    values = np.asarray(values, np.float32)
+    finite = np.isfinite(values)
+    low, high = (values[finite].min(), values[finite].max()) if finite.any() else (0.0, 1.0)
+    grey = (np.where(finite, values, low) - low) * (255 / max(high - low, 1e-6))
+    return grey.astype(np.uint8)
+
+
+def _decode(data: bytes, width: int) -> np.ndarray:
+    """A compressed picture; JPEGs of twice the width and more are read at half the size."""
+    large = data.startswith(JPEG_START) and jpeg_width(data) >= 2 * width
+    mode = cv2.IMREAD_REDUCED_COLOR_2 if large else cv2.IMREAD_COLOR
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), mode) if data else None
+    if picture is None:
+        raise Refused("the compressed picture is of a kind that cannot be read")
+    return picture
+
+
+def jpeg_width(data: bytes) -> int:
+    """In px, from the frame header (ITU T.81, B.2.2); 0 if there is none."""
+    at = 2
+    while at + 9 <= len(data) and data[at] == 0xFF:
+        marker = data[at + 1]
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            return int.from_bytes(data[at + 7:at + 9], "big")
+        at += 2 + int.from_bytes(data[at + 2:at + 4], "big")
+    return 0

@@ -1,0 +1,137 @@
+"""What a browser may ask for by name: operations, answered once, and things to watch, sent until
+the browser has enough.
+
+A module of this package registers its own by decorators; `load_all` imports them all:
+
+    @operation("pause", control=True)
+    async def pause(context, paused: bool = True):
+        await context.run_in_thread(call_service, paused)
+
+    @watchable("echo")
+    class Echo:
+        def __init__(self, context, args, send): ...   # raise Refused for bad args
+        def start(self): ...                           # plain: in a worker thread
+        async def stop(self): ...                      # coroutine: in the loop
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import math
+import pkgutil
+import types
+import typing
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sim_viewer
+
+
+class Refused(Exception):
+    """What was asked cannot be done; the text is one line that says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Operation:
+    """`function` is a coroutine function of a context and keyword arguments."""
+
+    name: str
+    control: bool  # whether it changes anything, which a page without control must not
+    function: Callable[..., Awaitable[Any]]
+
+    def arguments(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """`given`, checked against the function's names and annotations; else Refused."""
+        try:
+            bound = inspect.signature(self.function).bind(None, **given)
+        except TypeError as error:
+            raise Refused(f"{self.name}: {error}") from None
+        hints = typing.get_type_hints(self.function)
+        for name, value in given.items():
+            if name in hints and not _fits(value, hints[name]):
+                raise Refused(f"{self.name}: {name} is {_shown(value)}, "
+                              f"which is not of type {_type_name(hints[name])}")
+        return dict(list(bound.arguments.items())[1:])
+
+
+_operations: dict[str, Operation] = {}
+_watchables: dict[str, type] = {}
+
+
+def operation(name: str, control: bool = False) -> Callable:
+    """Registers a coroutine function `f(context, **args)` under the name that browsers use."""
+    def register(function: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
+        if name in _operations:
+            raise ValueError(f"two operations are called {name}")
+        _operations[name] = Operation(name, control, function)
+        return function
+    return register
+
+
+def watchable(name: str) -> Callable[[type], type]:
+    """Registers a class made by `(context, args, send)`, with `start()` and `stop()`.
+
+    `send(data)` may be called from any thread: data for JSON, or bytes. A browser that is slow gets
+    the newest only; `send(data, keep=True)` is for what must not be left out, such as log lines.
+    """
+    def register(kind: type) -> type:
+        if name in _watchables:
+            raise ValueError(f"two things to watch are called {name}")
+        _watchables[name] = kind
+        return kind
+    return register
+
+
+def find_operation(name: Any) -> Operation:
+    """By name; Refused if there is none."""
+    return _find(_operations, name, "operation")
+
+
+def find_watchable(name: Any) -> type:
+    """By name; Refused if there is none."""
+    return _find(_watchables, name, "thing to watch")
+
+
+def argument(args: Mapping[str, Any], name: str, kind: Any, default: Any = ...) -> Any:
+    """One of a watchable's arguments, checked; Refused where it is missing or of another type."""
+    value = args.get(name, default)
+    if value is ...:
+        raise Refused(f"the argument {name} is missing")
+    if name in args and not _fits(value, kind):
+        raise Refused(f"{name} is {_shown(value)}, which is not of type {_type_name(kind)}")
+    return value
+
+
+def load_all() -> None:
+    """Import every module of the package, so that all have registered what they offer."""
+    for module in pkgutil.walk_packages(sim_viewer.__path__, "sim_viewer."):
+        importlib.import_module(module.name)
+
+
+def _find(known: Mapping[str, Any], name: Any, what: str) -> Any:
+    if not isinstance(name, str) or name not in known:
+        raise Refused(f"there is no {what} {_shown(name)}; there are {', '.join(sorted(known))}")
+    return known[name]
+
+
+def _fits(value: Any, kind: Any) -> bool:
+    if kind is Any:
+        return True
+    if typing.get_origin(kind) in (typing.Union, types.UnionType):
+        return any(_fits(value, one) for one in typing.get_args(kind))
+    kind = typing.get_origin(kind) or kind
+    if kind in (int, float) and isinstance(value, bool):
+        return False
+    if kind is float:
+        return isinstance(value, (int, float)) and abs(value) < 1e300 and math.isfinite(value)
+    return isinstance(value, kind)
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _type_name(kind: Any) -> str:
+    return getattr(kind, "__name__", None) or str(kind)

@@ -1,0 +1,55 @@
+"""Starts the node anew when the ROS master is another one.
+
+A learner leaves the page open and starts the course again: that is a new master, which knows
+nothing of this node. rospy cannot change masters, so the process begins again, with the parameters
+that the old master had; browsers connect again by themselves.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from dataclasses import replace
+
+import rosgraph
+
+from sim_viewer.context import Node
+from sim_viewer.options import Options
+
+PERIOD = 2.0  # s between looks
+RUN_ID = "/run_id"  # roslaunch gives each master another one
+
+
+async def wait_for_other_master(node: Node) -> None:
+    """Returns when there is one; while there is none it waits."""
+    first = await node.run_in_thread(_run_id)
+    while True:
+        await asyncio.sleep(PERIOD)
+        now = await node.run_in_thread(_run_id)
+        if first is None:
+            first = now
+        if now not in (None, first):
+            return
+
+
+def restart(options: Options, port: int) -> None:
+    """Does not return. Page and token stay where they are."""
+    words = parameter_words(replace(options, port=port, open=False))
+    kept = [word for word in sys.argv if not word.startswith("_") or word.startswith("__")]
+    os.execv(sys.executable, [sys.executable, *kept, *words])
+
+
+def parameter_words(options: Options) -> list[str]:
+    """The options as words of a command line, `_port:=8080`."""
+    values = {"port": options.port, "address": options.address, "control": options.control,
+              "token": options.token, "hosts": ",".join(options.hosts), "open": options.open}
+    return [f"_{name}:={json.dumps(value)}" for name, value in values.items()]
+
+
+def _run_id() -> str | None:
+    try:
+        return rosgraph.Master("/sim_viewer").getParam(RUN_ID)
+    except (OSError, rosgraph.MasterException):
+        return None

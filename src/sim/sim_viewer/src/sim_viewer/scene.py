@@ -1,0 +1,164 @@
+"""What the 3D view watches: `scene` (what there is to see) and `poses` (where it is now).
+
+Events of `poses` are JSON {"names": [...]} whenever there are other links, then bytes: float32
+(n, 7) little-endian, x, y, z in m and the quaternion x, y, z, w of each, in the order of the names.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import rospy
+
+from bullet_sim.rendering.scene_text import SceneContent
+from sim_viewer.context import Context, Node
+from sim_viewer.meshes import Meshes
+from sim_viewer.page_scene import NOTHING, page_scene
+from sim_viewer.registry import watchable
+from sim_viewer.robot_source import RobotSource
+from sim_viewer.simulator_source import SimulatorSource
+
+RATE_HZ = 20.0  # of poses, at most
+PATIENCE = 1.0  # s without a simulator before the robot's own description counts
+
+Send = Callable[..., None]
+
+
+class Source(Protocol):
+    """Where a scene comes from; plain calls, in a worker thread."""
+
+    def open(self) -> None: ...
+
+    def close(self) -> None: ...
+
+    def scene(self, known: bool) -> SceneContent | None:
+        """If there is another one than at the last call, or if that one is not `known`."""
+        ...
+
+    def poses(self) -> tuple[tuple[str, ...], np.ndarray] | None:
+        """Names and (n, 7) of links, if there is news."""
+        ...
+
+
+class Stage:
+    """The scene for all browsers: the simulator's while there is one, else the robot's."""
+
+    def __init__(self, node: Node):
+        self._node = node
+        self._meshes: Meshes = node.shared(Meshes)
+        self._simulator = SimulatorSource()
+        self._robot = RobotSource()
+        self._shown: Source | None = None
+        self._watchers: dict[Send, str] = {}
+        self._scene: dict[str, Any] = NOTHING
+        self._names: tuple[str, ...] = ()
+        self._rows = np.zeros((0, 7), np.float32)
+        self._task: asyncio.Task | None = None
+
+    def add(self, send: Send, what: str) -> None:
+        """Tell it what is known, and all that comes: of `scene` or of `poses`."""
+        self._watchers[send] = what
+        if what == "scene":
+            send(self._scene)
+        else:
+            self._send_poses([send], names=True)
+        if self._task is None:
+            self._task = asyncio.create_task(self._run())
+
+    def remove(self, send: Send) -> None:
+        """With the last one nothing is subscribed to any more."""
+        self._watchers.pop(send, None)
+        if not self._watchers:
+            self.close()
+
+    def close(self) -> None:
+        """End what runs."""
+        if self._task is not None:
+            self._task.cancel()
+            self._task = None
+
+    async def _run(self) -> None:
+        await self._node.run_in_thread(self._simulator.open)
+        clock = self._node.loop.time
+        seen = clock()
+        try:
+            while True:
+                await asyncio.sleep(1 / RATE_HZ)
+                if self._simulator.present():
+                    seen = clock()
+                    await self._show(self._simulator)
+                elif clock() - seen > PATIENCE:
+                    await self._show(self._robot)
+        finally:
+            self._shown = None
+            self._simulator.close()
+            self._robot.close()
+
+    async def _show(self, source: Source) -> None:
+        known, self._shown = source is self._shown, source
+        try:
+            content = await self._node.run_in_thread(source.scene, known)
+            if content is not None:
+                self._scene = await self._node.run_in_thread(page_scene, content, self._meshes)
+                for send in self._watching("scene"):
+                    send(self._scene)
+                # It has poses of its own, newer than those that were sent.
+                self._names, self._rows = (), np.zeros((0, 7), np.float32)
+            news = await self._node.run_in_thread(source.poses)
+        except OSError:
+            return  # the master is gone
+        except Exception as error:  # of a file or message that somebody else made
+            rospy.logwarn_throttle(10, f"the scene cannot be shown: {error}")
+            return
+        if news is not None:
+            self._take(*news)
+
+    def _take(self, names: tuple[str, ...], rows: np.ndarray) -> None:
+        renamed = names != self._names
+        if not renamed and np.array_equal(rows, self._rows):
+            return
+        self._names, self._rows = names, rows
+        self._send_poses(self._watching("poses"), renamed)
+
+    def _send_poses(self, watchers: list[Send], names: bool) -> None:
+        data = np.ascontiguousarray(self._rows, "<f4").tobytes()
+        for send in watchers:
+            if names:
+                send({"names": self._names}, keep=True)
+            send(data)
+
+    def _watching(self, what: str) -> list[Send]:
+        return [send for send, watched in self._watchers.items() if watched == what]
+
+
+class _Watch:
+    """Of the stage that all browsers share."""
+
+    what = ""
+
+    def __init__(self, context: Context, args: dict[str, Any], send: Send):
+        self._stage: Stage = context.node.shared(Stage)
+        self._send = send
+
+    async def start(self) -> None:
+        self._stage.add(self._send, self.what)
+
+    async def stop(self) -> None:
+        self._stage.remove(self._send)
+
+
+@watchable("scene")
+class SceneWatch(_Watch):
+    """What there is to see, as `page_scene` has it; anew when that changes."""
+
+    what = "scene"
+
+
+@watchable("poses")
+class PosesWatch(_Watch):
+    """Where the links are."""
+
+    what = "poses"

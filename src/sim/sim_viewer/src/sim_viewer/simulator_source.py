@@ -1,0 +1,85 @@
+"""The simulator's scene and link poses, from its topics."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import rospy
+from std_msgs.msg import String
+
+from bullet_sim.rendering.scene_text import SceneContent, scene_from_text
+
+SCENE = "/gazebo/scene"
+LINK_STATES = "/gazebo/link_states"
+POSE = np.dtype("<f8")
+_COUNT = struct.Struct("<I")
+
+
+class SimulatorSource:
+    """Messages of link states come faster than anybody looks, so that only the last is read."""
+
+    def __init__(self):
+        self._subscribers: list[rospy.Subscriber] = []
+        self._text: str | None = None
+        self._read: str | None = None  # which text was read last
+        self._states: bytes | None = None
+        self._names: tuple[str, ...] = ()
+        self._names_bytes = b""
+
+    def open(self) -> None:
+        """Subscribe."""
+        self._subscribers = [
+            rospy.Subscriber(SCENE, String, self._take_scene, queue_size=1),
+            rospy.Subscriber(LINK_STATES, rospy.AnyMsg, self._take_states, queue_size=1),
+        ]
+
+    def close(self) -> None:
+        """Let the topics go."""
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+        self._subscribers = []
+
+    def present(self) -> bool:
+        """Whether a simulator is there."""
+        return any(one.get_num_connections() for one in self._subscribers)
+
+    def scene(self, known: bool) -> SceneContent | None:
+        """If there is another one than at the last call, or if that one is not `known`."""
+        text = self._text
+        if text is None or (known and text is self._read):
+            return None
+        self._read = text
+        return scene_from_text(text)
+
+    def poses(self) -> tuple[tuple[str, ...], np.ndarray] | None:
+        """Names and (n, 7) of links, if there is news."""
+        states, self._states = self._states, None
+        if states is None:
+            return None
+        if not self._names_bytes or not states.startswith(self._names_bytes):
+            self._names, end = _read_names(states)
+            self._names_bytes = states[:end]
+        count = len(self._names)
+        rows = np.frombuffer(states, POSE, 7 * count, len(self._names_bytes) + _COUNT.size)
+        return self._names, rows.reshape(count, 7).astype(np.float32)
+
+    def _take_scene(self, msg: String) -> None:
+        self._text = msg.data
+
+    def _take_states(self, msg: rospy.AnyMsg) -> None:
+        self._states = msg._buff
+
+
+def _read_names(states: bytes) -> tuple[tuple[str, ...], int]:
+    """The names that a serialized gazebo_msgs/LinkStates begins with, and where they end.
+
+    string[] name is followed by geometry_msgs/Pose[] pose: their number, then seven float64 each.
+    """
+    count, at, names = _COUNT.unpack_from(states)[0], _COUNT.size, []
+    for _ in range(count):
+        length = _COUNT.unpack_from(states, at)[0]
+        at += _COUNT.size
+        names.append(states[at:at + length].decode("utf-8", "replace"))
+        at += length
+    return tuple(names), at

@@ -1,0 +1,1 @@
+"""What rqt's tools do: one file, one tab of the page."""

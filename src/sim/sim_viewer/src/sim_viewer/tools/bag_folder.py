@@ -1,0 +1,85 @@
+"""The folder of bags: which names are safe, what is there, what is in a bag."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import rosbag
+import rospy
+
+from sim_viewer.registry import Refused
+from sim_viewer.tools import names
+
+DEFAULT_FOLDER = "~/bags"
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,79}")
+MOST_LISTED = 500
+
+
+def read_folder() -> Path:
+    """Where bags are, from the node's parameter; made when the first is recorded."""
+    wanted = str(rospy.get_param(names.BAG_FOLDER, "")).strip()
+    return Path(wanted or DEFAULT_FOLDER).expanduser().resolve()
+
+
+def bag_path(folder: Path, name: str) -> Path:
+    """The file of a bag, inside the folder and nowhere else; Refused for other names."""
+    if not NAME.fullmatch(name):
+        raise Refused(f"{name!r:.60} is no name for a bag: letters, digits, _ - and . only, "
+                      "80 at most")
+    path = folder / (name if name.endswith(".bag") else name + ".bag")
+    if path.resolve().parent != folder.resolve():
+        raise Refused(f"{name} leads out of {folder}")
+    return path
+
+
+def existing_bag(folder: Path, name: str) -> Path:
+    """As `bag_path`; Refused where there is no such bag."""
+    path = bag_path(folder, name)
+    if not path.is_file():
+        raise Refused(f"there is no {path.name} in {folder}")
+    return path
+
+
+def new_bag(folder: Path, name: str) -> Path:
+    """Where to record; without a name it is called after the time. Refused if there is one."""
+    path = bag_path(folder, name or time.strftime("%Y-%m-%d-%H-%M-%S"))
+    if path.exists() or path.with_name(path.name + ".active").exists():
+        raise Refused(f"{path.name} exists already; choose another name")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refused(f"cannot make {folder}: {error.strerror}") from None
+    return path
+
+
+def listing(folder: Path) -> list[dict[str, Any]]:
+    """`[{name, size: byte, changed: s since 1970}]`, the newest first."""
+    if not folder.is_dir():
+        return []
+    found = []
+    for path in folder.glob("*.bag"):
+        try:
+            facts = path.stat()
+        except OSError:
+            continue  # deleted meanwhile, or a link to nowhere
+        found.append({"name": path.name, "size": facts.st_size, "changed": facts.st_mtime})
+    return sorted(found, key=lambda bag: (-bag["changed"], bag["name"]))[:MOST_LISTED]
+
+
+def contents(path: Path) -> dict[str, Any]:
+    """`{duration: s, start, messages, topics: [{name, type, count}]}`, as `rosbag info`."""
+    try:
+        with rosbag.Bag(str(path)) as bag:
+            topics = bag.get_type_and_topic_info().topics
+            messages = bag.get_message_count()
+            start, end = (bag.get_start_time(), bag.get_end_time()) if messages else (0.0, 0.0)
+    except rosbag.ROSBagUnindexedException:
+        raise Refused(f"{path.name} was not closed; type: rosbag reindex {path}") from None
+    except (rosbag.ROSBagException, OSError, ValueError, KeyError) as error:
+        raise Refused(f"{path.name} cannot be read: {error}") from None
+    return {"duration": end - start, "start": start, "messages": messages,
+            "topics": [{"name": name, "type": facts.msg_type, "count": facts.message_count}
+                       for name, facts in sorted(topics.items())]}

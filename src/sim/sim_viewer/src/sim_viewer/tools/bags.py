@@ -1,0 +1,202 @@
+"""Recording and playing bags: what `rosbag record` and `rosbag play` start, as child processes."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import rosgraph
+from roslib.packages import find_node
+
+from sim_viewer.registry import Refused, operation, watchable
+from sim_viewer.tools.bag_folder import contents, existing_bag, listing, new_bag, read_folder
+from sim_viewer.tools.paced import Changes, Paced
+
+LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
+PATIENCE = 10.0  # s for a bag to be closed
+RATES = (0.01, 100.0)
+
+
+class Child:
+    """`record` or `play` of package rosbag; interrupted when this process dies, which closes a bag.
+
+    Not by the command `rosbag`: it takes a second to start, and loses the bag if stopped before.
+    """
+
+    def __init__(self, program: str, arguments: list[str], path: Path):
+        found = find_node("rosbag", program)
+        if not found:
+            raise Refused(f"package rosbag has no {program} here; type: apt install rosbag")
+        self.path = path
+        self.started = time.monotonic()
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
+        self._process = subprocess.Popen(
+            ["setpriv", "--pdeathsig", "INT", found[0], *arguments], stdin=subprocess.DEVNULL,
+            stdout=self._said, stderr=subprocess.STDOUT, start_new_session=True)
+
+    @property
+    def running(self) -> bool:
+        return self._process.poll() is None
+
+    @property
+    def failure(self) -> str:
+        """Its last words if it ended by itself and badly, else nothing."""
+        if self._process.poll() in (None, 0, -signal.SIGINT):
+            return ""
+        self._said.seek(0)
+        lines = self._said.read().decode(errors="replace").strip().splitlines()
+        return lines[-1] if lines else f"rosbag ended with {self._process.returncode}"
+
+    def interrupt(self) -> None:
+        """As Ctrl-C does; waits until the bag is closed."""
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            if self.running:
+                self._process.send_signal(number)
+            try:
+                self._process.wait(PATIENCE)
+                return
+            except subprocess.TimeoutExpired:
+                continue
+
+    def state(self) -> dict[str, Any]:
+        """`{name, seconds, size}` for the page; the size grows in `NAME.bag.active`."""
+        growing = self.path.with_name(self.path.name + ".active")
+        file = growing if growing.exists() else self.path
+        return {"name": self.path.name, "seconds": round(time.monotonic() - self.started, 1),
+                "size": file.stat().st_size if file.exists() else 0}
+
+
+class Bags:
+    """At most one recording and one playback, shared by all pages."""
+
+    def __init__(self, node: Any = None):
+        self.folder = read_folder()
+        self._lock = threading.Lock()  # of the two below
+        self._recording: Child | None = None
+        self._playing: Child | None = None
+        self.note = ""  # why something ended by itself
+
+    def record(self, name: str, topics: list[str]) -> str:
+        """Begin; no topics: all. Call it from a thread that lives as long as the process."""
+        for topic in topics:
+            check_topic(topic)
+        with self._lock:
+            if self._recording and self._recording.running:
+                raise Refused(f"{self._recording.path.name} is being recorded; stop it first")
+            path = new_bag(self.folder, name)
+            self._check_disk()
+            self.note = ""
+            self._recording = Child("record", ["--quiet", "-O", str(path), *(topics or ["--all"])],
+                                    path)
+        threading.Thread(target=self._guard, args=(self._recording,), daemon=True).start()
+        return path.name
+
+    def play(self, name: str, rate: float, loop: bool, clock: bool) -> str:
+        """Begin; the same thread rule as for `record`."""
+        if not RATES[0] <= rate <= RATES[1]:
+            raise Refused(f"rate is {rate:g}; give {RATES[0]:g} to {RATES[1]:g}")
+        with self._lock:
+            if self._playing and self._playing.running:
+                raise Refused(f"{self._playing.path.name} is being played; stop it first")
+            path = existing_bag(self.folder, name)
+            self.note = ""
+            options = ["--loop"] * loop + ["--clock"] * clock
+            self._playing = Child("play", ["--quiet", "--rate", f"{rate:g}", *options, str(path)],
+                                  path)
+        return path.name
+
+    def stop(self, what: str) -> None:
+        """`record` or `play`; nothing happens where nothing runs."""
+        child = self._recording if what == "record" else self._playing
+        if child:
+            child.interrupt()
+
+    def state(self) -> dict[str, Any]:
+        """`{folder, recording, playing, note, bags}`; the two are null or a child's state."""
+        children = (self._recording, self._playing)
+        recording, playing = (c.state() if c and c.running else None for c in children)
+        failures = [c.failure for c in children if c and c.failure]
+        return {"folder": str(self.folder), "recording": recording, "playing": playing,
+                "note": self.note or "; ".join(failures), "bags": listing(self.folder)}
+
+    def close(self) -> None:
+        """Have both ended and the bag closed."""
+        for child in (self._recording, self._playing):
+            if child and child.running:
+                child.interrupt()
+
+    def _check_disk(self) -> None:
+        free = shutil.disk_usage(self.folder).free
+        if free < LEAST_FREE:
+            raise Refused(f"only {free >> 20} MiB are free in {self.folder}; "
+                          f"recording needs {LEAST_FREE >> 20}")
+
+    def _guard(self, child: Child) -> None:
+        while child.running:
+            try:
+                self._check_disk()
+            except Refused as error:
+                self.note = str(error)
+                child.interrupt()
+            time.sleep(1.0)
+
+
+def check_topic(topic: Any) -> None:
+    """Refused unless it is a full name, which also is no option of rosbag."""
+    if not isinstance(topic, str) or not topic.startswith("/") \
+            or not rosgraph.names.is_legal_name(topic):
+        raise Refused(f"{topic!r:.60} is no topic's full name")
+
+
+@watchable("bags")
+class BagState(Paced):
+    """Sends `Bags.state`, once a second where it changes."""
+
+    PERIOD = 1.0
+
+    def __init__(self, context: Any, args: dict[str, Any], send: Any):
+        super().__init__(context, args, send)
+        self._bags: Bags = context.node.shared(Bags)
+        self._changes = Changes()
+
+    def collect(self) -> Any:
+        return self._changes.of(self._bags.state())
+
+
+@operation("bag_info")
+async def bag_info(context: Any, name: str) -> dict[str, Any]:
+    """What is in a bag."""
+    path = existing_bag(context.node.shared(Bags).folder, name)
+    return await context.run_in_thread(contents, path)
+
+
+@operation("record", control=True)
+async def record(context: Any, topics: list, name: str = "") -> str:
+    """Begin to record these topics, or all if there are none; the bag's name."""
+    # Here, in the loop's thread: the child is interrupted when the thread that made it ends.
+    return context.node.shared(Bags).record(name, topics)
+
+
+@operation("play", control=True)
+async def play(context: Any, name: str, rate: float = 1.0, loop: bool = False,
+               clock: bool = False) -> str:
+    """Begin to play a bag."""
+    return context.node.shared(Bags).play(name, rate, loop, clock)
+
+
+@operation("stop_record", control=True)
+async def stop_record(context: Any) -> None:
+    """Answers when the bag is closed."""
+    await context.run_in_thread(context.node.shared(Bags).stop, "record")
+
+
+@operation("stop_play", control=True)
+async def stop_play(context: Any) -> None:
+    """Stop playing."""
+    await context.run_in_thread(context.node.shared(Bags).stop, "play")

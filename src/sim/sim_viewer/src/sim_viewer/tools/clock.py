@@ -1,0 +1,78 @@
+"""The time that nodes go by: simulated while somebody publishes /clock, else the wall's."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import Any
+
+import rospy
+from rosgraph_msgs.msg import Clock as ClockMessage
+
+from sim_viewer.tools import names
+
+FACTOR_WINDOW = 2.0  # s of wall time that the real-time factor is measured over
+
+
+class SharedClock:
+    """One subscription to /clock for all who hold it, and none when nobody does. Thread safe.
+
+    rospy's own time would not do: it decides between the two when its node starts, and the page
+    may be older than the simulator.
+    """
+
+    def __init__(self, node: Any = None):
+        self._lock = threading.Lock()
+        self._holders = 0
+        self._subscriber: rospy.Subscriber | None = None
+        self._stamp: rospy.Time | None = None
+
+    def hold(self) -> None:
+        """Subscribe if nobody has yet."""
+        with self._lock:
+            self._holders += 1
+            if self._holders == 1:
+                self._stamp = None
+                self._subscriber = rospy.Subscriber(names.CLOCK, ClockMessage, self._take,
+                                                    tcp_nodelay=True)
+
+    def release(self) -> None:
+        """The last one out unsubscribes."""
+        with self._lock:
+            self._holders -= 1
+            if self._holders == 0 and self._subscriber:
+                self._subscriber.unregister()
+                self._subscriber = None
+
+    @property
+    def simulated(self) -> float | None:
+        """Simulated time in s; None where no /clock has been heard."""
+        return self._stamp.to_sec() if self._stamp is not None else None
+
+    def now(self) -> float:
+        """s, in the time that messages' stamps are in."""
+        simulated = self.simulated
+        return time.time() if simulated is None else simulated
+
+    def _take(self, message: ClockMessage) -> None:
+        self._stamp = message.clock
+
+
+class FactorMeter:
+    """Real-time factor: simulated by wall time over the last seconds."""
+
+    def __init__(self) -> None:
+        self._samples: deque[tuple[float, float]] = deque()  # wall s, simulated s
+
+    def add(self, wall: float, simulated: float | None) -> float | None:
+        """The factor with this sample; None while there is nothing to compare."""
+        if simulated is None or (self._samples and simulated < self._samples[-1][1]):
+            self._samples.clear()  # no simulator, or it was reset
+        if simulated is None:
+            return None
+        self._samples.append((wall, simulated))
+        while self._samples[0][0] < wall - FACTOR_WINDOW:
+            self._samples.popleft()
+        (first, before), (last, after) = self._samples[0], self._samples[-1]
+        return (after - before) / (last - first) if last - first > 0.4 else None

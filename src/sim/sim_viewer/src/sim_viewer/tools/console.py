@@ -1,0 +1,108 @@
+"""The log of all nodes, as rqt_console shows it."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections import deque
+from typing import Any
+
+import rospy
+from rosgraph_msgs.msg import Log
+
+from sim_viewer.registry import Refused, argument, watchable
+from sim_viewer.tools import names
+from sim_viewer.tools.paced import Paced
+
+LEVELS = {"debug": Log.DEBUG, "info": Log.INFO, "warn": Log.WARN, "error": Log.ERROR,
+          "fatal": Log.FATAL}
+NAMES = {number: name for name, number in LEVELS.items()}
+MOST_REMEMBERED = 1_000
+MOST_LETTERS = 2_000  # of one line
+MOST_SENT = 200  # lines each time; more could not be read
+
+
+class SharedLog:
+    """The last lines, gathered while somebody looks. Thread safe."""
+
+    def __init__(self, node: Any = None):
+        self._lock = threading.Lock()
+        self._lines: deque[tuple[int, dict[str, Any]]] = deque(maxlen=MOST_REMEMBERED)
+        self._numbers = itertools.count(1)
+        self._holders = 0
+        self._subscriber: rospy.Subscriber | None = None
+
+    def hold(self) -> None:
+        """Subscribe if nobody has yet."""
+        with self._lock:
+            self._holders += 1
+            if self._holders == 1:
+                self._subscriber = rospy.Subscriber(names.ROSOUT, Log, self._take)
+
+    def release(self) -> None:
+        """The last one out unsubscribes; lines stay for who comes back."""
+        with self._lock:
+            self._holders -= 1
+            if self._holders == 0 and self._subscriber:
+                self._subscriber.unregister()
+                self._subscriber = None
+
+    def after(self, number: int) -> list[tuple[int, dict[str, Any]]]:
+        """Lines with a higher number than this, oldest first."""
+        return [line for line in list(self._lines) if line[0] > number]
+
+    def _take(self, message: Log) -> None:
+        self._lines.append((next(self._numbers), line_of(message)))
+
+
+def line_of(message: Log) -> dict[str, Any]:
+    """One line for the page; `time` in s, `level` by name."""
+    text = message.msg
+    if len(text) > MOST_LETTERS:
+        text = text[:MOST_LETTERS] + f" ... {len(message.msg) - MOST_LETTERS} more letters"
+    return {"time": message.header.stamp.to_sec(), "level": NAMES.get(message.level, "info"),
+            "node": message.name, "text": text,
+            "place": f"{message.file}:{message.line} {message.function}"}
+
+
+def pick(lines: list[dict[str, Any]], level: str) -> list[dict[str, Any]]:
+    """Those that are at least as grave as `level`."""
+    return [line for line in lines if LEVELS[line["level"]] >= LEVELS[level]]
+
+
+@watchable("console")
+class Console(Paced):
+    """Sends `{"lines": [{time, level, node, text, place}], "left_out": n}`, remembered ones first.
+
+    Only levels are sorted out here. The page filters by regular expression itself: a bad one may
+    take minutes, and then stops only the page where it was typed.
+    """
+
+    KEEP = True
+
+    def __init__(self, context: Any, args: dict[str, Any], send: Any):
+        super().__init__(context, args, send)
+        self._level = argument(args, "level", str, "debug")
+        if self._level not in LEVELS:
+            raise Refused(f"level is {self._level!r:.40}; there are {', '.join(LEVELS)}")
+        self._log: SharedLog = context.node.shared(SharedLog)
+        self._holds = False
+        self._number = 0
+
+    def open(self) -> None:
+        self._log.hold()
+        self._holds = True
+
+    def close(self) -> None:
+        if self._holds:
+            self._log.release()
+
+    def collect(self) -> Any:
+        fresh = self._log.after(self._number)
+        if not fresh:
+            return None
+        self._number = fresh[-1][0]
+        lines = pick([line for _, line in fresh], self._level)
+        if not lines:
+            return None
+        return {"lines": lines[-MOST_SENT:], "left_out": max(0, len(lines) - MOST_SENT)}

@@ -1,0 +1,118 @@
+"""Nodes, topics and what flows between them, laid out as rqt_graph draws it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import rospy
+
+from sim_viewer.registry import Refused, argument, watchable
+from sim_viewer.tools.layers import layout
+from sim_viewer.tools.master import SystemState
+from sim_viewer.tools.paced import Changes, Paced
+
+VIEWS = ("nodes", "active", "all")  # rqt_graph's Nodes only, Nodes/Topics (active), (all)
+QUIET_TOPICS = frozenset(["/rosout", "/rosout_agg", "/clock", "/statistics"])
+QUIET_ENDINGS = ("/parameter_descriptions", "/parameter_updates", "/bond")
+QUIET_NODES = ("/rosout", "/rqt_", "/rviz", "/rostopic_")
+MOST_EDGES = 1500
+
+Flow = tuple[str, str, str]  # "" for a missing end: publisher, topic, subscriber
+
+
+@watchable("graph")
+class Graph(Paced):
+    """Sends `{"nodes": [{name, topic, column, row}], "edges": [{from, to, points, topics}]}`."""
+
+    PERIOD = 2.0
+
+    def __init__(self, context: Any, args: dict[str, Any], send: Any):
+        super().__init__(context, args, send)
+        self._view = argument(args, "view", str, "active")
+        self._quiet = argument(args, "quiet", bool, True)
+        self._text = argument(args, "text", str, "")
+        if self._view not in VIEWS:
+            raise Refused(f"view is {self._view!r}; there are {', '.join(VIEWS)}")
+        self._state = Changes()
+
+    def collect(self) -> Any:
+        state = self._state.of(self.master.state())
+        if state is None:
+            return None
+        return draw(state, self._view, self._quiet, self._text, rospy.get_name())
+
+
+def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str = "",
+         own: str = "") -> dict[str, Any]:
+    """The picture of `state`; `quiet` leaves out what every system has, and the node `own`."""
+    if quiet:
+        state = _without_quiet(state, own)
+    flows = _flows(state)
+    if text:
+        flows = [flow for flow in flows if any(text in name for name in flow)]
+    edges = _node_edges(flows) if view == "nodes" else _topic_edges(flows, view == "all")
+    if len(edges) > MOST_EDGES:
+        raise Refused(f"{len(edges)} arrows are more than can be drawn; filter by part of a name")
+    alone = [] if text else _nodes(state)
+    ids = {_node(name) for name in alone} | {end for edge in edges for end in edge}
+    plan = layout(ids, edges)
+    return {
+        "nodes": [{"id": one, "name": one[1:], "topic": one[0] == "t",
+                   "column": plan.cells[one][0], "row": plan.cells[one][1]}
+                  for one in sorted(ids)],
+        "edges": [{"from": edge[0], "to": edge[1], "topics": sorted(topics),
+                   "points": plan.routes.get(edge, [])}
+                  for edge, topics in sorted(edges.items())],
+    }
+
+
+def _flows(state: SystemState) -> list[Flow]:
+    """Every pair of a publisher and a subscriber, and topics with one side only."""
+    found = []
+    for topic in sorted({*state.publishers, *state.subscribers}):
+        for source in state.publishers.get(topic, [""]):
+            for target in state.subscribers.get(topic, [""]):
+                found.append((source, topic, target))
+    return found
+
+
+def _without_quiet(state: SystemState, own: str) -> SystemState:
+    def loud(part: dict[str, list[str]]) -> dict[str, list[str]]:
+        kept = {name: [node for node in nodes if node != own and not node.startswith(QUIET_NODES)]
+                for name, nodes in part.items()
+                if name not in QUIET_TOPICS and not name.endswith(QUIET_ENDINGS)}
+        return {name: nodes for name, nodes in kept.items() if nodes}
+
+    return SystemState(loud(state.publishers), loud(state.subscribers), loud(state.services))
+
+
+def _nodes(state: SystemState) -> list[str]:
+    parts = (state.publishers, state.subscribers, state.services)
+    return sorted({node for part in parts for nodes in part.values() for node in nodes})
+
+
+def _node_edges(flows: list[Flow]) -> dict[tuple[str, str], set[str]]:
+    """From publisher to subscriber; each arrow has its topics."""
+    edges: dict[tuple[str, str], set[str]] = {}
+    for source, topic, target in flows:
+        if source and target:
+            edges.setdefault((_node(source), _node(target)), set()).add(topic)
+    return edges
+
+
+def _topic_edges(flows: list[Flow], all_topics: bool) -> dict[tuple[str, str], set[str]]:
+    """From publisher to topic to subscriber; without `all_topics` only those with both."""
+    edges: dict[tuple[str, str], set[str]] = {}
+    for source, topic, target in flows:
+        if not all_topics and not (source and target):
+            continue
+        if source:
+            edges.setdefault((_node(source), "t" + topic), set()).add(topic)
+        if target:
+            edges.setdefault(("t" + topic, _node(target)), set()).add(topic)
+    return edges
+
+
+def _node(name: str) -> str:
+    """Nodes and topics may have one name: `n/x` is the node, `t/x` the topic."""
+    return "n" + name

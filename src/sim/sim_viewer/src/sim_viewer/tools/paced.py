@@ -1,0 +1,98 @@
+"""The watchable that the tools' own are made of: it looks at intervals and sends what is new."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import Any
+
+import rospy
+
+from sim_viewer.registry import Refused
+from sim_viewer.tools.master import MasterView
+
+
+class Paced:
+    """Subclasses give `open`, `collect` and `close`; all three run in worker threads, may block and
+    may raise Refused. What `collect` cannot do is sent as `{"error": line}`."""
+
+    PERIOD = 0.2  # s between two looks
+    KEEP = False  # whether each event counts, not only the newest
+
+    def __init__(self, context: Any, args: dict[str, Any], send: Any):
+        self.context = context
+        self.args = args
+        self.master: MasterView = context.node.shared(MasterView)
+        self._send = send
+        self._task: asyncio.Task | None = None
+        self._lock = threading.Lock()  # a browser may go while its watch is being opened
+        self._ended = False
+        self._last_error = ""
+
+    def open(self) -> None:
+        """Subscribe to what `collect` needs."""
+
+    def collect(self) -> Any:
+        """What is new, or None."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Unsubscribe; called even where `open` failed half way."""
+
+    async def start(self) -> None:
+        await self.context.run_in_thread(self._open)
+        self._task = self.context.loop.create_task(self._run())
+
+    async def stop(self) -> None:
+        if self._task:
+            self._task.cancel()
+        await self.context.run_in_thread(self._close)
+
+    def _open(self) -> None:
+        with self._lock:
+            if not self._ended:
+                self.open()
+
+    def _close(self) -> None:
+        with self._lock:
+            if not self._ended:
+                self._ended = True
+                self.close()
+
+    async def _run(self) -> None:
+        while True:
+            data = await self.context.run_in_thread(self._look)
+            if data is not None:
+                self._send(data, keep=self.KEEP)
+            await asyncio.sleep(self.PERIOD)
+
+    def _look(self) -> Any:
+        """Its news; an error is told once, until it has passed."""
+        try:
+            data = self.collect()
+            self._last_error = ""
+            return data
+        except Refused as error:
+            line = str(error)
+        except Exception as error:
+            line = f"{type(error).__name__}: {error}"
+            if line != self._last_error:
+                rospy.logwarn("%s: %s", type(self).__name__, line)
+        if line == self._last_error:
+            return None
+        self._last_error = line
+        return {"error": line}
+
+
+class Changes:
+    """Lets through what differs from the last time."""
+
+    def __init__(self) -> None:
+        self._last: Any = None
+
+    def of(self, data: Any) -> Any:
+        """`data`, or None where it is the same as before."""
+        if data == self._last:
+            return None
+        self._last = data
+        return data

@@ -1,0 +1,144 @@
+"""The simulator behind Gazebo's services: its time and speed, pause, step and reset."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import rospy
+from gazebo_msgs.srv import GetPhysicsProperties
+from std_srvs.srv import Empty
+
+from sim_viewer.registry import Refused, operation, watchable
+from sim_viewer.tools import names
+from sim_viewer.tools.clock import FactorMeter, SharedClock
+from sim_viewer.tools.paced import Changes, Paced
+
+PAUSE_ASKED = 1.0  # s between two questions whether it is paused
+MOST_STEPS = 100_000
+STEP_LIMIT = 10.0  # s of wall time for all steps asked for at once
+RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
+
+
+@operation("pause", control=True)
+async def pause(context: Any, paused: bool = True) -> None:
+    """Stop simulated time, or let it go on."""
+    await context.run_in_thread(call_empty, names.PAUSE if paused else names.UNPAUSE)
+    context.node.shared(SharedPause).forget()
+
+
+@operation("reset", control=True)
+async def reset(context: Any, what: str = "world") -> None:
+    """`world`: models back to where they began; `simulation`: time to 0 as well."""
+    if what not in RESETS:
+        raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
+    await context.run_in_thread(call_empty, RESETS[what])
+
+
+@operation("step", control=True)
+async def step(context: Any, steps: int = 1) -> dict[str, float]:
+    """Go on for at least this many physics steps, then pause; answers with `{"from", "to"}` in s.
+
+    Gazebo's ROS interface cannot step, so this lets go and stops at the first /clock that is late
+    enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
+    """
+    if not 0 < steps <= MOST_STEPS:
+        raise Refused(f"steps is {steps}; give 1 to {MOST_STEPS}")
+    try:
+        return await context.run_in_thread(_step, context.node.shared(SharedClock), steps)
+    finally:
+        context.node.shared(SharedPause).forget()
+
+
+def _step(clock: SharedClock, steps: int) -> dict[str, float]:
+    duration = steps * physics().time_step
+    clock.hold()
+    try:
+        call_empty(names.PAUSE)
+        begin = clock.simulated
+        limit = time.monotonic() + STEP_LIMIT
+        call_empty(names.UNPAUSE)
+        while time.monotonic() < limit:
+            now = clock.simulated
+            if begin is None:
+                begin = now
+            elif now is not None and now >= begin + duration and now > begin:
+                break
+            time.sleep(0.001)
+        call_empty(names.PAUSE)
+        time.sleep(0.02)
+        return {"from": begin, "to": clock.simulated}
+    finally:
+        clock.release()
+
+
+def call_empty(name: str) -> None:
+    """Call a service without fields; Refused where there is no simulator."""
+    try:
+        rospy.ServiceProxy(name, Empty)()
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise Refused(f"{name}: {error}; is a simulator running?") from None
+
+
+def physics() -> Any:
+    """The simulator's physics properties; Refused where there is no simulator."""
+    try:
+        return rospy.ServiceProxy(names.PHYSICS, GetPhysicsProperties)()
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise Refused(f"{names.PHYSICS}: {error}; is a simulator running?") from None
+
+
+class SharedPause:
+    """Whether the simulator stands, asked at most once a second however many pages look."""
+
+    def __init__(self, node: Any = None):
+        self._lock = threading.Lock()
+        self._asked = -PAUSE_ASKED
+        self._paused: bool | None = None
+
+    def read(self) -> bool | None:
+        """As it was at most a second ago; None where there was no answer."""
+        with self._lock:
+            if time.monotonic() - self._asked >= PAUSE_ASKED:
+                try:
+                    self._paused = physics().pause
+                except Refused:
+                    self._paused = None
+                self._asked = time.monotonic()
+            return self._paused
+
+    def forget(self) -> None:
+        """Ask anew: it has just been changed."""
+        with self._lock:
+            self._asked = -PAUSE_ASKED
+
+
+@watchable("status")
+class Status(Paced):
+    """Sends `{time: s, factor: real-time factor, paused, simulator}`; null where unknown."""
+
+    def __init__(self, context: Any, args: dict[str, Any], send: Any):
+        super().__init__(context, args, send)
+        self._clock: SharedClock = context.node.shared(SharedClock)
+        self._pause: SharedPause = context.node.shared(SharedPause)
+        self._holds_clock = False
+        self._meter = FactorMeter()
+        self._changes = Changes()
+
+    def open(self) -> None:
+        self._clock.hold()
+        self._holds_clock = True
+
+    def close(self) -> None:
+        if self._holds_clock:
+            self._clock.release()
+
+    def collect(self) -> Any:
+        simulated = self._clock.simulated
+        factor = self._meter.add(time.monotonic(), simulated)
+        simulator = names.PAUSE in self.master.state().services
+        paused = self._pause.read() if simulator else None
+        return self._changes.of({
+            "time": simulated, "factor": None if factor is None else round(factor, 3),
+            "paused": bool(paused), "simulator": paused is not None})

@@ -1,0 +1,105 @@
+"""Who gets in: token, Host and Origin, and what a page without control may do."""
+
+import aiohttp
+import pytest
+from sim_viewer import options as node_options
+from sim_viewer import registry
+from yarl import URL
+
+PATHS = ("/", "/main.js", "/ws")
+
+
+def test_with_a_token_nothing_is_served_to_who_does_not_know_it(visit):
+    async def story(http, port):
+        for path in PATHS:
+            for asked in ("", "?token=", "?token=wrong", "?token=secretx"):
+                async with http.get(path + asked) as answer:
+                    assert answer.status == 403, path + asked
+                    assert "token" in await answer.text()
+        with pytest.raises(aiohttp.WSServerHandshakeError):
+            await http.ws_connect("/ws?token=wrong")
+    visit(story, token="secret")
+
+
+def test_who_showed_the_token_once_gets_all_files_of_the_page(visit):
+    async def story(http, port):
+        async with aiohttp.ClientSession(
+                f"http://127.0.0.1:{port}",
+                cookie_jar=aiohttp.CookieJar(unsafe=True)) as browser:  # numbers have cookies too
+            async with browser.get("/?token=secret") as answer:
+                assert answer.status == 200
+            async with browser.get("/main.js") as answer:
+                assert answer.status == 200
+        async with http.ws_connect("/ws?token=secret") as link:
+            assert await ask(link, "about")
+    visit(story, token="secret")
+
+
+def test_a_token_is_made_where_others_can_reach_the_page(monkeypatch):
+    given = {"~address": "0.0.0.0"}
+    monkeypatch.setattr(node_options.rospy, "get_param", lambda name, *default: (
+        given.get(name, *default)))
+    first, second = node_options.read_options(), node_options.read_options()
+    assert len(first.token) >= 16
+    assert first.token != second.token
+    given["~address"] = "127.0.0.1"
+    assert node_options.read_options().token == ""
+    given.update({"~address": "0.0.0.0", "~token": "ours"})
+    assert node_options.read_options().token == "ours"
+
+
+@pytest.mark.parametrize(("headers", "status"), [
+    ({}, 200),
+    ({"Host": "localhost:{port}"}, 200),
+    ({"Origin": "http://127.0.0.1:{port}"}, 200),
+    ({"Host": "evil.example"}, 403),
+    ({"Host": "evil.example:{port}"}, 403),
+    ({"Host": "127.0.0.1.evil.example:{port}"}, 403),
+    ({"Host": ""}, 403),
+    ({"Host": "[:{port}"}, 403),
+    ({"Origin": "http://evil.example"}, 403),
+    ({"Origin": "http://127.0.0.1:1"}, 403),
+    ({"Origin": "null"}, 403),
+])
+def test_a_foreign_page_gets_nothing(visit, headers, status):
+    async def story(http, port):
+        sent = {name: value.format(port=port) for name, value in headers.items()}
+        for path in PATHS[:2]:
+            async with http.get(path, headers=sent) as answer:
+                assert answer.status == status, path
+        if status == 200:
+            async with http.ws_connect("/ws", headers=sent) as link:
+                assert await ask(link, "about")
+        else:
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                await http.ws_connect("/ws", headers=sent)
+            assert refused.value.status == 403
+    visit(story)
+
+
+@pytest.mark.parametrize("path", ["/../package.xml", "/%2e%2e/package.xml", "/..%2fpackage.xml",
+                                  "/vendor/../../package.xml", "//etc/passwd", "/%00"])
+def test_no_path_leads_out_of_the_page(visit, path):
+    async def story(http, port):
+        async with http.get(URL(f"http://127.0.0.1:{port}{path}", encoded=True)) as answer:
+            assert answer.status in (400, 403, 404)
+    visit(story)
+
+
+def test_without_control_every_operation_that_changes_something_is_refused(visit):
+    async def story(http, port):
+        async with http.ws_connect("/ws") as link:
+            assert (await ask(link, "about"))["data"]["control"] is False
+            for operation in changing:
+                answer = await ask(link, operation.name)
+                assert not answer["ok"]
+                assert "control:=true" in answer["error"], operation.name
+    registry.load_all()
+    changing = [one for one in registry._operations.values() if one.control]
+    assert {"drive", "drive_open", "drive_release"} <= {one.name for one in changing}
+    visit(story, control=False)
+
+
+async def ask(link, op, **args):
+    await link.send_json({"id": 7, "op": op, **args})
+    return await link.receive_json(timeout=10)

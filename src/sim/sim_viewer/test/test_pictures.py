@@ -1,0 +1,84 @@
+"""Image messages as JPEG: every encoding that cameras and windows send, sizes, and bad ones."""
+
+import cv2
+import numpy as np
+import pytest
+from cv_bridge import CvBridge
+from sensor_msgs.msg import CompressedImage, Image
+from sim_viewer.pictures import jpeg_width, to_jpeg
+from sim_viewer.registry import Refused
+
+ORANGE = (0, 128, 255)  # BGR
+bridge = CvBridge()
+
+
+def shown(msg, width=960):
+    """What the browser draws, BGR."""
+    return cv2.imdecode(np.frombuffer(to_jpeg(msg, width), np.uint8), cv2.IMREAD_COLOR)
+
+
+def plain(width=64, height=48, colour=ORANGE):
+    return np.full((height, width, 3), colour, np.uint8)
+
+
+def compressed(picture, ending=".jpg"):
+    return CompressedImage(format=ending[1:], data=cv2.imencode(ending, picture)[1].tobytes())
+
+
+@pytest.mark.parametrize("encoding", ["bgr8", "rgb8", "bgra8", "rgba8"])
+def test_colours_are_the_cameras(encoding):
+    code = {"bgr8": None, "rgb8": cv2.COLOR_BGR2RGB, "bgra8": cv2.COLOR_BGR2BGRA,
+            "rgba8": cv2.COLOR_BGR2RGBA}[encoding]
+    picture = plain() if code is None else cv2.cvtColor(plain(), code)
+    got = shown(bridge.cv2_to_imgmsg(picture, encoding))
+    assert np.abs(got.astype(int) - ORANGE).max() < 8
+
+
+def test_grey_stays_grey():
+    got = shown(bridge.cv2_to_imgmsg(np.full((48, 64), 90, np.uint8), "mono8"))
+    assert np.abs(got.astype(int) - 90).max() < 4
+
+
+@pytest.mark.parametrize(("kind", "encoding"), [(np.float32, "32FC1"), (np.uint16, "16UC1")])
+def test_depths_are_spread_from_black_to_white(kind, encoding):
+    depth = np.repeat(np.array([[1, 2, 3, 5]]), 16, axis=1).repeat(64, axis=0).astype(kind)
+    got = shown(bridge.cv2_to_imgmsg(depth, encoding))[32, 8::16, 0]
+    assert np.abs(got.astype(int) - [0, 63, 127, 255]).max() < 6
+
+
+def test_depths_that_are_no_numbers_are_black():
+    depth = np.full((64, 64), 2.0, np.float32)
+    depth[:32], depth[32:, 32:] = np.nan, 4.0
+    got = shown(bridge.cv2_to_imgmsg(depth, "32FC1"))
+    assert got[8, 8].max() < 6 and got[56, 56].min() > 249
+    assert shown(bridge.cv2_to_imgmsg(np.full((9, 9), np.nan, np.float32), "32FC1")).max() < 6
+
+
+def test_wide_pictures_shrink_and_keep_their_shape():
+    assert shown(bridge.cv2_to_imgmsg(plain(1920, 1080), "bgr8"), 640).shape == (360, 640, 3)
+    assert shown(compressed(plain(1920, 1080)), 640).shape == (360, 640, 3)
+    assert shown(compressed(plain(1000, 500), ".png"), 640).shape == (320, 640, 3)
+    assert shown(bridge.cv2_to_imgmsg(plain(320, 240), "bgr8"), 640).shape == (240, 320, 3)
+
+
+def test_a_jpeg_that_is_small_enough_goes_as_it_is():
+    msg = compressed(plain(640, 480))
+    assert to_jpeg(msg, 640) == msg.data
+    assert to_jpeg(msg, 639) != msg.data
+
+
+def test_the_width_is_read_from_the_header():
+    assert jpeg_width(bytes(compressed(plain(123, 45)).data)) == 123
+    assert jpeg_width(b"\xff\xd8") == 0
+    assert jpeg_width(b"\xff\xd8\xff\xe0\x00\x00" * 3) == 0
+
+
+@pytest.mark.parametrize("msg", [
+    Image(width=9, height=9, encoding="bgr8", step=27, data=b"short"),
+    Image(width=9, height=9, encoding="nonsense", step=27, data=bytes(243)),
+    Image(encoding="bgr8"), CompressedImage(format="jpeg", data=b"no picture"),
+    CompressedImage(format="jpeg", data=b"\xff\xd8\xff"), CompressedImage(),
+], ids=["short", "encoding", "empty", "letters", "head", "nothing"])
+def test_what_cannot_be_shown_is_refused_in_words(msg):
+    with pytest.raises(Refused):
+        to_jpeg(msg, 640)

@@ -1,0 +1,135 @@
+// Driving: keys, a joystick for fingers, and sliders for the speeds, beside a view of the robot.
+
+import { element } from "./dom.js";
+import { Handle } from "./drive/handle.js";
+import { joystick } from "./drive/joystick.js";
+import { listenToKeys } from "./drive/keys.js";
+import { t } from "./language.js";
+
+export const title = t("Drive", "驾驶");
+
+const VIEWS = { "./scene.js": t("3D view", "三维视图"), "./images.js": t("camera", "相机") };
+const CAR = "ackermann_msgs/AckermannDriveStamped";
+const SPEED = { start: 0.2, most: 2 }; // m/s
+const TURN = { start: 1, most: 3 }; // rad/s
+const STEER = { start: 0.3, most: 0.6 }; // rad, of a car's front wheels
+const REASONS = {
+  space: t("Stopped.", "已停止。"),
+  blur: t("Stopped: this window lost the keyboard.", "已停止：窗口失去了键盘焦点。"),
+  hidden: t("Stopped: this tab was hidden.", "已停止：标签页被隐藏。"),
+  closed: t("Stopped.", "已停止。"),
+  slow: t("Stopped: this browser draws too slowly to tell when a finger comes up. Use the keys, " +
+    "or the camera as view.", "已停止：浏览器绘图太慢，无法及时得知手指抬起。请用按键，或把视图换成相机。"),
+  hung: t("Stopped: this page hung for a moment. Press again.", "已停止：页面卡顿了一下，请重新按键。"),
+  connection: t("Stopped: the connection was lost.", "已停止：连接断开。"),
+};
+
+let endings = [];
+
+/** A slider with its name and value; `value()` reads it. */
+function slider(id, name, unit, { start, most }) {
+  const shown = element("output");
+  const input = element("input", {
+    type: "range", id, min: 0.02, max: most, step: 0.02, value: start,
+    oninput: () => (shown.textContent = `${Number(input.value).toFixed(2)} ${unit}`),
+    onchange: () => input.blur(), // or it would eat the arrow keys
+  });
+  input.dispatchEvent(new Event("input"));
+  const label = element("label", {}, element("span", { text: name }), shown, input);
+  return { label, value: () => Number(input.value) };
+}
+
+/** A select that shows one of the other tabs' views in `place`. */
+function viewChoice(place, link) {
+  let shown = null;
+  const show = async (path) => {
+    shown?.unmount?.();
+    shown = null;
+    place.replaceChildren();
+    try {
+      shown = await import(path);
+      shown.mount(place, link);
+    } catch (error) {
+      place.textContent = error.message;
+    }
+  };
+  const select = element("select", { id: "drive-view", onchange: () => show(select.value) },
+    ...Object.entries(VIEWS).map(([value, text]) => element("option", { value, text })));
+  show(select.value);
+  endings.push(() => shown?.unmount?.());
+  return select;
+}
+
+/** A select of the topics that robots listen to; `open(topic)` is called for the one chosen. */
+function topicChoice(link, open) {
+  const select = element("select", { id: "drive-topic", onchange: () => open(select.value) });
+  const fill = async () => {
+    const topics = await link.call("drive_topics");
+    const chosen = select.value || "/cmd_vel";
+    select.replaceChildren(...topics.map(({ topic }) =>
+      element("option", { value: topic, text: topic, selected: topic === chosen })));
+    if (select.value) open(select.value);
+    return topics.length;
+  };
+  const retry = setInterval(async () => { // until there is a robot
+    if (await fill().catch(() => 0)) clearInterval(retry);
+  }, 2000);
+  endings.push(() => clearInterval(retry));
+  fill().then((count) => count && clearInterval(retry), () => {});
+  return select;
+}
+
+export function mount(place, link) {
+  const view = element("div", { class: "drive-view" });
+  const panel = element("div", { class: "drive-panel" });
+  place.append(element("div", { class: "drive" }, view, panel));
+  panel.append(element("label", { text: t("View", "视图") }, viewChoice(view, link)));
+  if (link.control) controls(panel, link);
+  else panel.append(element("p", { id: "drive-state", text: t(
+    "This page may only look. Start it with control:=true to drive.",
+    "本页只能查看。用 control:=true 启动后才能驾驶。") }));
+}
+
+function controls(panel, link) {
+  const state = element("p", { id: "drive-state" });
+  const speed = slider("drive-speed", t("speed", "速度"), "m/s", SPEED);
+  const turn = slider("drive-turn", t("turning", "转向"), "rad/s", TURN);
+  const steer = slider("drive-steer", t("steering angle", "转向角"), "rad", STEER);
+  let topic = null;
+  let car = false;
+
+  const say = (name, reason) => {
+    state.dataset.state = name;
+    state.textContent = name === "driving" ? t("Driving.", "行驶中。")
+      : name === "stopped" ? REASONS[reason] ?? reason
+        : t("Hold W A S D or the arrow keys, or the joystick. Space stops.",
+          "按住 W A S D、方向键或摇杆行驶，空格键停止。");
+  };
+  const open = async (name) => {
+    handle.drop("closed");
+    try {
+      const opened = await link.call("drive_open", { topic: name });
+      topic = opened.topic;
+      car = opened.type === CAR;
+      turn.label.hidden = car;
+      steer.label.hidden = !car;
+    } catch (error) {
+      say("stopped", error.message);
+    }
+  };
+  const handle = new Handle(link, (forward, side) => ({
+    linear: forward * speed.value(), angular: side * (car ? steer : turn).value(),
+    ...(topic && { topic }),
+  }), say);
+  steer.label.hidden = true;
+  endings.push(listenToKeys(handle));
+  endings.push(link.onConnection((there) => there || handle.drop("connection")));
+  panel.append(element("label", { text: t("Topic", "话题") }, topicChoice(link, open)),
+    speed.label, turn.label, steer.label, joystick(handle), state);
+  say("idle");
+}
+
+export function unmount() {
+  endings.forEach((end) => end());
+  endings = [];
+}

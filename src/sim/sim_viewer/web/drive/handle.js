@@ -1,0 +1,84 @@
+// The dead man's handle: while something is held it repeats the command, and when nothing is, it
+// says so once. The server stops the robot too, 0.25 s after the last message.
+
+const PERIOD_MS = 100;
+const HUNG_MS = 400; // between two periods; the server has stopped the robot long since
+const MOST_UNANSWERED = 3; // a connection that hangs must not deliver old commands later
+const LATE_MS = 150; // since the last frame; a browser tells of fingers and mice between frames
+
+const clamp = (value) => Math.max(-1, Math.min(1, value));
+
+/** One for a mounted tab. `command(forward, turn)` makes the message of two numbers from -1 to 1. */
+export class Handle {
+  constructor(link, command, onState) {
+    this.link = link;
+    this.command = command;
+    this.onState = onState; // (state, reason): "idle", "driving" or "stopped"
+    this.held = new Map(); // what is held -> [forward, turn]
+    this.timer = null;
+    this.unanswered = 0;
+    this.lastFrame = 0;
+    this.lastTick = 0;
+  }
+
+  /** Something is held: the keys, or the joystick. */
+  hold(source, forward, turn) {
+    this.held.set(source, [forward, turn]);
+    if (this.timer !== null) return;
+    this.timer = setInterval(() => this.tick(), PERIOD_MS);
+    this.lastTick = performance.now();
+    this.watchFrames(this.lastTick);
+    this.onState("driving");
+    this.send();
+  }
+
+  /** It was let go. */
+  letGo(source) {
+    if (this.held.delete(source) && this.held.size === 0) this.stop("idle");
+  }
+
+  /** Whatever is held does not count any more, until it is let go and held again. */
+  drop(reason) {
+    this.held.clear();
+    if (this.timer !== null) this.stop("stopped", reason);
+  }
+
+  stop(state, reason) {
+    clearInterval(this.timer);
+    this.timer = null;
+    this.link.tell("drive_release");
+    this.onState(state, reason);
+  }
+
+  watchFrames(now) {
+    this.lastFrame = now;
+    if (this.timer !== null) requestAnimationFrame((next) => this.watchFrames(next));
+  }
+
+  tick() {
+    const now = performance.now();
+    const gap = now - this.lastTick;
+    this.lastTick = now;
+    if (gap > HUNG_MS) {
+      this.drop("hung"); // the key may be up since then
+    } else if (this.held.has("joystick") && now - this.lastFrame > LATE_MS) {
+      this.drop("slow"); // the finger may be
+    } else {
+      this.send();
+    }
+  }
+
+  async send() {
+    if (this.unanswered >= MOST_UNANSWERED) return;
+    const [forward, turn] = [...this.held.values()].reduce(
+      ([x, y], [dx, dy]) => [clamp(x + dx), clamp(y + dy)], [0, 0]);
+    this.unanswered += 1;
+    try {
+      await this.link.call("drive", this.command(forward, turn));
+    } catch (error) {
+      this.drop(error.message);
+    } finally {
+      this.unanswered -= 1;
+    }
+  }
+}

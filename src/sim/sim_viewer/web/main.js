@@ -1,0 +1,83 @@
+// The page's frame: tabs, the connection's light, and the simulation's state and buttons.
+
+import { element } from "./dom.js";
+import { language, switchLanguage, t } from "./language.js";
+import { call, connected, onConnection, tell, watch } from "./link.js";
+import { simulationBar } from "./simulation_bar.js";
+
+const TABS = {
+  scene: "./scene.js",
+  cameras: "./images.js",
+  drive: "./drive.js",
+  graph: "./tools/graph.js",
+  plot: "./tools/plot.js",
+  console: "./tools/console.js",
+  topics: "./tools/topics.js",
+  services: "./tools/services.js",
+  parameters: "./tools/parameters.js",
+  bags: "./tools/bags.js",
+  tf: "./tools/tf.js",
+};
+
+const link = { call, tell, watch, onConnection, connected, control: false };
+const content = document.getElementById("content");
+const tabs = {};
+let open = null;
+
+function show(name) {
+  if (!tabs[name] || open === name) return;
+  if (open) {
+    tabs[open].module.unmount?.();
+    tabs[open].button.setAttribute("aria-selected", "false");
+  }
+  open = name;
+  content.replaceChildren();
+  tabs[name].button.setAttribute("aria-selected", "true");
+  history.replaceState(null, "", `#${name}`);
+  tabs[name].module.mount(content, link);
+}
+
+function addTab(name, module) {
+  const button = element("button", {
+    role: "tab", id: `tab-${name}`, text: module.title, "aria-selected": "false",
+    onclick: () => show(name),
+  });
+  tabs[name] = { module, button };
+  document.getElementById("tabs").append(button);
+}
+
+function wireFrame() {
+  document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
+  const button = document.getElementById("language");
+  button.textContent = language === "zh" ? "English" : "中文";
+  button.onclick = switchLanguage;
+  const light = document.getElementById("light");
+  onConnection((there) => {
+    light.className = there ? "on" : "off";
+    light.title = there ? t("connected", "已连接") : t("no connection", "未连接");
+  });
+}
+
+/** Resolves when the server has said whether this page may change anything. */
+function untilConnected() {
+  return new Promise((resolve) => onConnection(async (there) => {
+    if (!there) return;
+    link.control = (await call("about")).control;
+    resolve();
+  }));
+}
+
+async function start() {
+  wireFrame();
+  const loading = Object.entries(TABS).map(async ([name, path]) => [name, await import(path)]);
+  const [loaded] = await Promise.all([Promise.allSettled(loading), untilConnected()]);
+  simulationBar(document.getElementById("simulation"), link);
+  for (const one of loaded) {
+    if (one.status === "fulfilled") addTab(...one.value);
+    else console.error(one.reason);
+  }
+  const wished = location.hash.slice(1);
+  show(tabs[wished] ? wished : Object.keys(tabs)[0]);
+}
+
+start();

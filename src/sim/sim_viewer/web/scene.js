@@ -1,0 +1,135 @@
+// The tab 3D: world and robots as they are now.
+
+import { element } from "./dom.js";
+import { t } from "./language.js";
+import { Links } from "./scene/links.js";
+import { Stage } from "./scene/stage.js";
+
+export const title = "3D";
+
+const LARGEST = 25; // m: larger surfaces are ground, and not what an overview is to show
+const CLOSE = 2.2; // how much larger than the robot the part of the world is that is shown
+
+let open = null;
+
+/** The model that is most likely the robot: of most links. */
+function robotOf(links) {
+  let best = null;
+  for (const [name, groups] of links.models) {
+    if (!best || groups.length > links.models.get(best).length) best = name;
+  }
+  return best;
+}
+
+function roomy(ball, factor) {
+  if (ball) ball.radius *= factor;
+  return ball;
+}
+
+class Tab {
+  constructor(parent, link) {
+    this._box = element("div", { class: "stage" });
+    this._hint = element("p", { class: "hint", text: t(
+      "Nothing to show yet: start a world, such as `roslaunch learning_topic 0course.launch`, " +
+      "or a robot with robot_description and tf.",
+      "还没有可显示的内容：请启动一个世界，例如 `roslaunch learning_topic 0course.launch`，" +
+      "或带有 robot_description 和 tf 的机器人。") });
+    this._follow = element("select", { title: t("follow a model", "跟随模型"),
+      onchange: () => this._startFollowing() });
+    const button = (english, chinese, look) => element("button",
+      { text: t(english, chinese), onclick: look });
+    parent.append(this._box);
+    this._box.append(element("div", { class: "row views" }, this._follow,
+      button("Robot", "机器人", () => this._lookAtRobot()),
+      button("Overview", "全景", () => this._overview(false)),
+      button("From above", "俯视", () => this._overview(true))), this._hint);
+    this._links = new Links(() => this._look());
+    try {
+      this._stage = new Stage(this._box, this._links.root);
+    } catch (error) {
+      this._hint.textContent = t("This browser has no WebGL: ", "此浏览器没有 WebGL：") + error.message;
+      return;
+    }
+    this._stops = [
+      link.watch("scene", {}, (scene) => this._show(scene)),
+      link.watch("poses", {}, (data) => this._move(data)),
+    ];
+  }
+
+  close() {
+    this._stops?.forEach((stop) => stop());
+    this._stage?.close();
+  }
+
+  _show(scene) {
+    this._hint.hidden = scene.links.length > 0;
+    const ground = !scene.links.length || scene.links.some((link) => link.plane !== null);
+    this._stage.setBackground(scene.background, scene.sky, ground);
+    this._links.show(scene);
+    const names = [...this._links.models.keys()];
+    const chosen = this._follow.value;
+    this._follow.replaceChildren(
+      element("option", { value: "", text: t("follow nothing", "不跟随") }),
+      ...names.map((name) => element("option", { value: name, text: name })));
+    const wished = this._chosen ? chosen : robotOf(this._links);
+    this._follow.value = names.includes(wished) ? wished : "";
+    this._followed = null;
+    this._placed = false; // poses may put things elsewhere than the scene did
+  }
+
+  _move(data) {
+    if (!(data instanceof DataView)) {
+      this._links.name(data.names);
+      return;
+    }
+    this._links.move(new Float32Array(data.buffer, data.byteOffset, data.byteLength / 4));
+    this._stage.draw();
+    if (!this._placed && data.byteLength) {
+      this._placed = true;
+      this._look();
+    }
+    const place = this._follow.value && this._place();
+    if (place && this._followed) this._stage.shift(place.clone().sub(this._followed));
+    this._followed = place || null;
+  }
+
+  /** Models or meshes are new; until the person turns the view, it shows the robot. */
+  _look() {
+    if (!this._stage) return;
+    if (!this._stage.touched) this._lookAtRobot();
+    this._stage.draw();
+  }
+
+  _startFollowing() {
+    this._chosen = true;
+    this._followed = this._place();
+    const ball = this._follow.value && roomy(this._links.bounds(this._follow.value), CLOSE);
+    this._stage.touched = true;
+    if (ball) this._stage.lookAt(ball);
+  }
+
+  _place() {
+    return this._links.models.get(this._follow.value)?.[0].position.clone() ?? null;
+  }
+
+  _lookAtRobot() {
+    const ball = roomy(this._links.bounds(robotOf(this._links)), CLOSE);
+    if (ball) this._stage.lookAt(ball);
+  }
+
+  _overview(down) {
+    this._stage.touched = this._chosen = true;
+    this._follow.value = "";
+    const ball = this._links.bounds(null, LARGEST);
+    if (ball) this._stage.lookAt(ball, down);
+  }
+}
+
+export function mount(parent, link) {
+  open = new Tab(parent, link);
+}
+
+export function unmount() {
+  open?.close();
+  open = null;
+}

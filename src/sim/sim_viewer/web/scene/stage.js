@@ -1,0 +1,145 @@
+// The picture: camera, background, and drawing when there is something new.
+
+import { OrbitControls } from "../vendor/OrbitControls.js";
+import * as THREE from "../vendor/three.module.min.js";
+
+const NEAR = 0.02; // m
+const FAR = 400; // m
+const OWN_BACKGROUND = new THREE.Color(0.7, 0.7, 0.7); // Gazebo's
+const SLOW_MS = 100; // between pictures where the processor draws them, at least
+const SLOWEST_MS = 2000;
+const COARSE = 0.5; // pixels of such a picture for one of the page
+const BREATH = 2; // times a picture's own time, left to fingers, mice and other programs
+const HORIZON = [0.8, 0.86, 0.92]; // as the simulator's cameras have them
+const ZENITH = [0.3, 0.5, 0.8];
+const BEHIND = new THREE.Vector3(-1.6, -1.2, 1.1); // from where a model is looked at, in its sizes
+
+THREE.ColorManagement.enabled = false;
+THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
+
+function skyDome() {
+  const material = new THREE.ShaderMaterial({
+    side: THREE.BackSide, depthTest: false, depthWrite: false,
+    vertexShader: `varying vec3 ray;
+      void main() {
+        ray = position;
+        gl_Position = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
+      }`,
+    fragmentShader: `varying vec3 ray;
+      void main() {
+        float height = sqrt(max(normalize(ray).z, 0.0));
+        gl_FragColor = vec4(mix(vec3(${HORIZON}), vec3(${ZENITH}), height), 1.0);
+      }`,
+  });
+  const dome = new THREE.Mesh(new THREE.SphereGeometry(1, 32, 16), material);
+  dome.frustumCulled = false;
+  dome.renderOrder = -1;
+  dome.visible = false;
+  return dome;
+}
+
+function drawnByProcessor() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+export class Stage {
+  constructor(parent, root) {
+    const slow = drawnByProcessor();
+    this._renderer = new THREE.WebGLRenderer({ antialias: !slow });
+    this._renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this._pause = slow ? SLOW_MS : 0;
+    this._renderer.setPixelRatio(slow ? COARSE : Math.min(devicePixelRatio, 2));
+    parent.append(this._renderer.domElement);
+    this._scene = new THREE.Scene();
+    this._scene.background = OWN_BACKGROUND;
+    this._dome = skyDome();
+    this._grid = new THREE.GridHelper(10, 10, 0x777777, 0x999999); // m, cells of 1 m
+    this._grid.rotation.x = Math.PI / 2;
+    this._scene.add(this._dome, this._grid, root);
+    this._camera = new THREE.PerspectiveCamera(50, 1, NEAR, FAR);
+    this._controls = new OrbitControls(this._camera, this._renderer.domElement);
+    this._controls.addEventListener("change", () => this.draw());
+    this._controls.addEventListener("start", () => (this.touched = true));
+    this._controls.maxPolarAngle = Math.PI / 2; // never below the ground
+    this.touched = false; // whether the person has moved the camera
+    this._camera.position.set(-3, -3, 2.5);
+    this._sizes = new ResizeObserver(() => this._fit(parent));
+    this._sizes.observe(parent);
+    this._fit(parent);
+    this._waiting = false;
+    this._last = 0;
+  }
+
+  /** Soon; however often it is called, one picture. */
+  draw() {
+    if (this._waiting || this._closed) return;
+    this._waiting = true;
+    const left = this._pause - (performance.now() - this._last);
+    if (left > 0) setTimeout(() => requestAnimationFrame(() => this._render()), left);
+    else requestAnimationFrame(() => this._render());
+  }
+
+  /** `ground`: whether the scene has one; else a grid stands for it. */
+  setBackground(colour, sky, ground) {
+    this._grid.visible = !ground;
+    this._scene.background = colour ? new THREE.Color(...colour.slice(0, 3)) : OWN_BACKGROUND;
+    this._dome.visible = sky;
+    this.draw();
+  }
+
+  /** Look at a sphere from behind and above, or straight down. */
+  lookAt(ball, down = false) {
+    const upright = (this._camera.fov / 2) * Math.PI / 180;
+    const across = Math.atan(Math.tan(upright) * this._camera.aspect);
+    const reach = Math.max(ball.radius, 0.1) / Math.sin(Math.min(upright, across));
+    const from = down ? new THREE.Vector3(-0.001, 0, 1) : BEHIND.clone().normalize();
+    this._controls.target.copy(ball.center);
+    this._camera.position.copy(ball.center).addScaledVector(from, reach);
+    this._controls.update();
+    this.draw();
+  }
+
+  /** Camera and what it looks at, by a vector in m. */
+  shift(by) {
+    this._camera.position.add(by);
+    this._controls.target.add(by);
+    this._controls.update();
+  }
+
+  close() {
+    this._closed = true;
+    this._sizes.disconnect();
+    this._controls.dispose();
+    this._renderer.dispose();
+    this._renderer.forceContextLoss();
+  }
+
+  _fit(parent) {
+    const { clientWidth, clientHeight } = parent;
+    if (!clientWidth || !clientHeight) return;
+    this._renderer.setSize(clientWidth, clientHeight);
+    this._camera.aspect = clientWidth / clientHeight;
+    this._camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  _render() {
+    this._waiting = false;
+    if (this._closed) return;
+    this._last = performance.now();
+    this._renderer.render(this._scene, this._camera);
+    if (this._pause) this._breathe(this._last);
+  }
+
+  /** The browser asks for the frame after next when this one is drawn. */
+  _breathe(began) {
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+      const took = performance.now() - began;
+      this._pause = Math.min(Math.max(SLOW_MS, (1 + BREATH) * took), SLOWEST_MS);
+    }));
+  }
+}
