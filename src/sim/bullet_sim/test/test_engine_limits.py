@@ -77,7 +77,7 @@ def test_a_static_model_may_have_any_number_of_links(world):
                         Pose((0, 0, 2)))
     assert model.links["l299"].pose.position == pytest.approx((299, 0, 2))
     below = np.array([(n, 0.0, 0.0) for n in range(300)])
-    assert all(world.cast_rays(below + (0, 0, 9), below).fraction < 1.0)
+    assert all(world.cast_rays(below + np.array((0.0, 0.0, 9.0)), below).fraction < 1.0)
     model.links["l299"].move(Pose((299, 5, 2)), model.links["l299"].twist)
     assert model.links["l0"].pose.position == pytest.approx((0, 5, 2))
     world.delete("m")

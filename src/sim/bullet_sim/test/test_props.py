@@ -145,7 +145,7 @@ def saved(scale: str = "1 1 1", folder: str = "model://jersey_barrier") -> str:
 
 
 @pytest.mark.parametrize("folder", [
-    "model://jersey_barrier", "/home/somebody/.gazebo/models/jersey_barrier"])
+    "model://jersey_barrier", "/opt/somewhere/.gazebo/models/jersey_barrier"])
 def test_a_mesh_of_a_prop_that_is_not_here_is_the_props_own_shapes(caplog, folder):
     caplog.set_level("INFO", logger="bullet_sim")
     whole, link = load("jersey_barrier").links[0], load_model(saved(folder=folder),

@@ -1,7 +1,7 @@
 """Lets what was put into something else come out of it slowly, instead of shooting it out.
 
-A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as many
-launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long as
+A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as
+many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long as
 something is so deep, all contacts of the world correct only a small part of their depth in a step.
 """
 

@@ -8,10 +8,10 @@ from bullet_sim.description import Collision, Surface
 from bullet_sim.pose import Pose, conjugate, multiply, rotate
 
 SOFTEST, HARDEST = 1.0, 1e5  # N/m between which kp is taken; harder ones are as below
-# Rigid contacts leave open which of four carries how much: robots on two wheels and two casters stood
-# with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm. Here a body's weight on
-# three of them sinks in by 0.05 mm: deeper, and what the engine still holds of a wheel's contacts
-# behind its lowest point pushes a robot without motors along (measured: 0.3 m in 5 s at 0.5 mm).
+# Rigid contacts leave open which of four carries how much: robots on two wheels and two casters
+# stood with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm. Here a body's
+# weight on three of them sinks in by 0.05 mm: deeper, and what the engine still holds of a wheel's
+# contacts behind its lowest point pushes a robot without motors on (0.3 m in 5 s at 0.5 mm).
 SINK, SHARING = 5e-5, 3  # m, contacts
 LEAST_STIFFNESS = 2e5  # N/m
 DAMPING_RATIO = 2.0  # of critical; at 1 free wheels begin to roll, too
