@@ -27,7 +27,7 @@ LAUNCHES = {  # name: world, x_pos, y_pos
     "turtlebot3_world": ("turtlebot3_world", "-2.0", "-0.5"),
 }
 EMPTY_WORLD = {"paused": "false", "use_sim_time": "true", "gui": "true", "headless": "false",
-               "debug": "false"}
+               "debug": "false", "viewer": "$(arg viewer)"}
 CAMERA_SIZE = {"camera_width": "", "camera_height": ""}  # ours: as the robot's own
 LIMBS = {"head": (3.5, 0.0, 0.8), "left_hand": (1.8, 2.7, 0.55), "right_hand": (1.8, -2.7, 0.55),
          "left_foot": (-1.8, 2.7, 0.55), "right_foot": (-1.8, -2.7, 0.55)}  # x, y, size in m
@@ -66,7 +66,7 @@ def test_world_launch(name):
     world, x, y = LAUNCHES[name]
     launch = parse("launch", f"{name}.launch")
     assert defaults(launch) == {"model": "$(optenv TURTLEBOT3_MODEL waffle)", "x_pos": x,
-                                "y_pos": y, "z_pos": "0.0", **CAMERA_SIZE}
+                                "y_pos": y, "z_pos": "0.0", "viewer": "false", **CAMERA_SIZE}
     for name in CAMERA_SIZE:
         assert f"{name}:=$(arg {name})" in launch.find("param").get("command")
     given = {arg.get("name"): arg.get("value") for arg in launch.findall("include/arg")}

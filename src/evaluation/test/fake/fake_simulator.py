@@ -83,7 +83,7 @@ class FakeSimulator:
         """Advance time and send pictures until shutdown."""
         info = rospy.Publisher("/camera/rgb/camera_info", CameraInfo, queue_size=10)
         images = rospy.Publisher("/camera/rgb/image_raw", Image, queue_size=1)
-        odometry = rospy.Publisher("/odom", Odometry, queue_size=10)
+        odometry = rospy.Publisher("/odom", Odometry, queue_size=1000)  # not one is lost
         image, lockstep = self._picture(), bool(self._asked["lockstep"])
         self._running.wait()
         while not rospy.is_shutdown():
