@@ -84,7 +84,7 @@ def test_a_bomb_of_includes_ends(tmp_path, load, caplog):
                                "GAZEBO_MODEL_PATH and write model://NAME"),
     ("model://" + "x" * 5000, "not found"),
     ("file://~nobody-of-that-name/x", "not found"),
-    ("model://../../../../../../../../../etc/passwd", "is not well-formed XML"),
+    ("model://" + "../" * 30 + "etc/passwd", "is not well-formed XML"),
     ("", "no <uri>; write <uri>model://NAME</uri>"),
 ])
 def test_what_cannot_be_included_is_one_error_line(load, caplog, tmp_path, uri, message):
