@@ -51,26 +51,32 @@ def wait_until(condition, what):
 
 
 class Services(unittest.TestCase):
+    log: list[str] = []
+    clock = 0.0
+
+    @classmethod
+    def setUpClass(cls):
+        # Once for all: rospy, told to leave and join a topic again and again, now and then does
+        # not connect.
+        cls.rosout = rospy.Subscriber("/rosout", Log, lambda msg: cls.log.append(msg.msg))
+        cls.clocks = rospy.Subscriber("/clock", Clock, cls.on_clock)
+        cls.spawn = service("spawn_urdf_model", SpawnModel)
+        cls.delete = service("delete_model", DeleteModel)
+        cls.state = service("get_model_state", GetModelState)
+        wait_until(lambda: cls.rosout.get_num_connections() and cls.clock > 0, "a running clock")
+
     def setUp(self):
-        self.log = []
-        self.rosout = rospy.Subscriber("/rosout", Log, lambda msg: self.log.append(msg.msg))
-        self.clock = 0.0
-        self.clocks = rospy.Subscriber("/clock", Clock, self.on_clock)
-        self.spawn = service("spawn_urdf_model", SpawnModel)
-        self.delete = service("delete_model", DeleteModel)
-        self.state = service("get_model_state", GetModelState)
-        wait_until(lambda: self.rosout.get_num_connections() and self.clock > 0, "a running clock")
+        self.log.clear()
 
     def tearDown(self):
         service("unpause_physics", Empty)()
         for name in service("get_world_properties", GetWorldProperties)().model_names:
             if name != "ground_plane":
                 self.delete(name)
-        self.rosout.unregister()
-        self.clocks.unregister()
 
-    def on_clock(self, msg):
-        self.clock = msg.clock.to_sec()
+    @classmethod
+    def on_clock(cls, msg):
+        cls.clock = msg.clock.to_sec()
 
     def put(self, name="box", xml=PLAIN, z=1.0, frame=""):
         pose = Pose()
