@@ -69,9 +69,9 @@ def main() -> int:
     print(results[0].line(), flush=True)
     slow = files_that_say(PROCESSES, "test_*.py")  # first: the longest of them take minutes
     rostests = files_that_say(re.compile(""), "*.test")
-    alone = [*files_that_say(ALONE, "*.test")]
+    alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
     results += run_pytest(args.pytest_limit, slow)
-    results += run_apart([*slow, *(path for path in rostests if path not in alone)],
+    results += run_apart([path for path in [*slow, *rostests] if path not in alone],
                          args.jobs, args.limit)
     results += run_apart(alone, 1, args.limit)
     if processes.stopping:

@@ -1,4 +1,7 @@
-"""`make viewer`: course and page come up together, and Ctrl-C ends both."""
+"""`make viewer`: course and page come up together, and Ctrl-C ends both.
+
+runs alone: the verbs know only the usual master, which other tests take while it is free.
+"""
 
 import os
 import re
@@ -25,13 +28,11 @@ def free_port() -> int:
 
 @pytest.fixture
 def viewer(tmp_path):
-    """The verb, with a master of its own; and the file with what it prints."""
+    """The verb, and the file with what it prints."""
     log = tmp_path / "output.txt"
-    environment = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{free_port()}",
-                       ROS_HOSTNAME="localhost")
     with log.open("wb") as output:
         process = subprocess.Popen(["make", "viewer", "CONTROL=1", f"PORT={free_port()}"],
-                                   cwd=ROOT, env=environment, stdin=subprocess.DEVNULL,
+                                   cwd=ROOT, stdin=subprocess.DEVNULL,
                                    stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
     yield process, log
     try:
