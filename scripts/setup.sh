@@ -173,6 +173,10 @@ build_workspace() {
   cd "$root"
   logged build catkin_make --no-color -DPYTHON_EXECUTABLE="$venv/bin/python3" ||
     fail_with_log "catkin_make failed" build
+  if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
+    PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
+      fail_with_log "compiling the inner loops of navigation failed" compile
+  fi
   mv "$state/build-inputs.now" "$state/build-inputs"
   rm -f "$state/build-unfinished"
 }

@@ -1,0 +1,5 @@
+"""Costmaps behind upstream's names: layers, sensors, topics and parameters of costmap_2d."""
+
+from costmap_2d.costmap_ros import CostmapROS
+
+__all__ = ["CostmapROS"]

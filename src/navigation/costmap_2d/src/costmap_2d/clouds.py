@@ -1,0 +1,73 @@
+"""From sensor messages to points in the sensor's frame, m."""
+
+from __future__ import annotations
+
+import numpy as np
+from geometry_msgs.msg import Transform
+from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
+
+NEARLY = 1e-4  # m; how much less than range_max an infinite range becomes, as upstream
+
+NUMBERS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
+
+
+def points_of_scan(message: LaserScan, inf_is_valid: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(points (N, 3), when in the sweep (N,), s after the message's stamp).
+
+    Ranges count from range_min to below range_max. With `inf_is_valid` +inf is a ray that ended
+    at range_max; else it is nothing.
+    """
+    ranges = np.asarray(message.ranges, float)
+    beams = np.arange(len(ranges))
+    if inf_is_valid:
+        ranges = np.where(np.isposinf(ranges), message.range_max - NEARLY, ranges)
+    with np.errstate(invalid="ignore"):
+        counts = (ranges >= message.range_min) & (ranges < message.range_max)
+    ranges, beams = ranges[counts], beams[counts]
+    angles = message.angle_min + beams * message.angle_increment
+    points = np.stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))), 1)
+    return points, beams * max(message.time_increment, 0.0)
+
+
+def points_of_cloud(message: PointCloud) -> np.ndarray:
+    """Its finite points, (N, 3)."""
+    points = np.array([(p.x, p.y, p.z) for p in message.points], float).reshape(-1, 3)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def points_of_cloud2(message: PointCloud2) -> np.ndarray:
+    """Its finite points, (N, 3); raises ValueError for a cloud without x, y, z or too few bytes."""
+    fields = {field.name: field for field in message.fields}
+    if not all(name in fields and fields[name].datatype in NUMBERS for name in "xyz"):
+        raise ValueError("a PointCloud2 needs x, y and z as FLOAT32 or FLOAT64")
+    size = (message.height - 1) * message.row_step + message.width * message.point_step
+    if not message.width * message.height:
+        return np.zeros((0, 3))
+    if size > len(message.data):
+        raise ValueError(f"a PointCloud2 of {message.width} x {message.height} points came with "
+                         f"{len(message.data)} bytes, not {size}")
+    order = ">" if message.is_bigendian else "<"
+    try:
+        kind = np.dtype({"names": list("xyz"), "itemsize": message.point_step,
+                         "offsets": [fields[name].offset for name in "xyz"],
+                         "formats": [order + NUMBERS[fields[name].datatype] for name in "xyz"]})
+        cells = np.ndarray((message.height, message.width), kind, bytes(message.data),
+                           strides=(message.row_step, message.point_step)).ravel()
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"a PointCloud2 whose fields do not fit its point_step of "
+                         f"{message.point_step} bytes: {error}") from None
+    points = np.stack([cells[name].astype(float) for name in "xyz"], axis=1)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def rotation_and_translation(transform: Transform) -> tuple[np.ndarray, np.ndarray]:
+    """((3, 3), (3,), m) of a geometry_msgs/Transform: a point p becomes rotation @ p + shift."""
+    q = np.array([transform.rotation.x, transform.rotation.y, transform.rotation.z,
+                  transform.rotation.w])
+    x, y, z, w = q / np.linalg.norm(q)
+    rotation = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+    shift = transform.translation
+    return rotation, np.array([shift.x, shift.y, shift.z])

@@ -1,0 +1,54 @@
+"""All sensors of a costmap, and which layer each of them fills."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import tf2_ros
+
+from costmap_2d.settings import LayerSettings
+from costmap_2d.sources import Source
+from nav_algorithms.costmap.layer import Layer
+from nav_algorithms.costmap.obstacles import ObstacleLayer
+
+
+class Sensors:
+    """The sources of every layer; as for a Source, only the costmap's thread observes."""
+
+    def __init__(self, layers: Sequence[LayerSettings], costmap: str, frame: str,
+                 buffer: tf2_ros.Buffer) -> None:
+        self._of_layers = {each.name: [Source(values, costmap, frame, buffer)
+                                       for values in each.sources.values()] for each in layers}
+        self._all = [source for sources in self._of_layers.values() for source in sources]
+
+    def start(self) -> None:
+        """They listen."""
+        for source in self._all:
+            source.start()
+
+    def stop(self) -> None:
+        """They listen no more."""
+        for source in self._all:
+            source.stop()
+
+    def forget(self) -> None:
+        """Time went backwards."""
+        for source in self._all:
+            source.forget()
+
+    def are_current(self) -> bool:
+        """Whether each was heard from within its `expected_update_rate`."""
+        return all(source.is_current() for source in self._all)
+
+    def silences(self) -> dict[str, float]:
+        """s of ROS time since each was heard from, by names like "LaserScan on /scan"."""
+        return dict(source.silence() for source in self._all)
+
+    def observe(self, layers: Sequence[Layer]) -> None:
+        """Gives each layer what its sources see: for marking, for clearing."""
+        for layer in layers:
+            if isinstance(layer, ObstacleLayer):
+                seen = [(each.settings, each.collect()) for each in self._of_layers[layer.name]]
+                layer.observe(*([observation for settings, observations in seen if settings[use]
+                                 for observation in observations]
+                                for use in ("marking", "clearing")))

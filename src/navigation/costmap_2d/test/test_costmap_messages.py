@@ -1,0 +1,89 @@
+"""Sensor messages in, grids out; no master."""
+
+import struct
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import Point32, Quaternion, Transform, Vector3
+from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
+
+from costmap_2d import clouds
+from costmap_2d.publishing import OCCUPANCIES
+from costmap_2d.sources import _moved
+
+INF, NAN = float("inf"), float("nan")
+
+
+def scan(*ranges, **fields):
+    return LaserScan(ranges=ranges, angle_min=0.0, angle_increment=np.pi / 2, range_min=0.1,
+                     range_max=5.0, **fields)
+
+
+def cloud2(points, code="<f", offset=4, **changes):
+    size = struct.calcsize(code)
+    step = offset + 3 * size
+    data = b"".join(b"\0" * offset + b"".join(struct.pack(code, value) for value in point)
+                    for point in points)
+    kind = {"f": PointField.FLOAT32, "d": PointField.FLOAT64}[code[1]]
+    message = PointCloud2(height=1, width=len(points), point_step=step,
+                          row_step=step * len(points), data=data, is_bigendian=code[0] == ">",
+                          fields=[PointField(name, offset + n * size, kind, 1)
+                                  for n, name in enumerate("xyz")])
+    for name, value in changes.items():
+        setattr(message, name, value)
+    return message
+
+
+def test_a_scan_becomes_points():
+    points, when = clouds.points_of_scan(scan(1.0, 2.0, 3.0, time_increment=0.5), False)
+    assert points == pytest.approx(np.array([[1, 0, 0], [0, 2, 0], [-3, 0, 0]]))
+    assert when.tolist() == [0.0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize("inf_is_valid, expected", [(False, [2.0]), (True, [2.0, 4.9999])])
+def test_ranges_that_count(inf_is_valid, expected):
+    points, _ = clouds.points_of_scan(scan(NAN, 0.05, 2.0, 5.0, INF, -INF, 7.0), inf_is_valid)
+    assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx(expected)
+
+
+def test_clouds_become_points():
+    wanted = [[1.0, 2.0, 3.0], [-4.0, 5.5, 0.25]]
+    message = PointCloud(points=[Point32(*point) for point in [*wanted, (NAN, 0, 0)]])
+    assert clouds.points_of_cloud(message).tolist() == wanted
+    assert clouds.points_of_cloud(PointCloud()).shape == (0, 3)
+    for code in ("<f", ">f", "<d"):
+        assert clouds.points_of_cloud2(cloud2([*wanted, (0, INF, 0)], code)).tolist() == wanted
+    assert clouds.points_of_cloud2(cloud2([])).shape == (0, 3)
+
+
+def test_rows_with_bytes_behind_them():
+    message = cloud2([[1, 2, 3], [4, 5, 6]])
+    half = message.row_step // 2
+    message.data = message.data[:half] + b"--" + message.data[half:] + b"--"
+    message.height, message.width, message.row_step = 2, 1, half + 2
+    assert clouds.points_of_cloud2(message).tolist() == [[1, 2, 3], [4, 5, 6]]
+
+
+@pytest.mark.parametrize("changes", [{"fields": []}, {"width": 9}, {"data": b""},
+                                     {"point_step": 6}])
+def test_a_damaged_cloud_is_named(changes):
+    with pytest.raises(ValueError, match="PointCloud2"):
+        clouds.points_of_cloud2(cloud2([[1, 2, 3]], **changes))
+
+
+def test_a_transform_turns_and_moves():
+    turn = Quaternion(0.0, 0.0, np.sqrt(2), np.sqrt(2))  # 90 degrees about z, twice too long
+    rotation, shift = clouds.rotation_and_translation(Transform(Vector3(1, 2, 3), turn))
+    assert rotation @ [1, 0, 0] + shift == pytest.approx([1, 3, 3])
+
+
+def test_a_moving_sensors_points_are_put_where_it_was():
+    start, end = (np.eye(3), np.zeros(3)), (np.eye(3), np.array([1.0, 0, 0]))
+    points = np.array([[0.0, 1, 0], [0, 1, 0], [0, 1, 0]])
+    moved = _moved(points, start, end, np.array([0.0, 0.1, 0.2]))
+    assert moved[:, 0].tolist() == [0.0, 0.5, 1.0]
+
+
+def test_costs_are_published_as_upstream_does():
+    assert OCCUPANCIES[[0, 1, 2, 128, 252, 253, 254, 255]].tolist() == [
+        0, 1, 1, 50, 98, 99, 100, -1]

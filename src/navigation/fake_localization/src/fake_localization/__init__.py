@@ -1,0 +1,1 @@
+"""The simulator's truth in place of a localisation."""

@@ -1,0 +1,1 @@
+"""Maps from a laser and odometry, under gmapping's names."""

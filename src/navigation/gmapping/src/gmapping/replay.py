@@ -1,0 +1,156 @@
+"""slam_gmapping_replay: a bag in, a map and a trajectory out, as fast as it can. No master."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import deque
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rosbag
+import rospkg
+import rospy
+import tf2_py
+import yaml
+from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
+from sensor_msgs.msg import LaserScan
+
+from gmapping.mapper import TABLE, Mapper
+from map_server.map_files import write_map
+from nav_nodes.messages import yaw_of
+from nav_nodes.mount import Mount
+from nav_nodes.parameters import ParameterError, load_table
+
+WAITING = 50  # scans; one that has waited so long for its odometry is left out
+
+
+class BagScans:
+    """The scans of a bag with odometry and mount, in the bag's order."""
+
+    def __init__(self, path: Path, topic: str, odom_frame: str, base_frame: str) -> None:
+        """Raises OSError or rosbag's errors where there is no readable bag."""
+        self._bag = rosbag.Bag(str(path))
+        self._topics = [topic.lstrip("/"), "/" + topic.lstrip("/")]
+        self._frames = odom_frame.lstrip("/"), base_frame.lstrip("/")
+        self._transforms = tf2_py.BufferCore(rospy.Duration(30.0))
+        self.left_out = 0
+
+    def __iter__(self) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
+        waiting: deque[LaserScan] = deque()
+        for topic, message, _ in self._bag.read_messages(
+                topics=[*self._topics, "tf", "/tf", "tf_static", "/tf_static"]):
+            if topic in self._topics:
+                waiting.append(message)
+                if len(waiting) > WAITING:
+                    waiting.popleft()
+                    self.left_out += 1
+            else:
+                self._keep(message, topic.endswith("static"))
+            yield from self._ready(waiting)
+        self.left_out += len(waiting)
+
+    def _keep(self, message: Any, is_static: bool) -> None:
+        keep = (self._transforms.set_transform_static if is_static
+                else self._transforms.set_transform)
+        for transform in message.transforms:
+            keep(_own(transform), "bag")
+
+    def _ready(self, waiting: deque[LaserScan]) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
+        """Those at the queue's head whose transforms are known."""
+        odom, base = self._frames
+        while waiting:
+            scan = waiting[0]
+            try:
+                pose = self._transforms.lookup_transform_core(odom, base, scan.header.stamp)
+                laser = self._transforms.lookup_transform_core(
+                    base, scan.header.frame_id.lstrip("/"), scan.header.stamp)
+            except tf2_py.TransformException:
+                return
+            waiting.popleft()
+            at = pose.transform
+            yield (scan, np.array([at.translation.x, at.translation.y, yaw_of(at.rotation)]),
+                   Mount.of(laser.transform))
+
+
+def _own(transform: Any) -> TransformStamped:
+    """The same, as a message of ours: a bag makes types of its own, which tf2 dislikes."""
+    at, turned = transform.transform.translation, transform.transform.rotation
+    own = TransformStamped()
+    own.header.stamp = transform.header.stamp
+    own.header.frame_id = transform.header.frame_id.lstrip("/")
+    own.child_frame_id = transform.child_frame_id.lstrip("/")
+    own.transform.translation = Vector3(at.x, at.y, at.z)
+    own.transform.rotation = Quaternion(turned.x, turned.y, turned.z, turned.w)
+    return own
+
+
+def values_from(settings: list[str], seed: int | None, params: Path | None) -> dict[str, Any]:
+    """Every parameter of the table; `settings` are NAME:=VALUE. Raises ParameterError."""
+    table = load_table(Path(rospkg.RosPack().get_path("gmapping")) / TABLE)
+    given = yaml.safe_load(params.read_text(encoding="utf-8")) if params else {}
+    for setting in settings:
+        name, separator, value = setting.partition(":=")
+        if not separator:
+            raise ParameterError(f"{setting} is no NAME:=VALUE")
+        given[name.lstrip("_~")] = yaml.safe_load(value)
+    if seed is not None:
+        given["seed"] = seed
+    strange = given.keys() - {entry.name for entry in table}
+    if strange:
+        raise ParameterError(f"slam_gmapping has no parameter {', '.join(sorted(strange))}")
+    return {entry.name: entry.checked(given.get(entry.name, entry.default), entry.name)
+            for entry in table}
+
+
+def write_trajectory(path: Path, stamps: np.ndarray, poses: np.ndarray) -> None:
+    """One line a pose, "stamp x y z qx qy qz qw", as TUM's tools for trajectories read it."""
+    lines = [f"{stamp:.9f} {x:.6f} {y:.6f} 0 0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
+             for stamp, (x, y, yaw) in zip(stamps, poses, strict=True)]
+    path.write_text("".join(lines), encoding="utf-8")
+
+
+def main(arguments: list[str]) -> int:
+    """The exit status: 0, or 1 with one line that says what is wrong."""
+    options = _parser().parse_intermixed_args(arguments)
+    try:
+        values = values_from(options.settings, options.seed, options.params)
+        scans = BagScans(options.bag, options.scan_topic, values["odom_frame"],
+                         values["base_frame"])
+        return _replay(scans, Mapper(values), options)
+    except (OSError, ValueError, rosbag.ROSBagException) as error:
+        print(f"slam_gmapping_replay: {options.bag}: {error}", file=sys.stderr)
+        return 1
+
+
+def _replay(scans: BagScans, mapper: Mapper, options: argparse.Namespace) -> int:
+    start, stamps = time.monotonic(), []
+    for scan, odometry, mount in scans:
+        if mapper.is_wanted():
+            mapper.take(scan, odometry, mount)
+            stamps.append(scan.header.stamp.to_sec())
+    if mapper.slam is None:
+        raise ValueError(f"no scan on {options.scan_topic} with transforms to it from the "
+                         f"odometry; {scans.left_out} without")
+    write_map(options.map, mapper.slam.grid())
+    write_trajectory(Path(f"{options.map}.tum"), *mapper.slam.trajectory())
+    took, lasted = time.monotonic() - start, stamps[-1] - stamps[0]
+    print(f"{len(stamps)} scans of {lasted:.0f} s in {took:.1f} s, {lasted / took:.1f} times real "
+          f"time; {scans.left_out} without odometry; wrote {options.map}.yaml and .tum")
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="slam_gmapping_replay", description=__doc__)
+    parser.add_argument("bag", type=Path, help="the bag: scans, /tf and /tf_static")
+    parser.add_argument("--scan_topic", default="scan", help="default: scan")
+    parser.add_argument("--map", type=Path, default=Path("map"),
+                        help="writes MAP.pgm, MAP.yaml and MAP.tum, the trajectory; default: map")
+    parser.add_argument("--params", type=Path, help="a YAML file of slam_gmapping's parameters")
+    parser.add_argument("--seed", type=int, help="of the random draws; default: the parameter's")
+    parser.add_argument("settings", nargs="*", metavar="_NAME:=VALUE",
+                        help="a parameter of slam_gmapping")
+    return parser

@@ -1,0 +1,85 @@
+"""A made-up bag in, a map and a trajectory out."""
+
+import numpy as np
+import pytest
+import rosbag
+import rospy
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from gmapping.replay import main
+from map_server.map_files import read_map
+from nav_algorithms.grid import OCCUPIED
+from nav_nodes.messages import transform_message
+
+HALF = 1.52  # m; the robot drives in a square room, from its middle
+SETTINGS = ("_particles:=5", "_xmin:=-3", "_xmax:=3", "_ymin:=-3", "_ymax:=3",
+            "_temporalUpdate:=0.1")
+
+
+def scan_at(x: float, stamp: rospy.Time) -> LaserScan:
+    angles = np.arange(120) * 2 * np.pi / 120
+    with np.errstate(divide="ignore"):
+        along = (np.where(np.cos(angles) > 0, HALF - x, HALF + x)) / abs(np.cos(angles))
+        ranges = np.minimum(along, HALF / abs(np.sin(angles)))
+    scan = LaserScan(angle_increment=angles[1], range_min=0.1, range_max=3.5, ranges=ranges)
+    scan.header.stamp, scan.header.frame_id = stamp, "laser"
+    return scan
+
+
+@pytest.fixture
+def bag(tmp_path):
+    """Scans come before the odometry of their moment, as they do from a simulator."""
+    path = tmp_path / "drive.bag"
+    with rosbag.Bag(str(path), "w") as out:
+        still = transform_message(np.zeros(3), "base_link", "laser", rospy.Time(1))
+        out.write("/tf_static", TFMessage([still]), rospy.Time(1))
+        for i in range(20):
+            stamp = rospy.Time.from_sec(10 + 0.2 * i)
+            out.write("/scan", scan_at(0.02 * i, stamp), stamp)
+            moved = transform_message((0.02 * i, 0.0, 0.0), "odom", "base_link", stamp)
+            later = stamp + rospy.Duration.from_sec(0.05)
+            out.write("/tf", TFMessage([moved]), later)
+    return path
+
+
+def replay(bag, name, *more) -> int:
+    return main([str(bag), "--map", str(bag.parent / name), *SETTINGS, *more])
+
+
+def test_map_and_trajectory(bag, capsys):
+    assert replay(bag, "room") == 0
+    assert "20 scans of 4 s" in capsys.readouterr().out
+    grid, _ = read_map(bag.parent / "room.yaml")
+    assert grid.cells[tuple(grid.cells_of((HALF, 0.3)))] == OCCUPIED
+    path = np.loadtxt(bag.parent / "room.tum")
+    assert path.shape == (20, 8)
+    assert path[-1, 0] == pytest.approx(13.8)
+    assert path[-1, 1:3] == pytest.approx((0.38, 0.0), abs=0.02)
+
+
+def test_the_same_bag_and_seed_give_the_same_bytes(bag):
+    results = []
+    for name, seed in (("a", "4"), ("b", "4"), ("c", "5")):
+        assert replay(bag, name, "--seed", seed) == 0
+        results.append([(bag.parent / f"{name}.{kind}").read_bytes() for kind in ("pgm", "tum")])
+    assert results[0] == results[1]
+    assert results[0][1] != results[2][1]
+
+
+@pytest.mark.parametrize("arguments, text", [
+    (["_particels:=3"], "no parameter particels"), (["_particles:=many"], "type int"),
+    (["--scan_topic", "front"], "no scan on front"), (["particles"], "NAME:=VALUE"),
+    (["_base_frame:=robot"], "20 without")])
+def test_what_is_wrong_is_said_in_one_line(bag, capsys, arguments, text):
+    assert replay(bag, "none", *arguments) == 1
+    said = capsys.readouterr().err
+    assert text in said and said.count("\n") == 1
+    assert not (bag.parent / "none.pgm").exists()
+
+
+def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys):
+    (tmp_path / "text.bag").write_text("no bag")
+    assert main([str(tmp_path / "text.bag")]) == 1
+    assert main([str(tmp_path / "missing.bag")]) == 1
+    assert capsys.readouterr().err.count("\n") == 2

@@ -1,0 +1,17 @@
+"""What can be wrong with a map's files; each text is one line that says what to write instead."""
+
+
+class MapFileError(ValueError):
+    """A map that cannot be read or written."""
+
+
+class MapMissingError(MapFileError):
+    """There is no such file."""
+
+
+class MapMetadataError(MapFileError):
+    """The YAML file is no description of a map."""
+
+
+class MapImageError(MapFileError):
+    """The image is missing, damaged or too large."""

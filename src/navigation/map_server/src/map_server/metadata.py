@@ -1,0 +1,142 @@
+"""The YAML file of a map: what it must hold, checked key by key."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from map_server.errors import MapMetadataError, MapMissingError
+
+MODES = ("trinary", "scale", "raw")
+LARGEST = 1 << 20  # bytes; a description has a few hundred
+EXAMPLES = {
+    "image": "image: map.pgm",
+    "resolution": "resolution: 0.05",
+    "origin": "origin: [-10.0, -10.0, 0.0]",
+    "negate": "negate: 0",
+    "occupied_thresh": "occupied_thresh: 0.65",
+    "free_thresh": "free_thresh: 0.196",
+    "mode": "mode: trinary",
+}
+
+
+@dataclass(frozen=True)
+class MapMetadata:
+    """How the image becomes a map; thresholds are probabilities, 0 to 1."""
+
+    image: Path
+    resolution: float  # m a pixel
+    origin: tuple[float, float] = (0.0, 0.0)  # (x, y), m, of the lower left corner
+    yaw: float = 0.0  # rad
+    negate: bool = False  # true: white is occupied
+    occupied_thresh: float = 0.65
+    free_thresh: float = 0.196
+    mode: str = "trinary"
+
+
+def read_metadata(path: Path) -> MapMetadata:
+    """The description in a YAML file; raises MapMissingError or MapMetadataError.
+
+    Keys that it does not know are passed over, as upstream's reader does.
+    """
+    keys = _Keys(path, _load(path))
+    image = keys.text("image")
+    resolution = keys.number("resolution")
+    if resolution <= 0:
+        raise keys.wrong("resolution", "must be above 0 m a pixel")
+    x, y, yaw = keys.numbers("origin", "[x, y, yaw] in m, m, rad", 3)
+    occupied, free = keys.probability("occupied_thresh"), keys.probability("free_thresh")
+    if free > occupied:
+        raise keys.wrong("free_thresh", f"is above occupied_thresh, {occupied:g}: the two are the "
+                                        f"wrong way round")
+    mode = keys.text("mode") if "mode" in keys.values else "trinary"
+    if mode not in MODES:
+        raise keys.wrong("mode", f"must be {' or '.join(MODES)}")
+    return MapMetadata(path.parent / image, resolution, (x, y), yaw, keys.flag("negate"),
+                       occupied, free, mode)
+
+
+def _load(path: Path) -> dict[str, Any]:
+    try:
+        content = path.read_bytes()
+    except (FileNotFoundError, NotADirectoryError):
+        raise MapMissingError(f"{path}: there is no such file; write the path of a map's "
+                              f"YAML file") from None
+    except OSError as error:
+        raise MapMissingError(f"{path}: cannot be read: {error.strerror}") from None
+    if len(content) > LARGEST:
+        raise MapMetadataError(f"{path}: is no map's YAML file: {len(content)} bytes are too many")
+    try:
+        found = yaml.safe_load(content)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise MapMetadataError(f"{path}: is no YAML: {reason}; write KEY: VALUE lines such as "
+                               f"{EXAMPLES['resolution']}") from None
+    if not isinstance(found, dict):
+        raise MapMetadataError(f"{path}: must hold KEY: VALUE lines such as {EXAMPLES['image']}")
+    return found
+
+
+class _Keys:
+    """The values by key, each checked when it is taken."""
+
+    def __init__(self, path: Path, values: dict[str, Any]) -> None:
+        self.path, self.values = path, values
+
+    def wrong(self, key: str, what: str) -> MapMetadataError:
+        """The error for a key's value."""
+        value = repr(self.values[key])[:80]
+        return MapMetadataError(f"{self.path}: {key} is {value}, but {what}; write for example "
+                                f"{EXAMPLES[key]}")
+
+    def text(self, key: str) -> str:
+        value = self._value(key)
+        if not isinstance(value, str) or not value or "\0" in value:
+            raise self.wrong(key, "must be text")
+        return value
+
+    def number(self, key: str) -> float:
+        found = _finite(self._value(key))
+        if found is None:
+            raise self.wrong(key, "must be a number")
+        return found
+
+    def flag(self, key: str) -> bool:
+        value = self._value(key)
+        if not isinstance(value, bool) and _finite(value) not in (0, 1):
+            raise self.wrong(key, "must be 0 or 1")
+        return bool(float(value))
+
+    def probability(self, key: str) -> float:
+        found = self.number(key)
+        if not 0 <= found <= 1:
+            raise self.wrong(key, "must be between 0 and 1")
+        return found
+
+    def numbers(self, key: str, meaning: str, count: int) -> list[float]:
+        value = self._value(key)
+        found = [_finite(number) for number in value] if isinstance(value, list) else []
+        if len(found) != count or None in found:
+            raise self.wrong(key, f"must be {meaning}")
+        return found
+
+    def _value(self, key: str) -> Any:
+        if key not in self.values:
+            raise MapMetadataError(f"{self.path}: has no {key}; write for example "
+                                   f"{EXAMPLES[key]}")
+        return self.values[key]
+
+
+def _finite(value: Any) -> float | None:
+    """A number, also one that PyYAML takes for text (5e-2); None for everything else."""
+    if isinstance(value, bool):
+        return None
+    try:
+        found = float(value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return found if math.isfinite(found) else None

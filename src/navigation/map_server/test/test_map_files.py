@@ -1,0 +1,222 @@
+"""Map files: what every pixel becomes, what is written, and what is said of each mistake."""
+
+import cv2
+import numpy as np
+import pytest
+
+from map_server import image, map_files
+from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
+from map_server.map_files import read_map, write_map
+from nav_algorithms.grid import OccupancyGrid
+
+GOOD = {"image": "map.pgm", "resolution": "0.05", "origin": "[-1.0, -2.0, 0.0]", "negate": "0",
+        "occupied_thresh": "0.65", "free_thresh": "0.196"}
+GREYS = [0, 89, 90, 205, 206, 254, 255]  # 0.65 lies between 89 and 90, 0.196 between 205 and 206
+
+
+def write(folder, pixels, name="map.pgm", **changes):
+    """A map's two files; a key set to None is left out."""
+    cv2.imwrite(str(folder / name), np.array(pixels))
+    keys = {**GOOD, "image": name, **changes}
+    path = folder / "map.yaml"
+    path.write_text("".join(f"{k}: {v}\n" for k, v in keys.items() if v is not None))
+    return path
+
+
+def row(folder, pixels, **options):
+    """The cells of an image of one row."""
+    return read_map(write(folder, pixels, **options))[0].cells[0].tolist()
+
+
+def greys(values):
+    return np.array([values], np.uint8)
+
+
+@pytest.mark.parametrize("changes, cells", [
+    ({}, [100, 100, -1, -1, 0, 0, 0]),
+    ({"mode": "trinary"}, [100, 100, -1, -1, 0, 0, 0]),
+    ({"negate": 1}, [0, -1, -1, 100, 100, 100, 100]),
+    ({"negate": "true"}, [0, -1, -1, 100, 100, 100, 100]),
+    # 1 + 98 (p - 0.196) / (0.65 - 0.196), whole numbers below
+    ({"mode": "scale"}, [100, 100, 98, 1, 0, 0, 0]),
+    ({"mode": "raw"}, [0, 89, 90, 205 - 256, 206 - 256, -2, -1]),
+    ({"mode": "raw", "negate": 1}, [-1, 166 - 256, 165 - 256, 50, 49, 1, 0]),
+    ({"occupied_thresh": "0.5", "free_thresh": "5e-1"}, [100, 100, 100, 0, 0, 0, 0]),
+])
+def test_what_grey_becomes(tmp_path, changes, cells):
+    assert row(tmp_path, greys(GREYS), **changes) == cells
+
+
+def test_the_image_s_first_row_has_the_highest_y(tmp_path):
+    grid, yaw = read_map(write(tmp_path, np.array([[0, 255, 255], [255, 255, 205]], np.uint8),
+                               origin="[-1, 2e-1, 0.5]"))
+    assert grid.cells.tolist() == [[0, 0, -1], [100, 0, 0]]
+    assert (grid.resolution, grid.origin, yaw) == (0.05, (-1.0, 0.2), 0.5)
+    assert grid.cells.flags.c_contiguous
+
+
+def test_colours_are_averaged(tmp_path):
+    bgr = np.array([[[0, 0, 255], [60, 90, 120], [255, 255, 0]]], np.uint8)
+    # means 85, 90, 170: occupied, unknown, unknown; scaled: 100, 98, int(1 + 98 * 0.3025)
+    assert row(tmp_path, bgr, name="map.png") == [100, -1, -1]
+    assert row(tmp_path, bgr, name="map.png", mode="scale") == [100, 98, 30]
+    assert row(tmp_path, bgr, name="map.png", mode="raw") == [85, 90, 170 - 256]
+
+
+@pytest.mark.parametrize("mode", ["trinary", "scale"])
+def test_alpha_is_no_colour_and_nothing_is_known_where_it_is_0(tmp_path, mode):
+    grey = 205
+    bgra = np.array([[[255] * 3 + [0], [0] * 3 + [0], [grey] * 3 + [0], [255] * 4, [0] * 3 + [255],
+                      [grey] * 3 + [255]]], np.uint8)
+    seen = 1 if mode == "scale" else -1
+    assert row(tmp_path, bgra, name="map.png", mode=mode) == [-1, 100, -1, 0, 100, seen]
+
+
+@pytest.mark.parametrize("content", [
+    b"P5\n# comment\n3 1\n255\n\x00\xcd\xfe", b"P5 3 1 15\n\x00\x0c\x0f",
+    b"P2\n3 1\n255\n0 205 254", b"P2\n3 1\n15\n0 12 15\n",
+    b"P5\n3 1\n65535\n\x00\x00\xcd\xcd\xff\xff"])
+def test_graymaps_of_each_kind(tmp_path, content):
+    path = write(tmp_path, greys([0]))
+    (tmp_path / "map.pgm").write_bytes(content)
+    assert read_map(path)[0].cells.tolist() == [[100, -1, 0]]
+
+
+def test_an_image_of_16_bits_and_one_elsewhere(tmp_path):
+    wide = np.array([[0, 205 * 257, 65535]], np.uint16)
+    (tmp_path / "pictures").mkdir()
+    assert row(tmp_path, wide, name="pictures/map.png") == [100, -1, 0]
+    path = write(tmp_path, wide, name="map.png", image=tmp_path / "pictures" / "map.png")
+    (tmp_path / "map.png").unlink()
+    assert read_map(path)[0].cells.tolist() == [[100, -1, 0]]
+
+
+@pytest.mark.parametrize("key, value, said", [
+    *[(key, None, f"has no {key}; write for example {key}: ") for key in GOOD],
+    ("resolution", "0", "resolution is 0, but must be above 0"),
+    ("resolution", "-0.05", "resolution is -0.05, but must be above 0"),
+    ("resolution", "5 cm", "resolution is '5 cm', but must be a number"),
+    ("resolution", "true", "resolution is True, but must be a number"),
+    ("resolution", ".nan", "resolution is nan, but must be a number"),
+    ("resolution", "[1]", "resolution is [1], but must be a number"),
+    ("origin", "[0, 0]", "origin is [0, 0], but must be [x, y, yaw]"),
+    ("origin", "0", "origin is 0, but must be [x, y, yaw]"),
+    ("origin", "[a, 0, 0]", "origin is ['a', 0, 0], but must be"),
+    ("origin", "[.inf, 0, 0]", "origin is [inf, 0, 0], but must be"),
+    ("negate", "2", "negate is 2, but must be 0 or 1"),
+    ("negate", "maybe", "negate is 'maybe', but must be 0 or 1"),
+    ("occupied_thresh", "65", "occupied_thresh is 65, but must be between 0 and 1"),
+    ("free_thresh", "0.7", "free_thresh is 0.7, but is above occupied_thresh, 0.65"),
+    ("mode", "binary", "mode is 'binary', but must be trinary or scale or raw"),
+    ("image", "7", "image is 7, but must be text"),
+    ("image", "''", "image is '', but must be text"),
+])
+def test_each_key_that_is_wrong_is_named(tmp_path, key, value, said):
+    path = write(tmp_path, greys([0]))
+    keys = {**GOOD, key: value}
+    path.write_text("".join(f"{k}: {v}\n" for k, v in keys.items() if v is not None))
+    with pytest.raises(MapMetadataError) as error:
+        read_map(path)
+    assert said in str(error.value)
+    assert str(path) in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("content", [b"", b"- 1\n", b"a: [\n", b"\t\x00", b"P5\n\xff\xfe",
+                                     b"[" * 5000, b"#" * (1 << 21)])
+def test_what_is_no_yaml(tmp_path, content):
+    path = tmp_path / "map.yaml"
+    path.write_bytes(content)
+    with pytest.raises(MapMetadataError, match=r"map\.yaml: [^\n]+$"):
+        read_map(path)
+
+
+def test_missing_files_are_named(tmp_path):
+    with pytest.raises(MapMissingError, match=r"map\.yaml: there is no such file"):
+        read_map(tmp_path / "map.yaml")
+    with pytest.raises(MapMissingError, match="cannot be read: Is a directory"):
+        read_map(tmp_path)
+    path = write(tmp_path, greys([0]))
+    (tmp_path / "map.pgm").unlink()
+    with pytest.raises(MapImageError, match=r"map\.pgm: there is no such image"):
+        read_map(path)
+
+
+def png_of(width, height):
+    """The beginning of a PNG file that says it is of that size."""
+    header = b"IHDR" + width.to_bytes(4, "big") + height.to_bytes(4, "big")
+    return b"\x89PNG\r\n\x1a\n\0\0\0\r" + header + b"\x08\0\0\0\0" + bytes(100)
+
+
+@pytest.mark.parametrize("content, said", [
+    (b"", "is no image, or a damaged one"), (b"hello", "is no image"),
+    (b"P5" + b" " * 1000 + b"x", "is no image"),
+    (b"P5\n40 30\n255\n" + bytes(1000), "is no image, or a damaged one"),
+    (b"P5\n20000 20000\n255\n" + bytes(1000), "20000 x 20000 pixels are too many"),
+    (b"P4\n20000 20000\n" + bytes(1000), "20000 x 20000 pixels are too many"),
+    (png_of(30000, 30000), "30000 x 30000 pixels are too many"), (png_of(30, 30), "is no image")])
+def test_damaged_and_enormous_images(tmp_path, content, said):
+    path = write(tmp_path, greys([0]))
+    (tmp_path / "map.pgm").write_bytes(content)
+    with pytest.raises(MapImageError) as error:
+        read_map(path)
+    assert said in str(error.value)
+    assert str(tmp_path / "map.pgm") in str(error.value)
+
+
+def test_enormous_is_also_what_only_the_decoded_image_says(tmp_path, monkeypatch):
+    monkeypatch.setattr(image, "LARGEST", 3)
+    with pytest.raises(MapImageError, match="2 x 2 pixels are too many"):
+        read_map(write(tmp_path, np.zeros((2, 2), np.uint8), name="map.bmp"))
+
+
+def grid_of(cells, resolution=0.05, origin=(-1.5, 0.1)):
+    return OccupancyGrid(np.array(cells, np.int8), resolution, origin)
+
+
+def test_the_written_pixels(tmp_path):
+    pgm, _ = write_map(tmp_path / "map", grid_of([[-1, 0, 25, 26], [64, 65, 100, 101]]))
+    assert cv2.imread(str(pgm), cv2.IMREAD_UNCHANGED).tolist() == [[205, 0, 0, 0],
+                                                                  [205, 254, 254, 205]]
+    write_map(tmp_path / "map", grid_of([[-1, 0, 10, 11, 49, 50]]), occupied=50, free=10)
+    assert cv2.imread(str(pgm), cv2.IMREAD_UNCHANGED).tolist() == [[205, 254, 254, 205, 205, 0]]
+
+
+def test_the_written_description(tmp_path):
+    _, description = write_map(tmp_path / "house", grid_of([[0]]))
+    assert description.read_text() == (
+        "image: house.pgm\nresolution: 0.05\norigin: [-1.5, 0.1, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["house.pgm", "house.yaml"]
+
+
+@pytest.mark.parametrize("name", ["map", "map.v2", "a b", "it's: \"1\"", "-f", "地图"])
+def test_round_trip_is_exact(tmp_path, name):
+    cells = np.random.default_rng(1).choice([-1, 0, 100], (31, 17))
+    grid = grid_of(cells, float(np.float32(1 / 30)), (-1 / 3, 1e-7))
+    write_map(tmp_path / name, grid, yaw=-2 / 3)
+    again, yaw = read_map(tmp_path / f"{name}.yaml")
+    assert np.array_equal(again.cells, grid.cells)
+    assert np.float32(again.resolution) == np.float32(grid.resolution)
+    assert (again.origin, yaw) == (grid.origin, -2 / 3)
+
+
+def test_where_nothing_can_be_written(tmp_path):
+    (tmp_path / "taken.pgm").mkdir()
+    for name, said in ((tmp_path / "no" / "map", "there is no such folder; make it first: mkdir"),
+                       (tmp_path / "taken", "is a folder"), (tmp_path / "a\nb", "is no name")):
+        with pytest.raises(MapFileError, match=said):
+            write_map(name, grid_of([[0]]))
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
+    write_map(tmp_path / "map", grid_of([[0]]))
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(_file):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(map_files.os, "fsync", full)
+    with pytest.raises(MapFileError, match=r"map\.pgm: cannot be written: No space left"):
+        write_map(tmp_path / "map", grid_of([[100]]))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before

@@ -1,0 +1,1 @@
+"""Navigation to goals, behind the names of upstream's move_base."""

@@ -1,0 +1,136 @@
+"""The robot's base: what it is told to do, what it says of its velocity, and how it is stopped."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import rospy
+from ackermann_msgs.msg import AckermannDriveStamped
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+from move_base.stop_guard import DRIVEN, STANDING
+
+TOPICS = {"twist": ("cmd_vel", Twist), "ackermann": ("ackermann_cmd", AckermannDriveStamped)}
+
+
+def twist(velocity: np.ndarray) -> Twist:
+    """geometry_msgs/Twist of (vx, vy, omega)."""
+    message = Twist()
+    message.linear.x, message.linear.y, message.angular.z = map(float, velocity)
+    return message
+
+
+def ackermann(velocity: np.ndarray, wheelbase: float, stamp: rospy.Time) -> AckermannDriveStamped:
+    """A car's command of (vx, _, omega), its front wheels turned as `wheelbase`, m, asks for."""
+    message = AckermannDriveStamped()
+    message.header.stamp = stamp
+    message.drive.speed = float(velocity[0])
+    if velocity[0]:
+        message.drive.steering_angle = math.atan(wheelbase * velocity[2] / velocity[0])
+    return message
+
+
+class Base:
+    """Publishes velocities. While it drives, a process beside this one waits to stop the robot."""
+
+    def __init__(self, command_type: str, wheelbase: float, odom_topic: str) -> None:
+        self._kind, self._wheelbase = command_type, wheelbase
+        topic, message = TOPICS[command_type]
+        self._commands = rospy.Publisher(topic, message, queue_size=1)
+        self._lock = threading.Lock()
+        self._driven = self._closed = False
+        self._guard = self._start_guard()
+        self._limits: tuple[float, float] | None = None
+        self._slow_for = 0.0
+        self._velocity = np.zeros(3)
+        self.heard: rospy.Time | None = None
+        self._odometry: rospy.Subscriber | None = None
+        self.listen_to(odom_topic)
+
+    def listen_to(self, odom_topic: str) -> None:
+        """Takes the robot's velocity from this topic."""
+        if self._odometry is not None:
+            self._odometry.unregister()
+        self._odometry = rospy.Subscriber(odom_topic, Odometry, self._take, queue_size=1)
+        self.odom_topic = self._odometry.resolved_name
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """(vx, vy, omega) as odometry has it, m/s and rad/s."""
+        return self._velocity
+
+    def limit(self, speed: float, turn: float, distance: float) -> None:
+        """Slower over the next `distance`, m: no more than `speed`, m/s, and `turn`, rad/s."""
+        self._limits = max(speed, 1e-3), max(turn, 1e-3)
+        self._slow_for = distance
+
+    def drive(self, velocity: np.ndarray) -> None:
+        """(vx, vy, omega), m/s and rad/s; along the same arc, but slower, where it is limited."""
+        velocity = np.zeros(3) if self._closed else np.asarray(velocity, float)
+        if self._limits is not None:
+            share = max(np.hypot(*velocity[:2]) / self._limits[0],
+                        abs(velocity[2]) / self._limits[1], 1.0)
+            velocity = velocity / share
+        driven = bool(velocity.any())
+        if driven:  # the guard knows before the robot moves, and until it was told to stop
+            self._tell_guard(True)
+        self._publish(velocity)
+        if not driven:
+            self._tell_guard(False)
+
+    def stop(self) -> None:
+        """Zero."""
+        self.drive(np.zeros(3))
+
+    def close(self) -> None:
+        """Zero, and the guard goes: if zero came too late to be sent, it sends it."""
+        self._closed = True
+        self._publish(np.zeros(3))
+        with self._lock:
+            self._guard.stdin.close()
+
+    def _publish(self, velocity: np.ndarray) -> None:
+        message = (twist(velocity) if self._kind == "twist"
+                   else ackermann(velocity, self._wheelbase, rospy.Time.now()))
+        try:
+            self._commands.publish(message)
+        except rospy.ROSException:
+            pass  # the node ends; the guard sees to it that the robot stops
+
+    def _take(self, message: Odometry) -> None:
+        moving = message.twist.twist
+        self._velocity = np.array([moving.linear.x, moving.linear.y, moving.angular.z])
+        now = rospy.Time.now()
+        if self._limits is not None and self.heard is not None:
+            self._slow_for -= np.hypot(*self._velocity[:2]) * max((now - self.heard).to_sec(), 0.0)
+            if self._slow_for <= 0.0:
+                self._limits = None
+        self.heard = now
+
+    def _start_guard(self) -> subprocess.Popen:
+        """In a session of its own: Ctrl-C in the terminal must not end it before this node."""
+        name = f"{rospy.get_name().rpartition('/')[2]}_stop_guard"
+        return subprocess.Popen(
+            [sys.executable, "-m", "move_base.stop_guard", self._kind,
+             self._commands.resolved_name, f"__name:={name}", f"__ns:={rospy.get_namespace()}"],
+            stdin=subprocess.PIPE, text=True, bufsize=1, start_new_session=True)
+
+    def _tell_guard(self, driven: bool) -> None:
+        with self._lock:
+            if self._guard.poll() is not None and not self._closed:
+                rospy.logwarn("the process that stops the robot if this one is killed has ended; "
+                              "it begins anew")
+                self._guard, self._driven = self._start_guard(), False
+            if driven == self._driven:
+                return
+            self._driven = driven
+            try:
+                self._guard.stdin.write(DRIVEN if driven else STANDING)
+                self._guard.stdin.flush()
+            except (OSError, ValueError):
+                pass  # seen at the next command

@@ -1,0 +1,37 @@
+"""carrot_planner's plan: straight to the goal, or to the last place before it that is free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import Costmap
+
+
+@dataclass(frozen=True)
+class CarrotSettings:
+    """Names of carrot_planner/CarrotPlanner; m. A step of 0 is a cell."""
+
+    step_size: float = 0.0
+    min_dist_from_robot: float = 0.1
+
+
+def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
+         settings: CarrotSettings = CarrotSettings()) -> np.ndarray | None:
+    """Path (2, 3): `start` and the place nearest to the goal, on the line to it, that is free.
+
+    Its yaw is the start's at the start and the goal's at the goal, and turns evenly between them.
+    None where that is nearer to the robot than `min_dist_from_robot`.
+    """
+    start, goal = np.asarray(start, float), np.asarray(goal, float)
+    distance = float(np.hypot(*(goal[:2] - start[:2])))
+    steps = max(int(np.ceil(distance / (settings.step_size or costmap.resolution))), 1)
+    shares = np.linspace(1.0, 0.0, steps + 1)[:, None]
+    turn = (goal[2] - start[2] + np.pi) % (2 * np.pi) - np.pi
+    poses = start + shares * np.array([*(goal[:2] - start[:2]), turn])
+    free = footprints.costs(costmap, footprint, poses) >= 0
+    if not free.any() or shares[free.argmax(), 0] * distance < settings.min_dist_from_robot:
+        return None
+    return np.stack((start, poses[free.argmax()]))

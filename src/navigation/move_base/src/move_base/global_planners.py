@@ -1,0 +1,105 @@
+"""The global planners that can be chosen, each with upstream's topics and parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Path
+
+from move_base import carrot
+from move_base.plugin import Plugin, settings_from
+from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.global_planning import astar, hybrid_astar, navfn
+from nav_nodes.messages import stamped_pose
+
+
+def path_message(path: np.ndarray, frame: str, stamp: rospy.Time) -> Path:
+    """nav_msgs/Path of poses (N, 3)."""
+    message = Path(poses=[stamped_pose(pose, frame, stamp) for pose in path])
+    message.header.frame_id, message.header.stamp = frame, stamp
+    return message
+
+
+class GlobalPlanner(Plugin):
+    """Subclasses set SETTINGS and plan in `_plan`."""
+
+    SETTINGS: type
+    PUBLISHES = True
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._topic = (rospy.Publisher(f"~{self.NAME}/plan", Path, queue_size=1)
+                       if self.PUBLISHES else None)
+
+    def change(self, values: dict[str, Any]) -> None:
+        super().change(values)
+        self.settings = settings_from(self.SETTINGS, values)
+
+    def close(self) -> None:
+        super().close()
+        if self._topic is not None:
+            self._topic.unregister()
+
+    def plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+             goal: np.ndarray, frame: str) -> np.ndarray | None:
+        """Path (N, 3) in the costmap's `frame`, or None; published, and if None as an empty one."""
+        path = self._plan(costmap, footprint, start, goal)
+        if self._topic is not None and self._topic.get_num_connections():
+            self._topic.publish(path_message(np.zeros((0, 3)) if path is None else path, frame,
+                                             rospy.Time.now()))
+        return path
+
+    def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+              goal: np.ndarray) -> np.ndarray | None:
+        raise NotImplementedError
+
+
+class Navfn(GlobalPlanner):
+    """navfn/NavfnROS."""
+
+    NAME, TABLE, SETTINGS = "NavfnROS", "navfn", navfn.NavfnSettings
+
+    def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+              goal: np.ndarray) -> np.ndarray | None:
+        return navfn.plan(costmap, start, goal, settings=self.settings)
+
+
+class Astar(GlobalPlanner):
+    """global_planner/GlobalPlanner."""
+
+    NAME, TABLE, SETTINGS = "GlobalPlanner", "global_planner", astar.GlobalPlannerSettings
+
+    def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+              goal: np.ndarray) -> np.ndarray | None:
+        return astar.plan(costmap, start, goal, settings=self.settings)
+
+
+class Carrot(GlobalPlanner):
+    """carrot_planner/CarrotPlanner, which publishes nothing."""
+
+    NAME, TABLE, SETTINGS = "CarrotPlanner", "carrot_planner", carrot.CarrotSettings
+    PUBLISHES = False
+
+    def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+              goal: np.ndarray) -> np.ndarray | None:
+        return carrot.plan(costmap, start, goal, footprint, self.settings)
+
+
+class HybridAstar(GlobalPlanner):
+    """car_planner/HybridAStar: paths that a car can drive."""
+
+    NAME, TABLE, SETTINGS = "HybridAStar", "hybrid_astar", hybrid_astar.HybridAstarSettings
+
+    def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
+              goal: np.ndarray) -> np.ndarray | None:
+        return hybrid_astar.plan(costmap, start, goal, footprint, self.settings)
+
+
+GLOBAL_PLANNERS = {
+    "navfn/NavfnROS": Navfn,
+    "global_planner/GlobalPlanner": Astar,
+    "carrot_planner/CarrotPlanner": Carrot,
+    "car_planner/HybridAStar": HybridAstar,
+}

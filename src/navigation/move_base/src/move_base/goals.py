@@ -1,0 +1,41 @@
+"""Goals as they are sent: what is wrong with them, and where they are."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseStamped, Quaternion
+
+from nav_algorithms.poses import compose
+from nav_nodes.messages import pose_of
+from nav_nodes.transforms import Transforms
+
+INVALID = "Aborting on goal because it was sent with an invalid quaternion"
+
+
+def fault_of(q: Quaternion) -> str | None:
+    """What is wrong with a goal's orientation, in upstream's words and by its limits."""
+    square = q.x**2 + q.y**2 + q.z**2 + q.w**2
+    if not math.isfinite(square):
+        return "Quaternion has nans or infs... discarding as a navigation goal"
+    if square < 1e-6:
+        return "Quaternion has length close to zero... discarding as navigation goal"
+    if 2.0 * (q.x**2 + q.y**2) / square > 1e-3:
+        return ("Quaternion is invalid... for navigation the z-axis of the quaternion must be "
+                "close to vertical.")
+    return None
+
+
+def in_frame(goal: PoseStamped, frame: str, transforms: Transforms) -> np.ndarray | None:
+    """(3,) of a pose in `frame`, by the newest transform; None if there is none."""
+    own = goal.header.frame_id.lstrip("/")
+    if own == frame:
+        return pose_of(goal.pose)
+    origin = transforms.pose(frame, own) if own else None
+    if origin is None:
+        rospy.logwarn_throttle(5.0, "Failed to transform the goal pose from %s into the %s frame",
+                               goal.header.frame_id or "'' (its frame_id is empty)", frame)
+        return None
+    return compose(origin, pose_of(goal.pose))

@@ -1,0 +1,139 @@
+"""The local planners that can be chosen, each with upstream's topics and parameters."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Path
+
+from move_base.global_planners import path_message
+from move_base.plugin import Plugin, settings_from, warn_of_older_names
+from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.local_planning import dwa, pure_pursuit, trajectory_rollout
+from nav_algorithms.local_planning.velocities import Command
+from nav_algorithms.poses import compose
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What a local planner decides by: poses (3,) in the costmap's `frame`, velocity in the base's.
+
+    `path_frame` is the pose of the frame in which the path was planned.
+    """
+
+    costmap: Costmap
+    frame: str
+    footprint: np.ndarray
+    pose: np.ndarray
+    velocity: np.ndarray
+    path_frame: np.ndarray
+
+
+class LocalPlanner(Plugin):
+    """Subclasses set SETTINGS and PLANNER. All methods may be called on any thread."""
+
+    SETTINGS: type
+    PLANNER: type
+    OLDER_NAMES: dict[str, str] = {}
+
+    def __init__(self, controller_frequency: float) -> None:
+        """`controller_frequency`: commands, Hz."""
+        self._frequency = controller_frequency
+        self._lock = threading.RLock()
+        self._path: np.ndarray | None = None
+        warn_of_older_names(self.NAME, self.OLDER_NAMES)
+        super().__init__()
+        self._global_plan, self._local_plan = (
+            rospy.Publisher(f"~{self.NAME}/{topic}", Path, queue_size=1)
+            for topic in ("global_plan", "local_plan"))
+
+    def change(self, values: dict[str, Any]) -> None:
+        with self._lock:
+            super().change(values)
+            self._planner = self.PLANNER(settings_from(self.SETTINGS, values,
+                                                       controller_frequency=self._frequency))
+            if self._path is not None:
+                self._planner.set_path(self._path)
+
+    def at_frequency(self, controller_frequency: float) -> None:
+        """Commands will come so often, Hz."""
+        if controller_frequency != self._frequency:
+            self._frequency = controller_frequency
+            self.change(self.values)
+
+    def close(self) -> None:
+        super().close()
+        self._global_plan.unregister()
+        self._local_plan.unregister()
+
+    def set_path(self, path: np.ndarray) -> None:
+        """Path (N, 3) to follow from now on. Raises ValueError for what is no path."""
+        with self._lock:
+            self._planner.set_path(path)
+            self._path = path
+
+    def reached(self, situation: Situation) -> bool:
+        """Whether the robot stands at the end of the path."""
+        with self._lock:
+            return self._planner.reached(situation.pose, situation.velocity, situation.path_frame)
+
+    def command(self, situation: Situation) -> Command | None:
+        """The next velocity; None where there is none."""
+        with self._lock:
+            command = self._planner.command(situation.costmap, situation.footprint, situation.pose,
+                                            situation.velocity, situation.path_frame)
+        self._publish(situation, command)
+        return command
+
+    def _publish(self, situation: Situation, command: Command | None) -> None:
+        now = rospy.Time.now()
+        if self._path is not None and self._global_plan.get_num_connections():
+            ahead = compose(situation.path_frame, self._path)
+            ahead = ahead[np.hypot(*(ahead[:, :2] - situation.pose[:2]).T).argmin():]
+            cells = situation.costmap.cells_of(ahead[:, :2])
+            outside = np.nonzero(~situation.costmap.contains(cells))[0]
+            ahead = ahead[:outside[0]] if len(outside) else ahead
+            self._global_plan.publish(path_message(ahead, situation.frame, now))
+        if self._local_plan.get_num_connections():
+            trajectory = np.zeros((0, 3)) if command is None else command.trajectory
+            self._local_plan.publish(path_message(trajectory, situation.frame, now))
+
+
+class Dwa(LocalPlanner):
+    """dwa_local_planner/DWAPlannerROS."""
+
+    NAME, TABLE = "DWAPlannerROS", "dwa_planner"
+    SETTINGS, PLANNER = dwa.DwaSettings, dwa.DwaPlanner
+    OLDER_NAMES = {"max_trans_vel": "max_vel_trans", "min_trans_vel": "min_vel_trans",
+                   "max_rot_vel": "max_vel_theta", "min_rot_vel": "min_vel_theta",
+                   "acc_limit_trans": "acc_lim_trans", "acc_lim_th": "acc_lim_theta",
+                   "rot_stopped_vel": "theta_stopped_vel"}
+
+
+class TrajectoryRollout(LocalPlanner):
+    """base_local_planner/TrajectoryPlannerROS."""
+
+    NAME, TABLE = "TrajectoryPlannerROS", "trajectory_planner"
+    SETTINGS = trajectory_rollout.TrajectoryRolloutSettings
+    PLANNER = trajectory_rollout.TrajectoryRollout
+    OLDER_NAMES = {"acc_lim_th": "acc_lim_theta", "max_rotational_vel": "max_vel_theta",
+                   "min_in_place_rotational_vel": "min_in_place_vel_theta",
+                   "backup_vel": "escape_vel"}
+
+
+class PurePursuit(LocalPlanner):
+    """car_planner/PurePursuit: follows a path as it was planned, backwards where it is."""
+
+    NAME, TABLE = "PurePursuit", "pure_pursuit"
+    SETTINGS, PLANNER = pure_pursuit.PurePursuitSettings, pure_pursuit.PurePursuit
+
+
+LOCAL_PLANNERS = {
+    "base_local_planner/TrajectoryPlannerROS": TrajectoryRollout,
+    "dwa_local_planner/DWAPlannerROS": Dwa,
+    "car_planner/PurePursuit": PurePursuit,
+}

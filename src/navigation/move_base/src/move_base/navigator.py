@@ -1,0 +1,125 @@
+"""One goal after another: the loop that drives, by the state machine and what is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import RecoveryStatus
+
+from costmap_2d import CostmapROS
+from move_base.base import Base
+from move_base.local_planners import LocalPlanner, Situation
+from move_base.planning import Planning
+from move_base.recoveries import Recovery, Rig
+from move_base.state_machine import GOAL_REACHED, State, StateMachine
+from move_base.watch import Watch
+from nav_nodes.messages import stamped_pose
+from nav_nodes.transforms import Transforms
+
+NOT_PASSED = "Failed to pass global plan to the controller."
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a goal ended, with the action's terminal text."""
+
+    succeeded: bool
+    text: str
+
+
+class Navigator:
+    """All that a cycle needs. The action's thread calls it."""
+
+    def __init__(self, costmaps: tuple[CostmapROS, CostmapROS], transforms: Transforms,
+                 base: Base, watch: Watch, machine: StateMachine, planning: Planning,
+                 local_planner: LocalPlanner, recoveries: list[Recovery]) -> None:
+        """`costmaps`: the global and the local one. The local planner may be replaced later."""
+        self._costmaps, self._transforms, self._base = costmaps, transforms, base
+        self._watch, self._machine, self._planning = watch, machine, planning
+        self.local_planner, self._recoveries = local_planner, recoveries
+        self._recovering: Recovery | None = None
+        self._status = rospy.Publisher("~recovery_status", RecoveryStatus, queue_size=1)
+
+    def begin(self, goal: PoseStamped) -> None:
+        """A goal, maybe in place of another."""
+        self._base.stop()
+        self._recovering = None
+        self._planning.begin(self._machine.begin(rospy.get_time()), goal)
+
+    def end(self) -> None:
+        """The robot stands, nothing is planned."""
+        self._machine.end()
+        self._recovering = None
+        self._base.stop()
+
+    def cycle(self, now: float, frequency: float, timeout: float
+              ) -> tuple[PoseStamped | None, Outcome | None]:
+        """One step at `now`, s: where the robot is, if known, and how the goal ended, if it has.
+
+        While something is missing the robot stands, and patience does not run out.
+        """
+        pose = self._costmaps[0].robot_pose()
+        if not self._watch.can_drive(now, timeout) or pose is None:
+            self._base.stop()
+            self._machine.hold(now)
+            return None, None
+        where = stamped_pose(pose, self._costmaps[0].global_frame, rospy.Time.now())
+        self._machine.at(pose[0], pose[1], now)
+        state = self._machine.state
+        if state is State.CLEARING:
+            return where, self._recover(where, frequency)
+        return where, self._control(now) if state is State.CONTROLLING else None
+
+    def _control(self, now: float) -> Outcome | None:
+        path = self._planning.take_path()
+        if path is not None:
+            try:
+                self.local_planner.set_path(path)
+            except ValueError as error:
+                rospy.logerr("Failed to pass global plan to the controller, aborting: %s", error)
+                return Outcome(False, NOT_PASSED)
+            self._machine.took_path()
+        situation = self._situation()
+        if situation is None:
+            self._base.stop()
+            return None
+        if self.local_planner.reached(situation):
+            return Outcome(True, GOAL_REACHED)
+        if self._machine.oscillates(now):
+            self._base.stop()
+            return None
+        command = self.local_planner.command(situation)
+        self._base.drive(np.zeros(3) if command is None else command.velocity)
+        self._machine.controlled(command is not None, rospy.get_time())
+        return None
+
+    def _situation(self) -> Situation | None:
+        """What is known in the local costmap's frame; None where the path's is not."""
+        fixed, local = self._costmaps
+        pose = local.robot_pose()
+        path_frame = (np.zeros(3) if fixed.global_frame == local.global_frame
+                      else self._transforms.pose(local.global_frame, fixed.global_frame))
+        if pose is None or path_frame is None:
+            return None
+        return Situation(local.snapshot(), local.global_frame, local.footprint, pose,
+                         self._base.velocity, path_frame)
+
+    def _recover(self, where: PoseStamped, frequency: float) -> Outcome | None:
+        failure = self._machine.failure()
+        if failure is not None:
+            rospy.logerr("Aborting: %s", failure)
+            return Outcome(False, failure)
+        if self._recovering is None:
+            number = self._machine.recovery
+            self._recovering = self._recoveries[number]
+            self._base.stop()
+            self._status.publish(RecoveryStatus(where, number, len(self._recoveries),
+                                                self._recovering.name))
+            self._recovering.start(Rig(*self._costmaps, self._base, frequency))
+        if self._recovering.step():
+            self._recovering = None
+            self._machine.recovered(rospy.get_time())
+        return None

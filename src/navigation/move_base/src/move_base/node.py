@@ -1,0 +1,211 @@
+"""The node move_base: its action, and all that it is made of."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import time
+
+import actionlib
+import numpy as np
+import rospy
+from actionlib.server_goal_handle import ServerGoalHandle
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import (
+    MoveBaseAction,
+    MoveBaseActionGoal,
+    MoveBaseFeedback,
+    MoveBaseGoal,
+)
+
+from costmap_2d import CostmapROS
+from move_base.base import Base
+from move_base.global_planners import GLOBAL_PLANNERS
+from move_base.goals import INVALID, fault_of, in_frame
+from move_base.local_planners import LOCAL_PLANNERS
+from move_base.navigator import Navigator, Outcome
+from move_base.planning import CannotPlanYet, Planning
+from move_base.plugin import chosen, settings_from, table
+from move_base.recoveries import load
+from move_base.services import Services
+from move_base.state_machine import Patience, State, StateMachine
+from move_base.watch import Watch
+from nav_algorithms.costmap.footprint import reach
+from nav_nodes.complaints import Complaints
+from nav_nodes.messages import stamped_pose
+from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
+from nav_nodes.transforms import Transforms
+
+KILLED = "Aborting on the goal because the node has been killed"
+SLICE = 0.005  # s of wall time between two looks at the clock
+
+
+class MoveBase:
+    """Upstream's node. Made once; rospy is initialised."""
+
+    def __init__(self) -> None:
+        """Raises ParameterError for parameters that make no sense, unknown planners among them."""
+        values = self._values = read_parameters(table("move_base"))
+        kinds = self._planner_kinds(values)
+        self._global_planner = kinds[0]()
+        local_planner = kinds[1](values["controller_frequency"])
+        complaints = Complaints()
+        self._transforms = Transforms(complaints)
+        self._base = Base(values["command_type"], values["wheelbase"],
+                          local_planner.values["odom_topic"])
+        self._costmaps = (CostmapROS("global_costmap", self._transforms, complaints),
+                          CostmapROS("local_costmap", self._transforms, complaints))
+        self._machine = StateMachine(settings_from(Patience, values))
+        radius = reach(self._costmaps[0].bare_footprint)
+        recoveries = load(values, radius)
+        self._machine.recoveries = len(recoveries)
+        planning = Planning(self._machine, self._plan, self._period)
+        self._navigator = Navigator(
+            self._costmaps, self._transforms, self._base,
+            Watch(self._costmaps, self._base, self._transforms.buffer, complaints),
+            self._machine, planning, local_planner, recoveries)
+        self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
+        self._server = actionlib.SimpleActionServer("move_base", MoveBaseAction, self._execute,
+                                                    auto_start=False)
+        clearing = values["clearing_radius"] if values["clearing_radius"] >= 0.0 else radius
+        self._services = Services(self._costmaps, self._transforms, lambda: self._global_planner,
+                                  lambda: self._values, self._server.is_active, clearing)
+        self._rest_costmaps()
+        self._reconfigure = serve_changes(table("move_base"), values, self._change)
+        rospy.on_shutdown(self._close)
+        self._goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._take_simple_goal,
+                         queue_size=1)
+        self._server.start()
+
+    def _planner_kinds(self, values: dict) -> tuple[type, type]:
+        return tuple(chosen(values[name], known, rospy.resolve_name(f"~{name}"))
+                     for name, known in (("base_global_planner", GLOBAL_PLANNERS),
+                                         ("base_local_planner", LOCAL_PLANNERS)))
+
+    def _period(self) -> float:
+        return 1.0 / self._values["controller_frequency"]
+
+    def _change(self, values: dict) -> None:
+        """dynamic_reconfigure."""
+        kinds = self._planner_kinds(values)
+        if not isinstance(self._global_planner, kinds[0]):
+            before, self._global_planner = self._global_planner, kinds[0]()
+            before.close()
+        if not isinstance(self._navigator.local_planner, kinds[1]):
+            before = self._navigator.local_planner
+            self._navigator.local_planner = kinds[1](values["controller_frequency"])
+            before.close()
+            self._base.listen_to(self._navigator.local_planner.values["odom_topic"])
+        self._navigator.local_planner.at_frequency(values["controller_frequency"])
+        self._machine.patience = settings_from(Patience, values)
+        self._values = values
+
+    def _take_simple_goal(self, pose: PoseStamped) -> None:
+        goal = MoveBaseActionGoal()
+        goal.header.stamp = rospy.Time.now()
+        goal.goal.target_pose = pose
+        self._goals.publish(goal)
+
+    def _plan(self, goal: PoseStamped) -> np.ndarray | None:
+        """On the planner's thread."""
+        costmap = self._costmaps[0]
+        start = costmap.robot_pose() if costmap.is_ready() else None
+        if start is None:
+            raise CannotPlanYet
+        place = in_frame(goal, costmap.global_frame, self._transforms)
+        if place is None:
+            return None
+        return self._global_planner.plan(self._services.costmap_to_plan_on(), costmap.footprint,
+                                         start, place, costmap.global_frame)
+
+    def _execute(self, goal: MoveBaseGoal) -> None:
+        """On the action's thread, until the goal, or what came in its place, has ended."""
+        for costmap in self._costmaps if self._values["shutdown_costmaps"] else ():
+            costmap.start()
+        outcome = None
+        while outcome is None:
+            fault = fault_of(goal.target_pose.pose.orientation)
+            if fault is not None:
+                rospy.logerr("%s", fault)
+                outcome = Outcome(False, INVALID)
+                break
+            outcome = self._pursue(goal.target_pose)
+            if outcome is None:
+                if not self._server.is_new_goal_available():
+                    break
+                goal = self._server.accept_new_goal()
+        self._navigator.end()
+        self._rest_costmaps()
+        if rospy.is_shutdown():
+            return  # _close has told the client
+        if outcome is None:
+            self._server.set_preempted()
+        elif outcome.succeeded:
+            self._server.set_succeeded(text=outcome.text)
+        else:
+            self._server.set_aborted(text=outcome.text)
+
+    def _pursue(self, goal: PoseStamped) -> Outcome | None:
+        """Until the goal has ended; None if it was cancelled or another has come."""
+        place = in_frame(goal, self._costmaps[0].global_frame, self._transforms)
+        if place is not None:  # so that a goal seen from the robot stays where it was
+            goal = stamped_pose(place, self._costmaps[0].global_frame, rospy.Time.now())
+        self._navigator.begin(goal)
+        self._current_goal.publish(goal)
+        while not rospy.is_shutdown() and not self._server.is_preempt_requested():
+            began, frequency = rospy.get_time(), self._values["controller_frequency"]
+            where, outcome = self._navigator.cycle(began, frequency, self._values["data_timeout"])
+            if where is not None:
+                self._server.publish_feedback(MoveBaseFeedback(where))
+            if outcome is not None:
+                return outcome
+            took = rospy.get_time() - began
+            if took > 1.0 / frequency and self._machine.state is State.CONTROLLING:
+                rospy.logwarn_throttle(5.0, "Control loop missed its desired rate of %.4fHz... "
+                                       "the loop actually took %.4f seconds", frequency, took)
+            self._wait_until(began, 1.0 / frequency)
+        return None
+
+    def _wait_until(self, began: float, period: float) -> None:
+        """The cycle's end; a cancelled goal does not wait for a clock that stands still."""
+        now = rospy.get_time()
+        while (began <= now < began + period and not rospy.is_shutdown()
+               and not self._server.is_preempt_requested()):
+            time.sleep(max(min(began + period - now, 4 * SLICE), SLICE / 5))
+            now = rospy.get_time()
+        if now < began:
+            self._begin_time_anew(now)
+
+    def _begin_time_anew(self, now: float) -> None:
+        """The clock was set back. Upstream then refuses every goal until it is where it was."""
+        rospy.logwarn("the clock was set back to %.2f s: patience begins anew", now)
+        self._machine.hold(now)
+        for handle in (self._server.current_goal, self._server.next_goal):
+            if isinstance(handle, ServerGoalHandle) and handle.status_tracker is not None:
+                handle.status_tracker.status.goal_id.stamp = rospy.Time(0)
+
+    def _rest_costmaps(self) -> None:
+        for costmap in self._costmaps if self._values["shutdown_costmaps"] else ():
+            costmap.stop()
+
+    def _close(self) -> None:
+        """The node ends: the robot stands, and the client knows."""
+        self._base.close()
+        try:
+            if self._server.is_active():
+                self._server.set_aborted(text=KILLED)
+        except rospy.ROSException:
+            pass  # its topics have gone already
+
+
+def main() -> None:
+    """Runs the node until it is told to end."""
+    rospy.init_node("move_base")
+    try:
+        MoveBase()
+    except ParameterError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(1)
+    rospy.spin()
+    gc.freeze()  # else Python looks through all of numba's objects at its end, for a second

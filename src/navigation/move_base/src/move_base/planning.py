@@ -1,0 +1,75 @@
+"""The thread that plans, beside the one that drives."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseStamped
+
+from move_base.state_machine import State, StateMachine
+
+SLICE = 0.02  # s of wall time between two looks at the clock
+
+
+class CannotPlanYet(Exception):
+    """It is not known where the robot is; that is no failure of the planner."""
+
+
+class Planning:
+    """Plans for one goal, while the state machine wants it, and keeps the newest path."""
+
+    def __init__(self, machine: StateMachine, plan: Callable[[PoseStamped], np.ndarray | None],
+                 pause_after_failure: Callable[[], float]) -> None:
+        """`plan` may raise CannotPlanYet; upstream's planner does not pause, and uses a core."""
+        self._machine, self._plan, self._pause = machine, plan, pause_after_failure
+        self._condition = threading.Condition()
+        self._number, self._goal = 0, None
+        self._path: np.ndarray | None = None
+        threading.Thread(target=self._run, name="planner", daemon=True).start()
+
+    def begin(self, number: int, goal: PoseStamped) -> None:
+        """A goal, with the number that the state machine gave it."""
+        with self._condition:
+            self._number, self._goal, self._path = number, goal, None
+            self._condition.notify_all()
+
+    def take_path(self) -> np.ndarray | None:
+        """The path (N, 3) that has come since the last call, if any."""
+        with self._condition:
+            path, self._path = self._path, None
+            return path
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            with self._condition:
+                if self._goal is None or not self._machine.wants_plan:
+                    self._condition.wait(SLICE)
+                    continue
+                number, goal = self._number, self._goal
+            began = rospy.get_time()
+            try:
+                path = self._plan(goal)
+            except CannotPlanYet:
+                self._rest(number, began, self._pause())
+                continue
+            with self._condition:
+                if number == self._number and path is not None:
+                    self._path = path
+            self._machine.planned(number, path is not None, rospy.get_time())
+            self._rest(number, began, self._period(path is not None))
+
+    def _period(self, found: bool) -> float:
+        frequency = self._machine.patience.planner_frequency
+        return 1.0 / frequency if found and frequency > 0.0 else self._pause()
+
+    def _rest(self, number: int, began: float, period: float) -> None:
+        """Until `period`, s, after `began`; not where there is a new goal or no path any more."""
+        first = self._machine.state
+        with self._condition:
+            while (began <= rospy.get_time() < began + period and number == self._number
+                   and not (self._machine.state is State.PLANNING is not first)
+                   and not rospy.is_shutdown()):
+                self._condition.wait(SLICE)

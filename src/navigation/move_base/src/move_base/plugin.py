@@ -1,0 +1,81 @@
+"""What all that can be chosen by name has in common: a parameter table and its changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import rospy
+
+from nav_nodes.parameters import (
+    Parameter,
+    ParameterError,
+    load_table,
+    read_parameters,
+    serve_changes,
+)
+
+PARAMS = Path(__file__).resolve().parents[2] / "params"
+
+
+@cache
+def table(name: str) -> list[Parameter]:
+    """The table in params/NAME.yaml."""
+    return load_table(PARAMS / f"{name}.yaml")
+
+
+def settings_from(kind: type, values: Mapping[str, Any], **others: Any) -> Any:
+    """A settings dataclass from those values that are its fields; `others` come on top."""
+    names = {field.name for field in fields(kind)}
+    return kind(**{**{name: values[name] for name in names & values.keys()}, **others})
+
+
+def chosen(name: str, known: Mapping[str, type], where: str) -> type:
+    """The class of that name; upstream's older names without the package are taken, too.
+
+    Raises ParameterError that says what there is.
+    """
+    found = {**{full.rpartition("/")[2]: kind for full, kind in known.items()}, **known}.get(name)
+    if found is None:
+        raise ParameterError(f"{where} is {name!r}, but there are only {', '.join(sorted(known))}")
+    return found
+
+
+class Plugin:
+    """Parameters from `~NAME/`, offered there by dynamic_reconfigure where they may change.
+
+    Subclasses set NAME and TABLE, and take new values in `change`.
+    """
+
+    NAME = ""
+    TABLE = ""
+
+    def __init__(self) -> None:
+        """Raises ParameterError for a value that makes no sense."""
+        entries = table(self.TABLE)
+        self.values = read_parameters(entries, f"~{self.NAME}/")
+        self.change(self.values)
+        self._server = (serve_changes(entries, self.values, self.change, self.NAME)
+                        if any(entry.change for entry in entries) else None)
+
+    def change(self, values: dict[str, Any]) -> None:
+        """Takes all values, at the beginning and after each change; may raise ParameterError."""
+        self.values = values
+
+    def close(self) -> None:
+        """Another takes its place."""
+        if self._server is not None:
+            self._server.set_service.shutdown()
+            self._server.descr_topic.unregister()
+            self._server.update_topic.unregister()
+
+
+def warn_of_older_names(namespace: str, names: Mapping[str, str]) -> None:
+    """Says which parameters have other names today and are not read, in upstream's words."""
+    for old, new in names.items():
+        if rospy.has_param(f"~{namespace}/{old}"):
+            rospy.logwarn("Parameter %s is deprecated (and will not load properly). "
+                          "Use %s instead.", old, new)

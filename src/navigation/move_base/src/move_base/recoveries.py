@@ -1,0 +1,210 @@
+"""What can be tried where no plan or no velocity is found: upstream's behaviours, and one of ours.
+
+Each is done in steps, one a period of the control loop, so that goals can be cancelled meanwhile.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import rospy
+
+from costmap_2d import CostmapROS
+from move_base.base import Base
+from move_base.plugin import chosen, settings_from, table
+from nav_algorithms import recovery
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.poses import wrap_angle
+from nav_nodes.parameters import read_parameters
+
+TOO_LONG = 2.0  # times what a drive should take, until it is given up
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What behaviours work with. `frequency`: of their steps, Hz."""
+
+    global_costmap: CostmapROS
+    local_costmap: CostmapROS
+    base: Base
+    frequency: float
+
+
+class Recovery:
+    """One behaviour with its parameters from `~NAME/`."""
+
+    TABLE = ""
+
+    def __init__(self, name: str) -> None:
+        """Raises ParameterError for a value that makes no sense."""
+        self.name = name
+        self.values: dict[str, Any] = read_parameters(table(self.TABLE), f"~{name}/")
+
+    def start(self, rig: Rig) -> None:
+        """Begins; the robot stands."""
+        self.rig = rig
+
+    def step(self) -> bool:
+        """Does a little; whether it is done. Called only while the robot can see."""
+        raise NotImplementedError
+
+
+class ClearCostmap(Recovery):
+    """clear_costmap_recovery/ClearCostmapRecovery: obstacles far from the robot are forgotten."""
+
+    TABLE = "clear_costmap_recovery"
+
+    def step(self) -> bool:
+        values = self.values
+        maps = {"local": [self.rig.local_costmap], "global": [self.rig.global_costmap]}.get(
+            values["affected_maps"], [self.rig.global_costmap, self.rig.local_costmap])
+        rospy.logwarn("Clearing %s costmap%s %sside a square (%.2fm) large centered on the robot.",
+                      values["affected_maps"], "s" if len(maps) > 1 else "",
+                      "in" if values["invert_area_to_clear"] else "out", values["reset_distance"])
+        for costmap in maps:
+            costmap.clear_area(values["reset_distance"], values["layer_names"],
+                               values["invert_area_to_clear"])
+            if values["force_updating"]:
+                costmap.update()
+        return True
+
+
+class Rotate(Recovery):
+    """rotate_recovery/RotateRecovery: one turn on the spot, to see all round."""
+
+    TABLE = "rotate_recovery"
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        of_local_planner = [entry for entry in table(self.TABLE)
+                            if entry.name not in ("sim_granularity", "frequency")]
+        self.values.update(read_parameters(of_local_planner, "~TrajectoryPlannerROS/"))
+        self._settings = settings_from(
+            recovery.RotateSettings, self.values, acc_lim_th=self.values["acc_lim_theta"],
+            max_rotational_vel=self.values["max_vel_theta"],
+            min_in_place_rotational_vel=self.values["min_in_place_vel_theta"])
+
+    def start(self, rig: Rig) -> None:
+        super().start(rig)
+        rospy.logwarn("Rotate recovery behavior started.")
+        self._turned, self._yaw = 0.0, None
+        slowest = max(self._settings.min_in_place_rotational_vel, 0.05)
+        self._steps_left = int(TOO_LONG * 2 * np.pi / slowest * rig.frequency)
+
+    def step(self) -> bool:
+        pose = self.rig.local_costmap.robot_pose()
+        if pose is None:
+            return False
+        if self._yaw is not None:
+            self._turned += wrap_angle(pose[2] - self._yaw)
+        self._yaw = pose[2]
+        command = recovery.rotation(self.rig.local_costmap.snapshot(),
+                                    self.rig.local_costmap.footprint, pose, self._turned,
+                                    self._settings)
+        self._steps_left -= 1
+        if command is None:
+            rospy.logerr("Rotate recovery can't rotate in place because there is a potential "
+                         "collision.")
+        if command is None or not command.omega or not self._steps_left:
+            self.rig.base.stop()
+            return True
+        self.rig.base.drive(command.velocity)
+        return False
+
+
+class MoveSlowAndClear(Recovery):
+    """move_slow_and_clear/MoveSlowAndClear: forgets what is near, and drives slowly for a while."""
+
+    TABLE = "move_slow_and_clear"
+
+    def step(self) -> bool:
+        values, rig = self.values, self.rig
+        rospy.logwarn("Move slow and clear recovery behavior started.")
+        for costmap in (rig.global_costmap, rig.local_costmap):
+            costmap.clear_area(2 * values["clearing_distance"], None, True)
+        rig.base.limit(values["limited_trans_speed"], values["limited_rot_speed"],
+                       values["limited_distance"])
+        return True
+
+
+class Escape(Recovery):
+    """car_planner/EscapeRecovery: slowly back, or forwards, to where there is more room; ours."""
+
+    TABLE = "escape_recovery"
+
+    def start(self, rig: Rig) -> None:
+        super().start(rig)
+        self._command: recovery.Command | None = None
+
+    def step(self) -> bool:
+        costmap, pose = self.rig.local_costmap, self.rig.local_costmap.robot_pose()
+        if pose is None:
+            return False
+        snapshot = costmap.snapshot()
+        if self._command is None:
+            self._command = recovery.escape(snapshot, costmap.footprint, pose,
+                                            settings_from(recovery.EscapeSettings, self.values))
+            if self._command is None:
+                rospy.logerr("%s can't move: there is no room ahead or behind.", self.name)
+                return True
+            self._steps_left = int(TOO_LONG * self.values["distance"] / self.values["speed"]
+                                   * self.rig.frequency)
+        way = self._command.trajectory
+        at = int(np.hypot(*(way[:, :2] - pose[:2]).T).argmin())
+        outline = footprints.shrunk_to_fit(snapshot, costmap.footprint, pose)
+        self._steps_left -= 1
+        if (at == len(way) - 1 or not self._steps_left or outline is None
+                or (footprints.costs(snapshot, outline, way[at + 1:]) < 0).any()):
+            self.rig.base.stop()
+            return True
+        self.rig.base.drive(self._command.velocity)
+        return False
+
+
+RECOVERIES = {
+    "clear_costmap_recovery/ClearCostmapRecovery": ClearCostmap,
+    "rotate_recovery/RotateRecovery": Rotate,
+    "move_slow_and_clear/MoveSlowAndClear": MoveSlowAndClear,
+    "car_planner/EscapeRecovery": Escape,
+}
+DEFAULT = (("conservative_reset", ClearCostmap), ("rotate_recovery", Rotate),
+           ("aggressive_reset", ClearCostmap), ("rotate_recovery", Rotate))
+DEFAULT_OF_A_CAR = (("conservative_reset", ClearCostmap), ("escape", Escape),
+                    ("aggressive_reset", ClearCostmap), ("escape", Escape))
+
+
+def load(values: dict[str, Any], circumscribed_radius: float) -> list[Recovery]:
+    """The behaviours of `~recovery_behaviors`, or the usual ones; `values` are move_base's.
+
+    A car cannot turn on the spot: its usual ones have Escape in that place. Raises ParameterError
+    for parameters of theirs that make no sense, and for types that there are not.
+    """
+    where = rospy.resolve_name("~recovery_behaviors")
+    wanted = values["recovery_behaviors"]
+    if wanted and _is_list_of_behaviours(wanted):
+        return [chosen(entry["type"], RECOVERIES, f"type of {entry['name']} in {where}")(
+            entry["name"]) for entry in wanted]
+    rospy.set_param("~conservative_reset/reset_distance", values["conservative_reset_dist"])
+    rospy.set_param("~aggressive_reset/reset_distance", 4 * circumscribed_radius)
+    usual = DEFAULT_OF_A_CAR if values["command_type"] == "ackermann" else DEFAULT
+    return [kind(name) for name, kind in usual
+            if kind is not Rotate or values["clearing_rotation_allowed"]]
+
+
+def _is_list_of_behaviours(wanted: list) -> bool:
+    """Else one line in upstream's words."""
+    names = [entry.get("name") for entry in wanted
+             if isinstance(entry, dict) and isinstance(entry.get("type"), str)
+             and isinstance(entry.get("name"), str)]
+    if len(names) < len(wanted):
+        rospy.logerr("Recovery behaviors must have a name and a type and this does not. "
+                     "Using the default recovery behaviors instead.")
+        return False
+    for name in names:
+        if names.count(name) > 1:
+            rospy.logerr("A recovery behavior with the name %s already exists, this is not "
+                         "allowed. Using the default recovery behaviors instead.", name)
+            return False
+    return True

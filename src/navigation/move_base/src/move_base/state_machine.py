@@ -1,0 +1,160 @@
+"""What move_base does next: plan, drive, or try to recover; upstream's rules, without ROS.
+
+Times are seconds of one clock that the caller reads. All methods may be called on any thread.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass
+from enum import Enum
+
+GOAL_REACHED = "Goal reached."
+
+
+class State(Enum):
+    """What the robot waits for or does."""
+
+    PLANNING = "planning"
+    CONTROLLING = "controlling"
+    CLEARING = "clearing"
+
+
+class Trigger(Enum):
+    """Why recovery was begun; the value is the terminal text where nothing helped."""
+
+    PLANNING = "Failed to find a valid plan. Even after executing recovery behaviors."
+    CONTROLLING = "Failed to find a valid control. Even after executing recovery behaviors."
+    OSCILLATION = "Robot is oscillating. Even after executing recovery behaviors."
+
+
+@dataclass(frozen=True)
+class Patience:
+    """Names and defaults of move_base; s, m. A negative number of retries is no limit."""
+
+    planner_frequency: float = 0.0
+    planner_patience: float = 5.0
+    controller_patience: float = 15.0
+    max_planning_retries: int = -1
+    oscillation_timeout: float = 0.0
+    oscillation_distance: float = 0.5
+    recovery_behavior_enabled: bool = True
+
+
+class StateMachine:
+    """One goal at a time. `wants_plan` tells the planner to plan, `state` the driver what to do.
+
+    What upstream calls recovery_index_ is `recovery`: which behaviour is the next to be tried.
+    """
+
+    def __init__(self, patience: Patience = Patience(), recoveries: int = 0) -> None:
+        """`recoveries`: how many behaviours there are. Both may be replaced at any time."""
+        self.patience, self.recoveries = patience, recoveries
+        self._lock = threading.RLock()
+        self._goal = 0
+        self._moved_from: tuple[float, float] | None = None
+        self._reset()
+
+    def _reset(self) -> None:
+        self.state, self.trigger, self.recovery = State.PLANNING, Trigger.PLANNING, 0
+        self.wants_plan, self._retries = False, 0
+        self._last_plan = self._last_control = self._last_moved = 0.0
+
+    def begin(self, now: float) -> int:
+        """A new goal, maybe in place of another; the number by which its plans are known."""
+        with self._lock:
+            self._reset()
+            self._goal += 1
+            self.wants_plan, self._moved_from = True, None
+            self.hold(now)
+            return self._goal
+
+    def end(self) -> None:
+        """No goal any more: plans that still come are for nothing."""
+        with self._lock:
+            self._reset()
+            self._goal += 1
+
+    def is_for(self, goal: int) -> bool:
+        """Whether this is still the number of the goal."""
+        return goal == self._goal
+
+    def hold(self, now: float) -> None:
+        """Patience begins anew: the robot cannot see, or time went back."""
+        with self._lock:
+            self._last_plan = self._last_control = self._last_moved = now
+
+    def at(self, x: float, y: float, now: float) -> None:
+        """Where the robot is, m: as long as it gets about, it does not oscillate."""
+        with self._lock:
+            moved = (math.inf if self._moved_from is None
+                     else math.hypot(x - self._moved_from[0], y - self._moved_from[1]))
+            if moved >= self.patience.oscillation_distance:
+                self._moved_from, self._last_moved = (x, y), now
+                if self.trigger is Trigger.OSCILLATION:
+                    self.recovery = 0
+
+    def planned(self, goal: int, found: bool, now: float) -> None:
+        """The planner's answer for the goal of that number."""
+        with self._lock:
+            if not self.is_for(goal) or not self.wants_plan:
+                return
+            if found:
+                self._last_plan, self._retries = now, 0
+                self.state = State.CONTROLLING
+                self.wants_plan = self.patience.planner_frequency > 0.0
+            elif self.state is State.PLANNING:
+                self._retries += 1
+                most = self.patience.max_planning_retries
+                if now > self._last_plan + self.patience.planner_patience or (
+                        0 <= most < self._retries):
+                    self._clear(Trigger.PLANNING)
+
+    def took_path(self) -> None:
+        """The driver follows a new path, so what was wrong with planning is over."""
+        with self._lock:
+            if self.trigger is Trigger.PLANNING:
+                self.recovery = 0
+
+    def oscillates(self, now: float) -> bool:
+        """While driving: whether the robot got nowhere for too long; then it must recover."""
+        with self._lock:
+            limit = self.patience.oscillation_timeout
+            if not 0.0 < limit < now - self._last_moved:
+                return False
+            self._clear(Trigger.OSCILLATION)
+            return True
+
+    def controlled(self, found: bool, now: float) -> None:
+        """Whether the local planner had a velocity to drive with."""
+        with self._lock:
+            if found:
+                self._last_control = now
+                if self.trigger is Trigger.CONTROLLING:
+                    self.recovery = 0
+            elif now > self._last_control + self.patience.controller_patience:
+                self._clear(Trigger.CONTROLLING)
+            else:
+                self._plan_again(now)
+
+    def failure(self) -> str | None:
+        """While clearing: the terminal text, if no behaviour is left to try."""
+        with self._lock:
+            left = self.patience.recovery_behavior_enabled and self.recovery < self.recoveries
+            return None if left else self.trigger.value
+
+    def recovered(self, now: float) -> None:
+        """A behaviour has ended; planning shows whether it helped."""
+        with self._lock:
+            self._last_moved = now
+            self.recovery += 1
+            self._plan_again(now)
+
+    def _plan_again(self, now: float) -> None:
+        self._last_plan, self._retries = now, 0
+        self.state, self.wants_plan = State.PLANNING, True
+
+    def _clear(self, trigger: Trigger) -> None:
+        """Planning rests: upstream's goes on, and a plan then may cut recovery short."""
+        self.state, self.trigger, self.wants_plan = State.CLEARING, trigger, False

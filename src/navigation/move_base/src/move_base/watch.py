@@ -1,0 +1,94 @@
+"""Whether the robot knows enough to drive, and if not one line that says what is missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import rospy
+import tf2_ros
+
+from costmap_2d import CostmapROS
+from move_base.base import Base
+from nav_nodes.complaints import Complaints
+
+PAUSE = 1.0  # s between two looks; after a longer one, e.g. between goals, what was seen is old
+
+
+@dataclass
+class _Seen:
+    """The newest stamp of the localisation, and when it was there first and was looked at last."""
+
+    stamp: rospy.Time
+    since: float
+    looked: float
+
+
+class Watch:
+    """Looks at costmaps, sensors, transforms and odometry. One thread calls it."""
+
+    def __init__(self, costmaps: tuple[CostmapROS, CostmapROS], base: Base,
+                 buffer: tf2_ros.Buffer, complaints: Complaints) -> None:
+        """`costmaps`: the global and the local one."""
+        self._costmaps, self._base, self._buffer = costmaps, base, buffer
+        self._complaints = complaints
+        self._seen: _Seen | None = None
+
+    def can_drive(self, now: float, timeout: float) -> bool:
+        """Whether all is there at `now`, s of ROS time; older than `timeout`, s, is missing.
+
+        A timeout of 0 asks, as upstream, only for costmaps, poses and what an
+        `expected_update_rate` was set for.
+        """
+        return ((timeout <= 0.0 or self._all_speak(now, timeout))
+                and all(costmap.is_ready() and costmap.robot_pose() is not None
+                        for costmap in self._costmaps)
+                and self._sensors_are_current())
+
+    def _all_speak(self, now: float, timeout: float) -> bool:
+        """Sensors, odometry and localisation; each that does not is complained about."""
+        return all([self._sensors_speak(timeout), self._odometry_speaks(now, timeout),
+                    self._is_localised(now, timeout)])
+
+    def _sensors_are_current(self) -> bool:
+        if self._costmaps[1].is_current():
+            return True
+        rospy.logwarn_throttle(
+            5.0, f"[{rospy.get_name()}]:Sensor data is out of date, we're not going to allow "
+                 "commanding of the base for safety")
+        return False
+
+    def _sensors_speak(self, timeout: float) -> bool:
+        silences = self._costmaps[1].silences()
+        for what, silence in silences.items():
+            self._say(what, silence > timeout)
+        return all(silence <= timeout for silence in silences.values())
+
+    def _odometry_speaks(self, now: float, timeout: float) -> bool:
+        heard = self._base.heard
+        silent = heard is None or now - heard.to_sec() > timeout
+        self._say(f"odometry on {self._base.odom_topic}", silent)
+        return not silent
+
+    def _is_localised(self, now: float, timeout: float) -> bool:
+        """Whether the place of the odometry's frame in the map's is still being told."""
+        parent, child = (costmap.global_frame for costmap in self._costmaps)
+        if parent == child:
+            return True
+        try:
+            stamp = self._buffer.lookup_transform(parent, child, rospy.Time(0)).header.stamp
+        except tf2_ros.TransformException:
+            return False  # the costmaps complain
+        if stamp.is_zero():
+            return True  # of a static transform
+        if self._seen is None or now - self._seen.looked > PAUSE or stamp != self._seen.stamp:
+            self._seen = _Seen(stamp, now, now)
+        self._seen.looked = now
+        late = now - self._seen.since > timeout
+        self._say(f"new transform from {parent} to {child}", late)
+        return not late
+
+    def _say(self, what: str, missing: bool) -> None:
+        if missing:
+            self._complaints.missing(what, "the robot stands until it is there again")
+        else:
+            self._complaints.present(what)

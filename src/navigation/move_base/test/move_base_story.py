@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""Goals reached, not reached, cancelled and replaced, and what is missing on the way."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+import xmlrpc.client
+
+import actionlib
+import numpy as np
+import rosgraph
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, Quaternion
+from made_up_robot import Robot
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
+from nav_msgs.msg import Path
+from nav_msgs.srv import GetPlan
+from rosgraph_msgs.msg import Log
+from std_srvs.srv import Empty
+
+from nav_nodes.messages import stamped_pose
+
+START, NEAR, FAR = (0.7, 0.7, 0.0), (1.3, 0.7, 0.0), (3.2, 1.0, 1.0)
+CHAMBER = (3.4, 3.4, 0.0)
+
+
+def wait_until(condition, what, limit=20.0):
+    """The condition's first true value."""
+    end = time.monotonic() + limit
+    while time.monotonic() < end:
+        if found := condition():
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"not within {limit} s: {what}")
+
+
+def goal_at(place, frame="map"):
+    """A goal of the action."""
+    return MoveBaseGoal(stamped_pose(np.array(place), frame, rospy.Time.now()))
+
+
+class Story(unittest.TestCase):
+    """One robot for all; each test waits until it stands."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.lines = []
+        rospy.Subscriber("rosout_agg", Log, lambda log: cls.lines.append(log.msg))
+        cls.robot = Robot(START)
+        cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        assert cls.client.wait_for_server(rospy.Duration(30))
+
+    def setUp(self):
+        self.robot.speaks = {"odom", "scan", "tf", "localisation"}
+        self.robot.pose, self.robot.velocity = np.array(START), np.zeros(3)
+        del self.lines[:]
+        time.sleep(0.5)
+
+    def tearDown(self):
+        self.client.cancel_all_goals()
+        wait_until(self.robot.stands, "standing after the test")
+
+    def drive(self, place=FAR):
+        """Sends a goal and waits until the robot moves."""
+        self.client.send_goal(goal_at(place))
+        wait_until(lambda: self.robot.velocity[0] > 0.1, "driving")
+
+    def ended(self, limit=30.0):
+        """(state, text) of the goal."""
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(limit)), "no result")
+        return self.client.get_state(), self.client.get_goal_status_text()
+
+    def test_reaches_a_goal(self):
+        """And shows its paths."""
+        seen, current = {}, []
+        topics = [rospy.Subscriber(f"move_base/{topic}", Path, seen.setdefault(topic, []).append)
+                  for topic in ("NavfnROS/plan", "DWAPlannerROS/global_plan",
+                                "DWAPlannerROS/local_plan")]
+        topics.append(rospy.Subscriber("move_base/current_goal", PoseStamped, current.append))
+        wait_until(lambda: all(topic.get_num_connections() for topic in topics), "its topics")
+        self.client.send_goal(goal_at(NEAR))
+        self.assertEqual(self.ended(), (GoalStatus.SUCCEEDED, "Goal reached."))
+        self.assertLess(np.hypot(*(self.robot.pose[:2] - NEAR[:2])), 0.1)
+        self.assertTrue(self.robot.stands())
+        self.assertEqual(current[0].pose.position.x, NEAR[0])
+        for topic, messages in seen.items():
+            self.assertTrue(messages and messages[0].poses, topic)
+
+    def test_reaches_a_goal_given_in_its_own_frame_and_by_topic(self):
+        """move_base_simple/goal, as rviz sends it."""
+        topic = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        wait_until(topic.get_num_connections, "somebody who takes goals")
+        topic.publish(goal_at((0.5, 0.0, 0.0), "base_footprint").target_pose)
+        wait_until(lambda: abs(self.robot.pose[0] - 1.2) < 0.06 and self.robot.stands(), "there")
+
+    def test_unreachable_goal(self):
+        """Each recovery is tried, then upstream's text."""
+        tried = []
+        rospy.Subscriber("move_base/recovery_status", RecoveryStatus, tried.append)
+        self.client.send_goal(goal_at(CHAMBER))
+        self.assertEqual(self.ended(40.0), (
+            GoalStatus.ABORTED,
+            "Failed to find a valid plan. Even after executing recovery behaviors."))
+        self.assertEqual([(status.current_recovery_number, status.recovery_behavior_name)
+                          for status in tried], [(0, "conservative_reset"), (1, "rotate_recovery")])
+        self.assertEqual(tried[0].total_number_of_recoveries, 2)
+
+    def test_cancelled_goal(self):
+        """The robot stands at once."""
+        self.drive()
+        self.client.cancel_goal()
+        wait_until(self.robot.stands, "standing", 0.5)
+        self.assertEqual(self.ended(), (GoalStatus.PREEMPTED, ""))
+
+    def test_a_new_goal_while_moving(self):
+        """The old one is preempted; the robot goes to the new one."""
+        self.drive()
+        ended = []
+        second = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        second.wait_for_server()
+        self.client.stop_tracking_goal()
+        second.send_goal(goal_at(FAR), done_cb=lambda state, _: ended.append(
+            (state, second.get_goal_status_text())))
+        wait_until(lambda: second.get_state() == GoalStatus.ACTIVE, "active")
+        self.client.send_goal(goal_at(NEAR))
+        wait_until(lambda: ended, "the end of the first", 5.0)
+        self.assertEqual(ended[0][0], GoalStatus.PREEMPTED)
+        self.assertEqual(self.ended(), (GoalStatus.SUCCEEDED, "Goal reached."))
+
+    def test_invalid_quaternion(self):
+        """Refused at once, with upstream's text."""
+        for q in (Quaternion(), Quaternion(0, 0, float("nan"), 1), Quaternion(1, 0, 0, 1)):
+            goal = goal_at(FAR)
+            goal.target_pose.pose.orientation = q
+            self.client.send_goal(goal)
+            self.assertEqual(self.ended(5.0), (
+                GoalStatus.ABORTED,
+                "Aborting on goal because it was sent with an invalid quaternion"))
+
+    def test_make_plan(self):
+        """To a place, to no place, and to a place within the tolerance."""
+        make_plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
+        start, far, chamber = (goal_at(place).target_pose for place in (START, FAR, CHAMBER))
+        poses = make_plan(start, far, 0.0).plan.poses
+        self.assertGreater(len(poses), 50)
+        self.assertAlmostEqual(poses[-1].pose.position.x, FAR[0])
+        self.assertEqual(make_plan(start, chamber, 0.0).plan.poses, [])
+        column = goal_at((2.0, 2.0, 0.0)).target_pose
+        poses = make_plan(start, column, 0.8).plan.poses
+        self.assertEqual(poses[-1].pose.position.x, 2.0)
+        self.assertGreater(len(poses), 10)
+
+    def test_clear_costmaps(self):
+        """Answers, and a drive goes on after it."""
+        rospy.ServiceProxy("move_base/clear_costmaps", Empty)()
+        rospy.ServiceProxy("move_base/clear_unknown_space", Empty)()
+        self.drive()
+
+    def check_missing(self, thing, pattern):
+        """Stands within 1 s, one line that names it, drives on when it is there again."""
+        self.drive()
+        self.robot.speaks.discard(thing)
+        wait_until(self.robot.stands, f"standing without {thing}", 1.0)
+        wait_until(lambda: [line for line in self.lines if re.search(pattern, line)],
+                   f"a line that says {pattern}", 3.0)
+        time.sleep(1.0)
+        self.assertTrue(self.robot.stands())
+        said = [line for line in self.lines if re.search(pattern, line)]
+        self.assertEqual(len(said), 1, said)
+        self.robot.speaks.add(thing)
+        wait_until(lambda: self.robot.velocity[0] > 0.1, f"driving on with {thing}", 5.0)
+
+    def test_silent_laser(self):
+        """A sensor of the costmap."""
+        self.check_missing("scan", r"no LaserScan on /scan for \d+ s")
+
+    def test_silent_odometry(self):
+        """The robot's velocity is not known."""
+        self.check_missing("odom", r"no odometry on /odom for \d+ s")
+
+    def test_missing_transform(self):
+        """The robot's pose is not known."""
+        self.check_missing("tf", r"no transform from odom to base_footprint for \d+ s")
+
+    def test_silent_localisation(self):
+        """amcl was killed."""
+        self.check_missing("localisation", r"no new transform from map to odom for \d+ s")
+
+    def test_z_killed_and_terminated(self):
+        """The robot stands within 1 s; the client of one that was told to end hears of it."""
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            self.check_ended_by(number)
+
+    def check_ended_by(self, number):
+        """Stands; ends in time; the one that is started in its place drives."""
+        self.drive()
+        node = rosgraph.Master("/story").lookupNode("/move_base")
+        process = xmlrpc.client.ServerProxy(node).getPid("/story")[2]
+        os.kill(process, number)
+        wait_until(self.robot.stands, f"standing after signal {number}", 1.0)
+        if number == signal.SIGTERM:
+            self.assertEqual(self.ended(5.0), (
+                GoalStatus.ABORTED, "Aborting on the goal because the node has been killed"))
+        wait_until(lambda: not alive(process), "its end", 2.0)
+        time.sleep(0.5)
+        self.assertTrue(self.robot.stands())
+        self.robot.pose = np.array(START)
+        wait_until(lambda: restarted(node), "a new one", 20.0)
+        type(self).client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self.assertTrue(self.client.wait_for_server(rospy.Duration(20)))
+
+    def test_unknown_planner(self):
+        """One line with what there is, and an exit code."""
+        rospy.set_param("/other/base_global_planner", "nowhere/Planner")
+        ended = subprocess.run(["rosrun", "move_base", "move_base", "__name:=other"], timeout=30,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertNotEqual(ended.returncode, 0)
+        self.assertIn("nowhere/Planner", ended.stdout)
+        self.assertIn("navfn/NavfnROS", ended.stdout)
+        self.assertNotIn("Traceback", ended.stdout)
+
+
+def alive(process):
+    """Whether a process runs that is not ours."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
+            return stat.read().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def restarted(before):
+    """Whether roslaunch has started the node anew."""
+    try:
+        return rosgraph.Master("/story").lookupNode("/move_base") != before
+    except rosgraph.MasterException:
+        return False
+
+
+if __name__ == "__main__":
+    rospy.init_node("story")
+    rostest.rosrun("move_base", "move_base_story", Story, sys.argv)

@@ -1,0 +1,1 @@
+"""Mapping, localisation, costmaps and planning. No ROS in here: arrays in, arrays out."""

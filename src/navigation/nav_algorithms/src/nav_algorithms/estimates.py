@@ -1,0 +1,52 @@
+"""What many weighted particles say: one pose and how sure it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.particle_bins import clusters_of
+
+TOGETHER = 0.5  # m; amcl's bound of how far converged particles may be from their mean, in x and y
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """`pose` (3,) is the mean of the heaviest cluster, `covariance` (3, 3) is of all particles.
+
+    `share` of all weight is in that cluster.
+    """
+
+    pose: np.ndarray
+    covariance: np.ndarray
+    share: float
+
+
+def estimate(particles: np.ndarray, weights: np.ndarray) -> Estimate:
+    """Of particles (N, 3) with weights (N,) that sum up to 1."""
+    clusters = clusters_of(particles)
+    sums = np.bincount(clusters, weights)
+    heaviest = int(np.argmax(sums))
+    inside = clusters == heaviest
+    mean, _ = _moments(particles[inside], weights[inside] / sums[heaviest])
+    return Estimate(mean, _moments(particles, weights)[1], float(sums[heaviest]))
+
+
+def _moments(particles: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and covariance; that of yaw is the circular one, -2 ln of the mean direction's length.
+
+    As in amcl, yaw is taken to vary alone.
+    """
+    places = particles[:, :2]
+    mean = weights @ places
+    cos, sin = weights @ np.cos(particles[:, 2]), weights @ np.sin(particles[:, 2])
+    covariance = np.zeros((3, 3))
+    covariance[:2, :2] = ((places - mean) * weights[:, None]).T @ (places - mean)
+    covariance[2, 2] = -2.0 * np.log(np.clip(np.hypot(cos, sin), 1e-12, 1.0))
+    return np.array([*mean, np.arctan2(sin, cos)]), covariance
+
+
+def have_converged(particles: np.ndarray) -> bool:
+    """Whether particles (N, 3) are all in one place."""
+    return bool((np.abs(particles[:, :2] - particles[:, :2].mean(axis=0)) <= TOGETHER).all())

@@ -1,0 +1,78 @@
+"""Pieces of a drive, tried on a costmap: arcs and straights, forwards and backwards, and turns.
+
+A piece is (kind, amount, curvature): DRIVE by `amount`, m, negative backwards, at a `curvature`,
+1/m; or TURN on the spot by `amount`, rad.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nav_algorithms.compiled import compiled
+from nav_algorithms.costmap.costs import UNKNOWN
+from nav_algorithms.costmap.footprint import ON_UNKNOWN, cost_at
+
+DRIVE, TURN = 0, 1
+TURN_STEP = 0.09  # rad between two looks; a third of a metre out this is less than a cell
+# The numbers of `terms`, how much things cost, in metres of free road driven forwards.
+COSTLY, REVERSE, CUSP, CURVING, SWERVING, TURNING = range(6)
+
+
+@compiled("void(f8[::1], i8, f8, f8, f8[::1])")
+def move(pose, kind, amount, curvature, found):
+    """Where a piece ends that begins at `pose`."""
+    x, y, yaw = pose[0], pose[1], pose[2]
+    if kind == TURN:
+        found[0], found[1], found[2] = x, y, yaw + amount
+        return
+    end = yaw + amount * curvature
+    if abs(curvature) > 1e-9:
+        found[0] = x + (np.sin(end) - np.sin(yaw)) / curvature
+        found[1] = y + (np.cos(yaw) - np.cos(end)) / curvature
+    else:
+        found[0], found[1] = x + amount * np.cos(yaw), y + amount * np.sin(yaw)
+    found[2] = end
+
+
+@compiled("i8(i8, f8, f8)")
+def steps_of(kind, amount, step):
+    """Steps of a piece, none longer than `step`, m, or TURN_STEP."""
+    return max(int(np.ceil(abs(amount) / (TURN_STEP if kind == TURN else step) - 1e-9)), 1)
+
+
+@compiled("f8(u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8[:,::1], b1, f8[::1], f8[::1], i8, f8, f8, "
+          "f8[::1])")
+def cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
+            allow_unknown, terms, pose, kind, amount, curvature, found):
+    """What a piece costs that begins at `pose` and ends at `found`, (3,); inf where it touches."""
+    steps = steps_of(kind, amount, resolution)
+    clear = circumscribed / resolution + 1.5
+    dear = 0.0
+    for n in range(1, steps + 1):
+        move(pose, kind, amount * n / steps, curvature, found)
+        column, row = (found[0] - origin_x) / resolution, (found[1] - origin_y) / resolution
+        if not (0.0 <= row < cells.shape[0] and 0.0 <= column < cells.shape[1]):
+            return np.inf
+        r, c = int(row), int(column)
+        if free_radii[r, c] <= clear:
+            cost = cost_at(cells, resolution, origin_x, origin_y, footprint, found[0], found[1],
+                           found[2])
+            if cost < 0 and not (cost == ON_UNKNOWN and allow_unknown):
+                return np.inf
+        dear += (0.0 if cells[r, c] == UNKNOWN else cells[r, c]) / 252.0
+    length = abs(amount) * (terms[TURNING] if kind == TURN else 1.0)
+    length *= 1.0 + terms[COSTLY] * dear / steps
+    if kind == DRIVE:
+        length *= 1.0 + terms[CURVING] * abs(curvature)
+        if amount < 0.0:
+            length *= terms[REVERSE]
+    return length
+
+
+@compiled("f8(f8[::1], i8, f8, f8, i8, f8, f8)")
+def change_cost(terms, kind, amount, curvature, next_kind, next_amount, next_curvature):
+    """What it costs to go over from one piece to the next: a cusp, or the wheel turned."""
+    if kind == TURN or next_kind == TURN or amount == 0.0:
+        return 0.0
+    cost = terms[SWERVING] * abs(next_curvature - curvature)
+    return cost + (terms[CUSP] if amount * next_amount < 0.0 else 0.0)

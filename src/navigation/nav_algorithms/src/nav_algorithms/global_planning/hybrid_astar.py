@@ -1,0 +1,108 @@
+"""Paths that a car can drive: hybrid A* over poses, forwards and backwards, with its outline.
+
+D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, "Path planning for autonomous vehicles in unknown
+semi-structured environments" (2010): cells of (x, y, yaw) that each keep the exact pose by which
+they were reached best, and curves that are tried from there to the goal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
+from nav_algorithms.global_planning.drives import move, steps_of
+from nav_algorithms.global_planning.potential import spread
+from nav_algorithms.global_planning.search import search
+
+TIGHT = 20.0  # as many cells does one count, in the estimate, that is within the inscribed radius
+
+
+@dataclass(frozen=True)
+class HybridAstarSettings:
+    """What the vehicle can and what it should rather not do. Costs are in metres of free road."""
+
+    allow_unknown: bool = True
+    default_tolerance: float = 0.0       # accepted: the goal is reached exactly or not at all
+    minimum_turning_radius: float = 0.6  # m
+    allow_reverse: bool = True
+    turn_in_place: bool = False          # differential drives: turns on the spot, and no curves
+    state_resolution: float = 0.1        # m, of the cells of poses
+    yaw_bins: int = 72                   # on the full circle
+    primitive_length: float = 0.15       # m, of one piece
+    cost_penalty: float = 2.0            # for each metre, times the cell's cost / 252
+    reverse_penalty: float = 1.6         # for each metre, as a factor
+    cusp_penalty: float = 0.5            # for each change between forwards and backwards
+    curvature_penalty: float = 0.02      # for each metre and each 1/m of curvature
+    swerve_penalty: float = 0.02         # for each 1/m by which the curvature changes
+    turn_penalty: float = 0.25           # for each radian on the spot
+    max_expansions: int = 150_000        # about a second on one core of 2020
+    improve_expansions: int = 20_000     # after the first way was found
+
+
+def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
+         settings: HybridAstarSettings = HybridAstarSettings()) -> np.ndarray | None:
+    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
+
+    Poses are a cell or less apart; the vehicle drives backwards where the next pose lies behind.
+    `footprint` (K, 2), m, is free at each of them; where it seems to touch something at the start,
+    as much smaller as it must be to fit there. The same input gives the same path: what bounds the
+    time is a number of steps, not a clock. When they are used up, the best path so far counts.
+    """
+    start, goal = np.array(start, float), np.array(goal, float)
+    footprint = footprints.shrunk_to_fit(_known(costmap, settings),
+                                         np.ascontiguousarray(footprint, float), start)
+    if footprint is None or not costmap.contains(costmap.cells_of(goal[:2])):
+        return None
+    s = settings
+    estimate = _estimate(costmap, goal, s)
+    if not np.isfinite(estimate[tuple(costmap.cells_of(start[:2]))]):
+        return None
+    radii = footprints.free_radii(_known(costmap, settings))
+    terms = np.array([s.cost_penalty, s.reverse_penalty, s.cusp_penalty, s.curvature_penalty,
+                      s.swerve_penalty, s.turn_penalty])
+    pieces = search(costmap.cells, costmap.resolution, *map(float, costmap.origin), radii,
+                    footprints.reach(footprint), footprint, s.allow_unknown, terms, estimate,
+                    start, goal, s.minimum_turning_radius, s.allow_reverse, s.turn_in_place,
+                    max(s.state_resolution, costmap.resolution), s.yaw_bins,
+                    max(s.primitive_length, 1.45 * costmap.resolution), s.max_expansions,
+                    s.improve_expansions)
+    return _driven(start, goal, pieces, costmap.resolution) if len(pieces) else None
+
+
+def _known(costmap: Costmap, settings: HybridAstarSettings) -> Costmap:
+    """The costmap with the unknown free, where it may be crossed."""
+    if not settings.allow_unknown:
+        return costmap
+    cells = np.where(costmap.cells == UNKNOWN, np.uint8(0), costmap.cells)
+    return Costmap(cells, costmap.resolution, costmap.origin)
+
+
+def _estimate(costmap: Costmap, goal: np.ndarray, settings: HybridAstarSettings) -> np.ndarray:
+    """What is left to the goal from each cell for a point that turns as it likes, m of road."""
+    cells = costmap.cells.astype(float)
+    crossing = 1.0 + settings.cost_penalty * cells / 252.0
+    crossing[costmap.cells == INSCRIBED] = TIGHT
+    crossing[costmap.cells == LETHAL] = np.inf
+    crossing[costmap.cells == UNKNOWN] = 1.0 if settings.allow_unknown else np.inf
+    source = np.array([costmap.cells_of(goal[:2])])
+    return spread(costmap.resolution * crossing, source, np.zeros(1), -1, -1, True, 0.0, 0.0)
+
+
+def _driven(start: np.ndarray, goal: np.ndarray, pieces: np.ndarray, step: float) -> np.ndarray:
+    """The poses (N, 3) of pieces (M, 3) driven one after the other, ending at the goal exactly."""
+    found = [start]
+    for kind, amount, curvature in pieces:
+        begin = found[-1]
+        steps = steps_of(int(kind), amount, step)
+        for n in range(1, steps + 1):
+            pose = np.empty(3)
+            move(begin, int(kind), amount * n / steps, curvature, pose)
+            found.append(pose)
+    path = np.array(found)
+    path[-1] = goal
+    path[:, 2] = (path[:, 2] + np.pi) % (2 * np.pi) - np.pi
+    return path
+

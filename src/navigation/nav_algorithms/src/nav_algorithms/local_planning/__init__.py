@@ -1,0 +1,1 @@
+"""Velocities that follow a path and touch nothing, a few times a second."""

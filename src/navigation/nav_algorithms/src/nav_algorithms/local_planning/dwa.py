@@ -1,0 +1,159 @@
+"""DWAPlannerROS: of the velocities within reach, the one whose near future costs the least.
+
+D. Fox, W. Burgard, S. Thrun, "The dynamic window approach to collision avoidance" (1997), with the
+costs, names and defaults of dwa_local_planner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.local_planning import rollout
+from nav_algorithms.local_planning.goal import Arrival
+from nav_algorithms.local_planning.grids import distances_to
+from nav_algorithms.local_planning.local_planner import LocalPlanner
+from nav_algorithms.local_planning.oscillation import Oscillation
+from nav_algorithms.local_planning.velocities import Command, all_samples, window
+
+EPSILON = 1e-4
+
+
+@dataclass(frozen=True)
+class DwaSettings:
+    """Names and defaults of dwa_local_planner/DWAPlannerROS; m, s, rad.
+
+    A velocity limit below 0 is none. `acc_lim_trans` and `prune_plan` have no effect: each axis has
+    its own limit, and what is behind the robot is always left out. A turn on the spot is scored
+    where it looks best, not where `sim_time` ends it: upstream's robots turn past their path.
+    """
+
+    acc_lim_x: float = 2.5
+    acc_lim_y: float = 2.5
+    acc_lim_theta: float = 3.2
+    acc_lim_trans: float = 0.1
+    max_vel_trans: float = 0.55
+    min_vel_trans: float = 0.1
+    max_vel_x: float = 0.55
+    min_vel_x: float = 0.0
+    max_vel_y: float = 0.1
+    min_vel_y: float = -0.1
+    max_vel_theta: float = 1.0
+    min_vel_theta: float = 0.4
+    xy_goal_tolerance: float = 0.1
+    yaw_goal_tolerance: float = 0.1
+    latch_xy_goal_tolerance: bool = False
+    sim_time: float = 1.7
+    sim_granularity: float = 0.025
+    angular_sim_granularity: float = 0.1
+    vx_samples: int = 3
+    vy_samples: int = 10
+    vth_samples: int = 20
+    path_distance_bias: float = 0.6
+    goal_distance_bias: float = 0.8
+    occdist_scale: float = 0.01
+    twirling_scale: float = 0.0
+    forward_point_distance: float = 0.325
+    stop_time_buffer: float = 0.2
+    scaling_speed: float = 0.25
+    max_scaling_factor: float = 0.2
+    oscillation_reset_dist: float = 0.05
+    oscillation_reset_angle: float = 0.2
+    prune_plan: bool = False
+    trans_stopped_vel: float = 0.1
+    theta_stopped_vel: float = 0.1
+    use_dwa: bool = True
+    controller_frequency: float = 20.0  # move_base's: one command a period
+
+
+class DwaPlanner(LocalPlanner):
+    """The dynamic window approach."""
+
+    def __init__(self, settings: DwaSettings = DwaSettings()) -> None:
+        self.settings = settings
+        super().__init__(Arrival(
+            settings.xy_goal_tolerance, settings.yaw_goal_tolerance,
+            settings.latch_xy_goal_tolerance, settings.trans_stopped_vel,
+            settings.theta_stopped_vel, settings.min_vel_theta, settings.max_vel_theta,
+            (settings.acc_lim_x, settings.acc_lim_y, settings.acc_lim_theta),
+            1.0 / settings.controller_frequency),
+            Oscillation(settings.oscillation_reset_dist, settings.oscillation_reset_angle))
+
+    def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+              velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:
+        """The cheapest of the samples that touch nothing."""
+        s = self.settings
+        samples = self.samples(velocity, float(np.hypot(*(goal[:2] - pose[:2]))))
+        samples = samples[self.oscillation.allowed(samples)]
+        if not len(samples):
+            return None
+        found = rollout.rollouts(
+            costmap.cells, costmap.resolution, *map(float, costmap.origin),
+            footprints.free_radii(costmap), footprints.reach(footprint), footprint,
+            self._grids(costmap, near, pose),
+            self._weights(costmap, pose, near), samples, pose, velocity, self._accelerations(),
+            s.use_dwa, s.sim_time, s.sim_granularity, s.angular_sim_granularity,
+            s.forward_point_distance, float(np.hypot(*(goal[:2] - pose[:2]))), s.stop_time_buffer,
+            s.scaling_speed, s.max_scaling_factor, s.max_vel_trans)
+        cost = np.where(found[:, rollout.LEGAL] > 0.0, found[:, rollout.DISTANCE]
+                        + s.occdist_scale * found[:, rollout.OCCUPANCY]
+                        + s.twirling_scale * np.abs(samples[:, 2]), np.inf)
+        best = int(cost.argmin())
+        if not np.isfinite(cost[best]):
+            return None
+        self.oscillation.took(samples[best], pose, s.min_vel_trans)
+        vx, vy, omega = map(float, samples[best])
+        return Command(vx, vy, omega, rollout.trajectory(
+            pose, velocity, samples[best], self._accelerations(), s.use_dwa, s.sim_time,
+            s.sim_granularity, s.angular_sim_granularity))
+
+    def _accelerations(self) -> np.ndarray:
+        s = self.settings
+        return np.array([s.acc_lim_x, s.acc_lim_y, s.acc_lim_theta])
+
+    def samples(self, velocity: np.ndarray, to_goal: float) -> np.ndarray:
+        """Velocities (S, 3) to try, from a robot that has `velocity`, `to_goal`, m, from its goal.
+
+        With `use_dwa` those of the next period; else those of all of `sim_time`, of which none
+        goes past the goal. None is slower than `min_vel_trans` and `min_vel_theta` both.
+        """
+        s = self.settings
+        high = np.array([s.max_vel_x, s.max_vel_y, s.max_vel_theta])
+        low = np.array([s.min_vel_x, s.min_vel_y, -s.max_vel_theta])
+        if not s.use_dwa:
+            high[0] = max(min(high[0], to_goal / s.sim_time), low[0])
+        duration = 1.0 / s.controller_frequency if s.use_dwa else s.sim_time
+        low, high = window(velocity, low, high, self._accelerations(), duration,
+                           np.array([s.min_vel_trans, 0.0, s.min_vel_theta]))
+        samples = all_samples(low, high, (s.vx_samples, s.vy_samples, s.vth_samples))
+        speeds, turns = np.hypot(samples[:, 0], samples[:, 1]), np.abs(samples[:, 2])
+        keep = (speeds + EPSILON >= s.min_vel_trans) | (turns + EPSILON >= s.min_vel_theta)
+        if s.max_vel_trans >= 0.0:
+            keep &= speeds - EPSILON <= s.max_vel_trans
+        return np.ascontiguousarray(samples[keep])
+
+    def _grids(self, costmap: Costmap, near: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Distances (3, rows, columns) to the path, to its end, and to the front of its end."""
+        end = near[-1, :2]
+        bearing = np.arctan2(*(end - pose[:2])[::-1])
+        front = end + self.settings.forward_point_distance * np.array([np.cos(bearing),
+                                                                       np.sin(bearing)])
+        return np.stack([distances_to(costmap, near[:, :2], near[:, :2]),
+                         distances_to(costmap, end[None], near[:, :2]),
+                         distances_to(costmap, front[None], np.vstack((near[:, :2], front)))])
+
+    def _weights(self, costmap: Costmap, pose: np.ndarray, near: np.ndarray) -> np.ndarray:
+        """What a cell's way counts from the path, the goal, the goal's front, and in alignment.
+
+        Close to the end of the path the robot need not look along it any more; and the less it
+        shall look to the goal the nearer that is, or it would rock to and fro before it.
+        """
+        path = self.settings.path_distance_bias * costmap.resolution
+        goal = self.settings.goal_distance_bias * costmap.resolution
+        forward = max(self.settings.forward_point_distance, 1e-6)
+        left = float(np.hypot(*(near[-1, :2] - pose[:2])))
+        return np.array([path, goal, goal * min(left / forward, 1.0),
+                         path if left > forward else 0.0])

@@ -1,0 +1,250 @@
+"""Regulated pure pursuit, for cars: the path is followed as it was planned, backwards where it is.
+
+R. Coulter, "Implementation of the pure pursuit path tracking algorithm" (1992); S. Macenski et al.,
+"Regulated pure pursuit for robot path tracking" (2023), whose parameters have these names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.global_planning.drives import DRIVE, move
+from nav_algorithms.local_planning.following import STANDSTILL
+from nav_algorithms.local_planning.goal import turned
+from nav_algorithms.local_planning.pieces import ON_THE_SPOT, Piece, cut
+from nav_algorithms.local_planning.velocities import Command, turning
+from nav_algorithms.poses import compose, relative, wrap_angle
+
+AHEAD = 1.0       # m along the path in which the vehicle's place on it is looked for
+BENDS = 21        # curvatures that are tried where the pursuit's own is not free
+DONE = 0.02       # m before its end at which a piece is over
+
+
+@dataclass(frozen=True)
+class PurePursuitSettings:
+    """m, s, rad. `turn_in_place` is for robots that can; a car's path has no turns on the spot."""
+
+    desired_linear_vel: float = 0.5
+    acc_lim_x: float = 1.0
+    acc_lim_theta: float = 3.2
+    max_vel_theta: float = 1.8
+    min_vel_theta: float = 0.2
+    minimum_turning_radius: float = 0.5
+    turn_in_place: bool = False
+    lookahead_time: float = 0.9
+    min_lookahead_dist: float = 0.25
+    max_lookahead_dist: float = 0.9
+    use_regulated_linear_velocity_scaling: bool = True
+    regulated_linear_scaling_min_radius: float = 0.9
+    regulated_linear_scaling_min_speed: float = 0.15
+    use_cost_regulated_linear_velocity_scaling: bool = True
+    cost_scaling_dist: float = 0.3
+    cost_scaling_gain: float = 1.0
+    approach_velocity_scaling_dist: float = 0.5
+    min_approach_linear_velocity: float = 0.06
+    max_allowed_time_to_collision_up_to_carrot: float = 1.0
+    max_deviation: float = 0.4
+    xy_goal_tolerance: float = 0.1
+    yaw_goal_tolerance: float = 0.1
+    trans_stopped_vel: float = 0.05
+    controller_frequency: float = 20.0
+
+
+class PurePursuit:
+    """Follows one path, piece by piece; `set_path` begins a new one."""
+
+    def __init__(self, settings: PurePursuitSettings = PurePursuitSettings()) -> None:
+        self.settings = settings
+        self.pieces: list[Piece] = []
+        self.goal: np.ndarray | None = None
+
+    def set_path(self, path: np.ndarray) -> None:
+        """Path (N, 3) with the heading at each pose, in a fixed frame. Raises ValueError."""
+        path = np.array(path, float)
+        if path.ndim != 2 or path.shape[1:] != (3,) or not len(path) or not np.isfinite(path).all():
+            raise ValueError(f"a path is (N, 3), finite and not empty, not {path.shape}")
+        self.pieces, self.goal = cut(path), path[-1]
+        self.at = 0
+
+    def reached(self, pose: np.ndarray, velocity: np.ndarray,
+                path_frame: np.ndarray = STANDSTILL) -> bool:
+        """Whether the vehicle stands at the goal, on the last piece; arguments as in `command`."""
+        if self.goal is None or len(self.pieces) > 1:
+            return False
+        return (self._there(pose, compose(path_frame, self.goal))
+                and abs(velocity[0]) <= self.settings.trans_stopped_vel)
+
+    def _there(self, pose: np.ndarray, goal: np.ndarray, share: float = 1.0) -> bool:
+        """Whether a pose is the goal, within a `share` of the tolerance of its place."""
+        s = self.settings
+        return bool(np.hypot(*(goal[:2] - pose[:2])) <= share * s.xy_goal_tolerance
+                    and abs(wrap_angle(goal[2] - pose[2])) <= s.yaw_goal_tolerance)
+
+    def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+                velocity: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> Command | None:
+        """The next velocity; None where the way is blocked or the vehicle has left its path.
+
+        `pose` (3,) in the costmap's frame; `velocity` (3,) in the base frame; `footprint` (K, 2);
+        `path_frame`: pose of the path's frame in the costmap's.
+        """
+        if self.goal is None:
+            return None
+        pose, velocity = np.array(pose, float), np.array(velocity, float)
+        standing = Command(0.0, 0.0, 0.0, pose[None])
+        goal = compose(np.asarray(path_frame, float), self.goal)
+        footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
+        if footprint is None:
+            return None
+        while self.pieces:
+            piece = self.pieces[0]
+            poses = compose(np.asarray(path_frame, float), piece.poses)
+            if piece.direction == ON_THE_SPOT:
+                angle = wrap_angle(poses[-1, 2] - pose[2])
+                if abs(angle) > 0.5 * self.settings.yaw_goal_tolerance:
+                    return self._turn(costmap, footprint, pose, velocity, angle)
+                left = 0.0
+            else:
+                left = self._left(piece, poses, pose)
+                if left > DONE and not (len(self.pieces) == 1 and self._there(pose, goal, 0.4)):
+                    return self._drive(costmap, footprint, pose, velocity, piece, poses, left)
+            if abs(velocity[0]) > self.settings.trans_stopped_vel:
+                return standing
+            if len(self.pieces) == 1:
+                break
+            self.pieces.pop(0)
+            self.at = 0
+        return standing if self._there(pose, goal) else None
+
+    def _left(self, piece: Piece, poses: np.ndarray, pose: np.ndarray) -> float:
+        """What is left of a piece, m; the place on it, `at`, never goes back."""
+        lengths = piece.lengths
+        near = np.nonzero(lengths[self.at:] <= lengths[self.at] + AHEAD)[0]
+        self.at += int(np.hypot(*(poses[self.at + near, :2] - pose[:2]).T).argmin())
+        x, y, yaw = poses[-1]
+        to_end = piece.direction * ((x - pose[0]) * np.cos(yaw) + (y - pose[1]) * np.sin(yaw))
+        left = lengths[-1] - lengths[self.at]
+        return float(to_end if left < self.settings.min_lookahead_dist else left)
+
+    def _turn(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+              velocity: np.ndarray, angle: float) -> Command | None:
+        """On the spot towards the end of the piece."""
+        s = self.settings
+        if not s.turn_in_place:
+            return None
+        if abs(velocity[0]) > s.trans_stopped_vel:
+            return Command(0.0, 0.0, 0.0, pose[None])
+        poses = turned(pose, angle)
+        if (footprints.costs(costmap, footprint, poses) < 0).any():
+            return None
+        omega = turning(angle, velocity[2], s.min_vel_theta, s.max_vel_theta, s.acc_lim_theta,
+                        1.0 / s.controller_frequency)
+        return Command(0.0, 0.0, omega, poses)
+
+    def _drive(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+               velocity: np.ndarray, piece: Piece, poses: np.ndarray, left: float
+               ) -> Command | None:
+        """Along an arc to the carrot, or as near to that as is free."""
+        s = self.settings
+        if np.hypot(*(poses[self.at, :2] - pose[:2])) > s.max_deviation:
+            return None
+        speed = abs(velocity[0])
+        reach = float(np.clip(speed * s.lookahead_time, s.min_lookahead_dist,
+                              s.max_lookahead_dist))
+        carrot = self._carrot(piece, poses, reach)
+        offset = relative(pose, carrot)
+        limit = 1.0 / s.minimum_turning_radius
+        wanted = float(np.clip(2 * offset[1] / max(offset[0] ** 2 + offset[1] ** 2, 1e-6),
+                               -limit, limit))
+        most = self._speed(costmap, footprint, pose, wanted, left)
+        # So far it must be free: to the carrot, or as far as it drives in the time and brakes.
+        ahead = min(reach, most * s.max_allowed_time_to_collision_up_to_carrot)
+        ahead = max(ahead, speed ** 2 / (2 * s.acc_lim_x) + costmap.resolution)
+        ahead = min(ahead, max(left, costmap.resolution))
+        chosen = self._free_arc(costmap, footprint, pose, piece, wanted, limit, carrot, ahead)
+        if chosen is None:
+            return None
+        curvature, arc = chosen
+        return self._paced(velocity, piece.direction * most, curvature, arc)
+
+    def _paced(self, velocity: np.ndarray, wanted: float, curvature: float, arc: np.ndarray
+               ) -> Command:
+        """Towards the wanted speed, no faster than the limits allow."""
+        s = self.settings
+        step = s.acc_lim_x / s.controller_frequency
+        vx = float(np.clip(wanted, velocity[0] - step, velocity[0] + step))
+        if 0.0 < vx * np.sign(wanted) < s.min_approach_linear_velocity:
+            vx = float(np.sign(wanted)) * s.min_approach_linear_velocity
+        if abs(vx * curvature) > s.max_vel_theta:
+            vx = float(np.sign(vx)) * s.max_vel_theta / abs(curvature)
+        return Command(vx, 0.0, vx * curvature, arc)
+
+    def _carrot(self, piece: Piece, poses: np.ndarray, reach: float) -> np.ndarray:
+        """The pose (3,) that is pursued: `reach` along the piece, or straight on after its end."""
+        target = piece.lengths[self.at] + reach
+        if target <= piece.lengths[-1]:
+            return poses[int(np.searchsorted(piece.lengths, target))]
+        beyond = piece.direction * (target - piece.lengths[-1])
+        return compose(poses[-1], (beyond, 0.0, 0.0))
+
+    def _speed(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, curvature: float,
+               left: float) -> float:
+        """m/s, above 0: slower in curves, beside obstacles and before the end."""
+        s = self.settings
+        speed = s.desired_linear_vel
+        if s.use_regulated_linear_velocity_scaling and curvature:
+            radius = 1.0 / abs(curvature)
+            speed *= min(radius / s.regulated_linear_scaling_min_radius, 1.0)
+        if s.use_cost_regulated_linear_velocity_scaling:
+            space = self._space(costmap, footprint, pose)
+            if space < s.cost_scaling_dist:
+                speed *= min(s.cost_scaling_gain * space / s.cost_scaling_dist, 1.0)
+        speed = max(speed, min(s.regulated_linear_scaling_min_speed, s.desired_linear_vel))
+        speed *= min(left / s.approach_velocity_scaling_dist, 1.0)
+        speed = min(speed, np.sqrt(2 * 0.5 * s.acc_lim_x * max(left, 0.0)))
+        return max(float(speed), s.min_approach_linear_velocity)
+
+    def _space(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> float:
+        """Distance of the outline's corners and sides to the nearest obstacle, about, m."""
+        if len(footprint) < 3:
+            return np.inf
+        outline = np.vstack((footprint, 0.5 * (footprint + np.roll(footprint, 1, axis=0))))
+        points = compose(pose, np.column_stack((outline, np.zeros(len(outline)))))[:, :2]
+        cells = costmap.cells_of(points)
+        inside = cells[costmap.contains(cells)]
+        if not len(inside):
+            return 0.0
+        return float(footprints.free_radii(costmap)[tuple(inside.T)].min() * costmap.resolution)
+
+    def _free_arc(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, piece: Piece,
+                  wanted: float, limit: float, carrot: np.ndarray, ahead: float
+                  ) -> tuple[float, np.ndarray] | None:
+        """(curvature, poses) of the wanted arc; where that is not free, of the one nearest to the
+        carrot that is. None: there is no free one."""
+        signed = piece.direction * ahead
+        arc = arc_of(pose, signed, wanted, costmap.resolution)
+        if (footprints.costs(costmap, footprint, arc) >= 0).all():
+            return wanted, arc
+        best, least = None, np.inf
+        for curvature in np.linspace(-limit, limit, BENDS):
+            arc = arc_of(pose, signed, curvature, costmap.resolution)
+            if (footprints.costs(costmap, footprint, arc) < 0).any():
+                continue
+            offset = relative(arc[-1], carrot)
+            error = abs(offset[1]) + 0.3 * abs(wrap_angle(offset[2]))
+            if error < least:
+                best, least = (float(curvature), arc), error
+        return best
+
+
+def arc_of(pose: np.ndarray, length: float, curvature: float, step: float) -> np.ndarray:
+    """Poses (M, 3) along an arc, no more than `step`, m, apart; a length below 0 goes backwards."""
+    steps = max(int(np.ceil(abs(length) / step)), 1)
+    poses = np.empty((steps + 1, 3))
+    poses[0] = pose
+    for n in range(1, steps + 1):
+        move(poses[0], DRIVE, length * n / steps, curvature, poses[n])
+    return poses

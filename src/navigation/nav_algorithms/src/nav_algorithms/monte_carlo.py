@@ -1,0 +1,193 @@
+"""Where a robot is on a map: Monte Carlo localisation with as many particles as it takes.
+
+S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 8.3: KLD-sampling, and random poses
+when the scans fit worse than they used to. As in amcl, with these differences: particles are drawn
+with low variance; the averages that tell of a lost robot are of the scans alone, not of the number
+of particles; and random poses are drawn where the latest scan fits (places.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms import motion_models, poses
+from nav_algorithms.estimates import Estimate, estimate, have_converged
+from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.particle_bins import bins_of, particles_needed
+from nav_algorithms.places import Places
+from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
+
+NOTICED = 0.1  # share by which scans must fit worse than they used to before that means anything
+# Where a robot starts anywhere, several places look alike, and the right one may have been given up
+# before the robot saw the difference: this share is drawn anew in each of its first scans.
+SEARCH_SHARE, SEARCH_SCANS = 0.1, 40
+
+
+@dataclass(frozen=True)
+class LocalisationSettings:
+    """amcl's parameters by its names; m, rad."""
+
+    min_particles: int = 100
+    max_particles: int = 5000
+    kld_err: float = 0.01
+    kld_z: float = 0.99
+    odom_model_type: str = "diff"
+    odom_alpha1: float = 0.2
+    odom_alpha2: float = 0.2
+    odom_alpha3: float = 0.2
+    odom_alpha4: float = 0.2
+    odom_alpha5: float = 0.2
+    update_min_d: float = 0.2
+    update_min_a: float = np.pi / 6
+    resample_interval: int = 2
+    selective_resampling: bool = False
+    recovery_alpha_slow: float = 0.001
+    recovery_alpha_fast: float = 0.1
+
+    @property
+    def alphas(self) -> np.ndarray:
+        """(5,), as motion_models take them."""
+        return np.array([getattr(self, f"odom_alpha{i}") for i in range(1, 6)])
+
+
+@dataclass(frozen=True)
+class Step:
+    """What came of one scan: whether it was weighed, and whether the estimate is a new one."""
+
+    weighed: bool
+    estimated: bool
+
+
+class Localisation:
+    """The particles on one map; scans come in the order of their time.
+
+    `particles` (N, 3), m and rad in the map's frame, and `weights` (N,), which sum up to 1;
+    `estimate` is of them, and `map_to_odom` (3,) the odometry's frame as it puts it on the map.
+    """
+
+    def __init__(self, grid: OccupancyGrid, settings: LocalisationSettings,
+                 sensor: SensorSettings, random: np.random.Generator) -> None:
+        """Lost: call start_at or start_anywhere."""
+        self._settings = settings
+        self._random = random
+        self._model = LaserModel(grid, sensor)
+        self._places = Places(grid, random)
+        self.start_at(np.zeros(3), np.zeros((3, 3)))
+
+    def start_at(self, mean: np.ndarray, covariance: np.ndarray) -> None:
+        """At a pose (3,) that is known up to a covariance (3, 3)."""
+        deviates = self._random.standard_normal((self._settings.max_particles, 3))
+        values, axes = np.linalg.eigh(covariance)
+        spread = axes * np.sqrt(np.maximum(values, 0.0))
+        self._start(np.asarray(mean, float) + deviates @ spread.T)
+
+    def start_anywhere(self) -> None:
+        """Anywhere on the free cells, looking anywhere; the first scan says where rather."""
+        self._start(self._places.draw(self._settings.max_particles))
+        self._anywhere = True
+
+    def _start(self, particles: np.ndarray) -> None:
+        self.particles = particles
+        self.particles[:, 2] = poses.wrap_angle(self.particles[:, 2])
+        self.weights = np.full(len(particles), 1 / len(particles))
+        self.estimate: Estimate = estimate(self.particles, self.weights)
+        self._averages = {"slow": 0.0, "fast": 0.0}
+        self._fresh = 0  # how many, the last ones, are random poses
+        self._odometry: np.ndarray | None = None
+        self._lasers: dict[str, bool] = {}  # whether the next scan of each is to be weighed
+        self._wanted = self._anywhere = False
+        self._weighed = 0
+        self.map_to_odom = np.zeros(3)
+
+    def weigh_next(self) -> None:
+        """The next scan is weighed though the robot may stand."""
+        self._wanted = True
+
+    def forget_odometry(self) -> None:
+        """The next scan's odometry is where this one's was, whatever it says."""
+        self._odometry = None
+
+    def add(self, odometry: np.ndarray, scan: Scan, laser: str = "") -> Step:
+        """A scan by the laser of that name, taken where the odometry was at `odometry` (3,)."""
+        odometry = np.asarray(odometry, float)
+        self._lasers.setdefault(laser, True)
+        first = self._odometry is None
+        if first or self._has_moved(odometry) or self._wanted:
+            self._lasers = dict.fromkeys(self._lasers, True)
+            self._wanted = self._wanted and first  # as upstream: a new start's scan does not count
+        if not self._lasers[laser]:
+            return Step(weighed=False, estimated=False)
+        self._lasers[laser] = False
+        if not first:
+            self._move(odometry)
+        elif self._anywhere and self._weighed == 0:
+            self.particles = self._places.draw_fitting(len(self.particles), scan, self._model)
+        self._odometry = odometry
+        self._weigh(scan)
+        resampled = self._weighed % self._settings.resample_interval == 0
+        if resampled:
+            self._resample(scan)
+        if resampled or first:
+            self.estimate = estimate(self.particles, self.weights)
+            self.map_to_odom = poses.compose(self.estimate.pose, poses.invert(odometry))
+        return Step(weighed=True, estimated=resampled or first)
+
+    def _has_moved(self, odometry: np.ndarray) -> bool:
+        moved = np.abs(odometry - self._odometry)
+        return bool((moved[:2] > self._settings.update_min_d).any()
+                    or abs(poses.wrap_angle(odometry[2] - self._odometry[2]))
+                    > self._settings.update_min_a)
+
+    def _move(self, odometry: np.ndarray) -> None:
+        sample = motion_models.MODELS[self._settings.odom_model_type]
+        self.particles = sample(self.particles, self._odometry, odometry, self._settings.alphas,
+                                self._random.standard_normal(self.particles.shape))
+
+    def _weigh(self, scan: Scan) -> None:
+        fit = self._model.compare(self.particles, scan, have_converged(self.particles))
+        old = slice(len(self.particles) - self._fresh)  # random poses fit badly and prove nothing
+        total = self.weights[old].sum()
+        part = fit.parts[old] @ self.weights[old] / total if total > 0.0 else 0.0
+        weights = self.weights * np.exp(fit.logs - fit.logs.max())  # however badly the scan fits
+        self.weights = weights / weights.sum()
+        self._weighed += 1
+        for name in ("slow", "fast"):
+            share = max(getattr(self._settings, f"recovery_alpha_{name}"), 1 / self._weighed)
+            self._averages[name] += share * (part - self._averages[name])
+
+    @property
+    def lost(self) -> float:
+        """Share of the particles that the next resampling draws as random poses."""
+        searched = SEARCH_SHARE if self._anywhere and self._weighed < SEARCH_SCANS else 0.0
+        if self._settings.recovery_alpha_fast == 0.0 or self._averages["slow"] == 0.0:
+            return searched
+        share = 1.0 - self._averages["fast"] / self._averages["slow"]
+        return max(searched, share if share > NOTICED else 0.0)
+
+    def _resample(self, scan: Scan) -> None:
+        settings, random, lost = self._settings, self._random, self.lost
+        if (settings.selective_resampling
+                and 1.0 / (self.weights**2).sum() > 0.5 * len(self.weights)):
+            return
+        most = settings.max_particles
+        sums = np.cumsum(self.weights)
+        drawn = self.particles[_at(sums, random.random(most))]
+        anew = np.flatnonzero(random.random(most) < lost)
+        if len(anew):
+            drawn[anew] = self._places.draw_fitting(len(anew), scan, self._model)
+        count = particles_needed(bins_of(drawn), settings.kld_err, settings.kld_z,
+                                 min(settings.min_particles, most), most)
+        # As many as these are enough; those from the particles are drawn again, evenly spaced.
+        fresh = drawn[anew[anew < count]]
+        kept = count - len(fresh)
+        evenly = (np.arange(kept) + random.random()) / max(kept, 1)
+        self.particles = np.concatenate((self.particles[_at(sums, evenly)], fresh))
+        self.weights = np.full(count, 1 / count)
+        self._fresh = len(fresh)
+
+
+def _at(sums: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Whose weights, summed up, each share (0 to 1) of their sum falls into."""
+    return np.minimum(np.searchsorted(sums, shares * sums[-1], side="right"), len(sums) - 1)

@@ -1,0 +1,239 @@
+"""Rao-Blackwellised particle SLAM: each particle is a path, and has the map that its path makes.
+
+The design is that of G. Grisetti, C. Stachniss, W. Burgard, "Improved techniques for grid mapping
+with Rao-Blackwellized particle filters" (2007): a particle moves to a draw from what odometry and
+scan say together, and particles are drawn anew only when few of them carry the weight. Here that
+posterior is the Gaussian at the matched pose, and maps are shared until they differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms import poses as pose_arithmetic
+from nav_algorithms.beam_walls import holds
+from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.hit_maps import HitMaps
+from nav_algorithms.map_rendering import MapRendering
+from nav_algorithms.pose_tree import PoseTree
+from nav_algorithms.proposals import propose
+from nav_algorithms.slam_motion import StepSum
+
+SEARCHED = 2.5     # deviations of the odometry to either side that a search covers
+MOST_STEPS = 5     # of a search to either side
+SEARCH_BEAMS = 90  # enough for a search
+MATCHED = 0.25     # cells; how far beams are from the walls where a scan matches: about 1 cm
+
+
+@dataclass(frozen=True)
+class SlamSettings:
+    """gmapping's parameters by its names; m, rad, s."""
+
+    maxUrange: float = 80.0
+    maxRange: float = 80.0
+    minimumScore: float = 0.0
+    sigma: float = 0.05
+    kernelSize: int = 1
+    lstep: float = 0.05
+    astep: float = 0.05
+    iterations: int = 5
+    lsigma: float = 0.075
+    ogain: float = 3.0
+    lskip: int = 0
+    srr: float = 0.1
+    srt: float = 0.2
+    str: float = 0.1
+    stt: float = 0.2
+    linearUpdate: float = 1.0
+    angularUpdate: float = 0.5
+    temporalUpdate: float = -1.0
+    resampleThreshold: float = 0.5
+    particles: int = 30
+    xmin: float = -100.0
+    ymin: float = -100.0
+    xmax: float = 100.0
+    ymax: float = 100.0
+    delta: float = 0.05
+    occ_thresh: float = 0.25
+
+
+class ParticleSlam:
+    """Maps while it localises; the same scans, odometry and seed give the same bits."""
+
+    def __init__(self, settings: SlamSettings, seed: int = 0) -> None:
+        self.settings = settings
+        self._random = np.random.default_rng(seed)
+        count = settings.particles
+        lower, upper = (settings.xmin, settings.ymin), (settings.xmax, settings.ymax)
+        self._maps = HitMaps(count, settings.delta, lower, upper)
+        self._tree = PoseTree(count)
+        self._rendering = MapRendering(settings.delta, lower, upper)
+        self._scans: list[tuple[np.ndarray, np.ndarray]] = []
+        self._stamps: list[float] = []
+        self._laser = np.zeros(2)
+        self._widths = np.array([settings.lsigma / settings.delta,
+                                 settings.sigma / settings.delta**2, MATCHED])
+        self._step = StepSum(settings.srr, settings.srt, settings.str, settings.stt)
+        self._odometry: np.ndarray | None = None
+        self._poses = np.zeros((count, 3))
+        self._log_weights = np.zeros(count)  # since the last resampling, times the gain
+        self._path_likelihoods = np.zeros(count)  # of each particle's whole path
+
+    def add(self, stamp: float, odometry: np.ndarray, ranges: np.ndarray, angles: np.ndarray,
+            laser: np.ndarray) -> bool:
+        """A scan; True if it was used: the first one, or one after enough way, turn or time.
+
+        `odometry` (x, y, yaw) of the robot at `stamp`, s; `ranges`, m, at `angles`, rad, (N,) as
+        seen from `laser` (x, y, yaw) in the robot's frame; inf or nan where nothing was measured.
+        """
+        odometry = np.array(odometry, float)
+        if self._odometry is None:
+            self._poses[:] = odometry
+        else:
+            self._step.add(self._odometry, odometry)
+        self._odometry = odometry
+        if not self._is_due(stamp):
+            return False
+        ends, is_hit, usable = self._ends(ranges, angles, np.asarray(laser, float))
+        self._laser = np.array(laser[:2], float)
+        if self._scans:
+            width = abs(angles[1] - angles[0]) if len(angles) > 1 else 0.0
+            self._advance(ends[is_hit], holds(ends[is_hit], usable[is_hit], width))
+        self._step.clear()
+        self._tree.append(self._poses, len(self._scans))
+        self._maps.add(self._poses, ends[is_hit])
+        self._scans.append((ends, is_hit))
+        self._stamps.append(stamp)
+        return True
+
+    @property
+    def best(self) -> int:
+        """The particle whose path explains all scans best."""
+        return int(np.argmax(self._path_likelihoods))
+
+    @property
+    def pose(self) -> np.ndarray:
+        """(x, y, yaw) of the best particle, moved on by the odometry since the last used scan."""
+        return pose_arithmetic.compose(self._poses[self.best], self._step.mean)
+
+    @property
+    def map_to_odom(self) -> np.ndarray:
+        """Where the odometry's frame is in the map's, (3,)."""
+        if self._odometry is None:
+            return np.zeros(3)
+        return pose_arithmetic.compose(self.pose, pose_arithmetic.invert(self._odometry))
+
+    @property
+    def entropy(self) -> float:
+        """Of the particles' weights, nat."""
+        weights = self._weights()
+        return float(-(weights[weights > 0] * np.log(weights[weights > 0])).sum())
+
+    def trajectory(self) -> tuple[np.ndarray, np.ndarray]:
+        """(stamps (N,), poses (N, 3)) of the best particle at the scans that were used."""
+        path, numbers = self._tree.path(self.best)
+        return np.array(self._stamps)[numbers], path
+
+    def grid(self) -> OccupancyGrid:
+        """The best particle's map."""
+        path, numbers = self._tree.path(self.best)
+        self._rendering.follow(path, numbers, self._scans, self._laser)
+        return self._rendering.grid(self.settings.occ_thresh)
+
+    def _is_due(self, stamp: float) -> bool:
+        settings = self.settings
+        return (not self._scans
+                or self._step.distance >= settings.linearUpdate
+                or self._step.turn >= settings.angularUpdate
+                or (settings.temporalUpdate >= 0.0
+                    and not 0.0 <= stamp - self._stamps[-1] <= settings.temporalUpdate))
+
+    def _ends(self, ranges: np.ndarray, angles: np.ndarray,
+              laser: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Where the beams ended in the robot's frame, (N, 2), m, which of them hit, their lengths.
+
+        A range beyond maxRange says nothing, one beyond maxUrange only that the way is free.
+        """
+        limit = min(self.settings.maxUrange, self.settings.maxRange)
+        with np.errstate(invalid="ignore"):
+            told = (ranges > 0.0) & (ranges <= self.settings.maxRange)
+        ranges, angles = ranges[told], angles[told]
+        usable = np.minimum(ranges, limit)
+        ends = usable[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+        return pose_arithmetic.transform_points(laser, ends), ranges <= limit, usable
+
+    def _advance(self, hits: np.ndarray, held: np.ndarray) -> None:
+        """Moves, weighs and, if few particles carry the weight, draws the particles anew."""
+        settings, maps, count = self.settings, self._maps, len(self._poses)
+        noise = np.linalg.cholesky(self._step.covariance)
+        steps = self._step.mean + self._random.normal(size=(count, 3)) @ noise.T
+        moved = maps.in_cells(pose_arithmetic.compose(self._poses, steps))
+        priors = maps.in_cells(pose_arithmetic.compose(self._poses, self._step.mean))
+        likelihoods, matched, factors = np.zeros(count), priors.copy(), np.zeros((count, 3, 3))
+        propose(maps.tables, maps.pool, np.hstack((hits / settings.delta, held)), priors,
+                moved, self._informations(), self._random.normal(size=(count, 3)),
+                *self._search_grid(), max(1, len(hits) // SEARCH_BEAMS), settings.iterations,
+                settings.kernelSize, self._widths, settings.minimumScore, settings.lskip + 1,
+                likelihoods, matched, factors)
+        self._learn_odometry(matched - priors, factors)
+        moved[:, :2] = moved[:, :2] * settings.delta + maps.origin
+        moved[:, 2] = pose_arithmetic.wrap_angle(moved[:, 2])
+        self._poses = moved
+        self._log_weights += likelihoods / (settings.ogain * count)
+        self._path_likelihoods += likelihoods
+        self._resample()
+
+    def _learn_odometry(self, errors: np.ndarray, factors: np.ndarray) -> None:
+        """From the odometry's `errors` (N, 3) that the particles found, in cells and rad.
+
+        Their mean: what a particle drew last time is its own error, not the odometry's.
+        """
+        found = factors[:, 0, 0] > 0
+        if not found.all():
+            return
+        turned, scale = self._turned(), np.diag([self.settings.delta, self.settings.delta, 1.0])
+        error = scale @ np.einsum("nji,nj->i", turned, errors) / len(errors)
+        back = scale @ turned[self.best].T @ np.linalg.inv(factors[self.best]).T
+        self._step.learn(error, back @ back.T)
+
+    def _search_grid(self) -> tuple[np.ndarray, np.ndarray]:
+        """(steps to either side (3,), their size (3,) in cells and rad) for this step's noise."""
+        settings = self.settings
+        sizes = np.array([settings.lstep, settings.lstep, settings.astep])
+        spread = SEARCHED * np.sqrt(np.diag(self._step.covariance))
+        halves = np.minimum(MOST_STEPS, spread / sizes + 0.5).astype(np.int64)
+        return halves, sizes / (settings.delta, settings.delta, 1.0)
+
+    def _informations(self) -> np.ndarray:
+        """Of each particle's step, (N, 3, 3), turned as the particle is, in cells and rad."""
+        turned, scale = self._turned(), np.diag([self.settings.delta, self.settings.delta, 1.0])
+        information = scale @ np.linalg.inv(self._step.covariance) @ scale
+        return np.ascontiguousarray(turned @ information @ turned.transpose(0, 2, 1))
+
+    def _turned(self) -> np.ndarray:
+        """From each robot's frame to the map's, (N, 3, 3)."""
+        cos, sin = np.cos(self._poses[:, 2]), np.sin(self._poses[:, 2])
+        turned = np.zeros((len(cos), 3, 3))
+        turned[:, 0, 0], turned[:, 0, 1] = cos, -sin
+        turned[:, 1, 0], turned[:, 1, 1], turned[:, 2, 2] = sin, cos, 1.0
+        return turned
+
+    def _weights(self) -> np.ndarray:
+        weights = np.exp(self._log_weights - self._log_weights.max())
+        return weights / weights.sum()
+
+    def _resample(self) -> None:
+        """Low-variance draw when the effective number of particles is below the threshold."""
+        weights = self._weights()
+        count = len(weights)
+        if 1.0 / (weights**2).sum() >= self.settings.resampleThreshold * count:
+            return
+        places = (np.arange(count) + self._random.random()) / count
+        chosen = np.minimum(np.searchsorted(np.cumsum(weights), places), count - 1)
+        self._poses = self._poses[chosen]
+        self._path_likelihoods = self._path_likelihoods[chosen]
+        self._log_weights = np.zeros(count)
+        self._maps.choose(chosen)
+        self._tree.choose(chosen)

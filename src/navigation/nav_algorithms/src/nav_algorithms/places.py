@@ -1,0 +1,44 @@
+"""Poses that a lost robot may have: on free cells, and if wanted where its latest scan fits.
+
+Drawing from what the sensor says instead of from nowhere is S. Lenser and M. Veloso's "Sensor
+resetting localization for poorly modelled mobile robots" (2000). In a house a random pose is within
+reach of the true one once in tens of thousands of draws, and a few hundred would wait for long.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nav_algorithms.grid import FREE, OccupancyGrid
+from nav_algorithms.sensor_models import LaserModel, Scan
+
+TRIED = 60_000    # poses that a scan is compared with, at most: one every 10 degrees and 0.01 m^2
+SHARPNESS = 12.0  # power of the weights: above 1 because amcl's weights hardly tell poses apart
+
+
+class Places:
+    """Free cells of one map."""
+
+    def __init__(self, grid: OccupancyGrid, random: np.random.Generator) -> None:
+        """A map without free cells is taken for free wherever it is not occupied."""
+        free = grid.cells == FREE
+        self._corners = np.argwhere(free if free.any() else grid.cells <= FREE)[:, ::-1]
+        if not len(self._corners):
+            self._corners = np.zeros((1, 2))
+        self._resolution, self._origin = grid.resolution, grid.origin
+        self._random = random
+
+    def draw(self, count: int) -> np.ndarray:
+        """Poses (count, 3), m and rad, evenly spread over the free cells."""
+        cells = self._corners[self._random.integers(len(self._corners), size=count)]
+        points = (cells + self._random.random((count, 2))) * self._resolution + self._origin
+        return np.column_stack((points, self._random.uniform(-np.pi, np.pi, count)))
+
+    def draw_fitting(self, count: int, scan: Scan, model: LaserModel) -> np.ndarray:
+        """Poses (count, 3) in no order, half of them anywhere, half where the scan fits well."""
+        anywhere = self.draw(count - count // 2)
+        tried = self.draw(TRIED)
+        logs = SHARPNESS * model.compare(tried, scan).logs
+        chances = np.exp(logs - logs.max())
+        chosen = self._random.choice(TRIED, count // 2, p=chances / chances.sum())
+        return self._random.permutation(np.concatenate((anywhere, tried[chosen])))

@@ -1,0 +1,88 @@
+"""When nothing else helps: look round, or leave the tight spot; one command a call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.local_planning.goal import turned
+from nav_algorithms.local_planning.pure_pursuit import arc_of
+from nav_algorithms.local_planning.velocities import Command
+
+
+@dataclass(frozen=True)
+class RotateSettings:
+    """Names and defaults of rotate_recovery/RotateRecovery; rad, s."""
+
+    sim_granularity: float = 0.017
+    frequency: float = 20.0
+    acc_lim_th: float = 3.2
+    max_rotational_vel: float = 1.0
+    min_in_place_rotational_vel: float = 0.4
+    yaw_goal_tolerance: float = 0.10
+
+
+@dataclass(frozen=True)
+class EscapeSettings:
+    """How to leave a tight spot; m, s. A radius of 0 is a robot that only goes straight."""
+
+    distance: float = 0.4
+    speed: float = 0.1
+    minimum_turning_radius: float = 0.0
+
+
+def rotation(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, turned_so_far: float,
+             settings: RotateSettings = RotateSettings()) -> Command | None:
+    """The next command of one full turn to the left, of which `turned_so_far`, rad, is done.
+
+    Zero once it is done; None where the footprint (K, 2) would touch something on the rest of it.
+    `pose` (3,) in the costmap's frame.
+    """
+    left = 2 * np.pi - turned_so_far
+    pose = np.asarray(pose, float)
+    if left <= settings.yaw_goal_tolerance:
+        return Command(0.0, 0.0, 0.0, pose[None])
+    footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
+    if footprint is None:
+        return None
+    poses = turned(pose, left, settings.sim_granularity)
+    if (footprints.costs(costmap, footprint, poses) < 0).any():
+        return None
+    omega = float(np.clip(np.sqrt(2 * settings.acc_lim_th * left),
+                          settings.min_in_place_rotational_vel, settings.max_rotational_vel))
+    return Command(0.0, 0.0, omega, poses)
+
+
+def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+           settings: EscapeSettings = EscapeSettings()) -> Command | None:
+    """A slow drive out of a tight spot, backwards or forwards; None where all ways are blocked.
+
+    Of the ways that touch nothing over `distance`, or over half of it where there is none, the one
+    that ends farthest from all obstacles. Backwards comes first among equals: there the robot came
+    from. The command holds for the length of its trajectory.
+    """
+    pose = np.asarray(pose, float)
+    footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
+    if footprint is None:
+        return None
+    bends = [0.0]
+    if settings.minimum_turning_radius > 0.0:
+        bends += [1.0 / settings.minimum_turning_radius, -1.0 / settings.minimum_turning_radius]
+    radii = footprints.free_radii(costmap)
+    for distance in (settings.distance, 0.5 * settings.distance):
+        best, widest = None, 0.0
+        for sign in (-1.0, 1.0):
+            for bend in bends:
+                arc = arc_of(pose, sign * distance, bend, 0.5 * costmap.resolution)
+                if (footprints.costs(costmap, footprint, arc) < 0).any():
+                    continue
+                space = radii[tuple(costmap.cells_of(arc[-1, :2]))]
+                if space > widest + 1e-9:
+                    speed = sign * settings.speed
+                    best, widest = Command(speed, 0.0, speed * bend, arc), space
+        if best is not None:
+            return best
+    return None

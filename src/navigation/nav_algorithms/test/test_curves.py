@@ -1,0 +1,70 @@
+"""Reeds-Shepp and Dubins curves: they arrive, and are as short as is known."""
+
+import numpy as np
+import pytest
+
+from nav_algorithms.global_planning import curves
+from nav_algorithms.poses import wrap_angle
+
+
+def end_of(word):
+    pose = np.zeros(3)
+    for length, curvature in word:
+        yaw = pose[2] + length * curvature
+        if curvature:
+            pose[0] += (np.sin(yaw) - np.sin(pose[2])) / curvature
+            pose[1] += (np.cos(pose[2]) - np.cos(yaw)) / curvature
+        else:
+            pose[:2] += length * np.array([np.cos(yaw), np.sin(yaw)])
+        pose[2] = yaw
+    return pose
+
+
+def words_to(family, goal):
+    words = np.zeros((curves.WORDS, curves.PIECES, 2))
+    return words[:family(words, *map(float, goal))]
+
+
+def shortest(family, goal):
+    return min(np.abs(word[:, 0]).sum() for word in words_to(family, goal))
+
+
+@pytest.mark.parametrize("family", [curves.reeds_shepp, curves.dubins])
+def test_every_word_ends_at_the_goal(family):
+    generator = np.random.default_rng(0)
+    for _ in range(500):
+        goal = generator.uniform([-5, -5, -np.pi], [5, 5, np.pi])
+        found = words_to(family, goal)
+        assert len(found)
+        for word in found:
+            end = end_of(word)
+            assert end[:2] == pytest.approx(goal[:2], abs=1e-6)
+            assert wrap_angle(end[2] - goal[2]) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("goal, length", [
+    ((5, 0, 0), 5), ((-5, 0, 0), 5), ((2, 0, np.pi), np.pi), ((0, 2, np.pi), np.pi)])
+def test_known_shortest_drives(goal, length):
+    assert shortest(curves.reeds_shepp, goal) <= length + 1e-9
+    if goal[0] == 5 or goal[1] == 2:
+        assert shortest(curves.reeds_shepp, goal) == pytest.approx(length)
+
+
+def test_turning_round_on_the_spot_takes_three_arcs():
+    assert shortest(curves.reeds_shepp, (0, 0, np.pi)) == pytest.approx(np.pi)
+    assert shortest(curves.dubins, (0, 0, np.pi)) == pytest.approx(7 * np.pi / 3)
+
+
+def test_lengths_are_those_of_the_way_back():
+    generator = np.random.default_rng(1)
+    for _ in range(200):
+        x, y, yaw = generator.uniform([-4, -4, -np.pi], [4, 4, np.pi])
+        back = (-x * np.cos(yaw) - y * np.sin(yaw), x * np.sin(yaw) - y * np.cos(yaw), -yaw)
+        assert shortest(curves.reeds_shepp, (x, y, yaw)) == pytest.approx(
+            shortest(curves.reeds_shepp, back), abs=1e-6)
+
+
+def test_dubins_only_goes_forwards():
+    for goal in np.random.default_rng(2).uniform(-4, 4, (100, 3)):
+        assert (words_to(curves.dubins, goal)[:, :, 0] >= 0).all()
+        assert shortest(curves.reeds_shepp, goal) <= shortest(curves.dubins, goal) + 1e-9

@@ -1,0 +1,173 @@
+"""navfn's and global_planner's paths, with lengths worked out by hand."""
+
+import time
+
+import numpy as np
+import pytest
+
+from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
+from nav_algorithms.global_planning import astar, navfn
+from nav_algorithms.global_planning.orientation import orient
+from nav_algorithms.global_planning.potential import spread
+
+START, GOAL = np.array([-4.0, -3.0, 0.3]), np.array([4.0, 3.0, 1.0])
+
+
+def empty():
+    return Costmap(np.zeros((200, 240), np.uint8), 0.05, (-6.0, -5.0))
+
+
+def walled(gap=None):
+    """A wall at x = 0 from edge to edge, with a gap 0.5 m wide around y = `gap`."""
+    costmap = empty()
+    costmap.cells[:, 119:122] = LETHAL
+    if gap is not None:
+        row = int(costmap.cells_of((0.0, gap))[0])
+        costmap.cells[row - 5:row + 5, 119:122] = 0
+    return costmap
+
+
+def length(path):
+    return np.hypot(*np.diff(path[:, :2], axis=0).T).sum()
+
+
+def astar_plan(*arguments, **settings):
+    return astar.plan(*arguments, settings=astar.GlobalPlannerSettings(**settings))
+
+
+PLANNERS = [
+    navfn.plan, astar.plan,
+    lambda *arguments: astar_plan(*arguments, use_dijkstra=False),
+    lambda *arguments: astar_plan(*arguments, use_dijkstra=False, use_quadratic=False),
+    lambda *arguments: astar_plan(*arguments, old_navfn_behavior=True)]
+
+
+@pytest.mark.parametrize("plan", PLANNERS)
+def test_paths_begin_and_end_where_asked_and_lead_through_the_gap(plan):
+    costmap = walled(gap=2.0)
+    path = plan(costmap, START, GOAL)
+    assert path[0] == pytest.approx(START)
+    assert path[-1] == pytest.approx(GOAL)
+    assert (costmap.cells[tuple(costmap.cells_of(path[:, :2]).T)] < INSCRIBED).all()
+    crossing = path[np.abs(path[:, 0]).argmin()]
+    assert crossing[1] == pytest.approx(2.0, abs=0.26)
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).max() < 0.1
+
+
+@pytest.mark.parametrize("plan", PLANNERS)
+def test_no_way_is_none(plan):
+    assert plan(walled(), START, GOAL) is None
+    assert plan(empty(), np.array([-7.0, 0.0, 0.0]), GOAL) is None
+    assert plan(empty(), START, np.array([7.0, 0.0, 0.0])) is None
+
+
+def test_a_free_path_is_straight():
+    assert length(navfn.plan(empty(), START, GOAL)) == pytest.approx(10.0, rel=0.003)
+    streets = astar_plan(empty(), START, GOAL, use_grid_path=True, use_quadratic=False)
+    assert 10.0 < length(streets) < 11.5
+
+
+def test_the_potential_is_the_distance():
+    middle = (np.ones((101, 101)), np.array([[50, 50]]), np.zeros(1), -1, -1)
+    potential = spread(*middle, True, 0.0, 0.0)
+    rows, columns = np.mgrid[-50:51, -50:51]
+    distance = np.hypot(rows, columns)
+    assert np.abs(potential - distance).max() < 1.5
+    streets = spread(*middle, False, 0.0, 0.0)
+    assert streets == pytest.approx(np.abs(rows) + np.abs(columns))
+
+
+def test_dear_cells_are_gone_round():
+    costmap = empty()
+    costmap.cells[80:120, 60:180] = 200
+    assert length(navfn.plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) > 8.3
+    costmap.cells[80:120, 60:180] = 1
+    assert length(navfn.plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) < 8.05
+
+
+def test_the_unknown_is_crossed_if_allowed():
+    costmap = empty()
+    costmap.cells[:, 110:130] = UNKNOWN
+    assert navfn.plan(costmap, START, GOAL) is not None
+    assert navfn.plan(costmap, START, GOAL, settings=navfn.NavfnSettings(False)) is None
+    assert astar.plan(costmap, START, GOAL) is not None
+    assert astar_plan(costmap, START, GOAL, allow_unknown=False) is None
+
+
+def test_a_goal_in_a_wall_is_moved_within_the_tolerance():
+    costmap = empty()
+    costmap.cells[150:170, 190:210] = LETHAL
+    goal = np.array([4.0, 3.0, 1.0])
+    assert navfn.plan(costmap, START, goal) is None
+    path = navfn.plan(costmap, START, goal, tolerance=0.8)
+    assert 0.45 < np.hypot(*(path[-1, :2] - goal[:2])) < 0.8
+    assert path[-1, 2] == 1.0
+    assert navfn.plan(costmap, START, goal, tolerance=0.3) is None
+    assert navfn.plan(costmap, START, goal,
+                      settings=navfn.NavfnSettings(default_tolerance=0.8)) is not None
+
+
+def test_a_start_too_near_to_a_wall_is_left():
+    costmap = empty()
+    costmap.cells[60:, 30:60] = INSCRIBED
+    costmap.cells[60:, 44:46] = LETHAL
+    path = navfn.plan(costmap, np.array([-3.6, 0.0, 0.0]), GOAL)
+    assert path is not None
+    assert (costmap.cells[tuple(costmap.cells_of(path[:, :2]).T)] != LETHAL).all()
+
+
+def test_lethal_cost_and_costs_are_honoured():
+    costmap = walled(gap=0.0)
+    costmap.cells[95:105, 119:122] = 150
+    assert astar_plan(costmap, START, GOAL, lethal_cost=150) is None
+    assert astar_plan(costmap, START, GOAL, lethal_cost=253) is not None
+    near, far = (length(astar_plan(_dear(), np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]),
+                                   cost_factor=factor)) for factor in (0.1, 3.0))
+    assert near < 8.05 < far
+    cheap = length(astar_plan(_dear(), np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]),
+                              neutral_cost=5000.0, lethal_cost=253))
+    assert cheap < 8.05
+
+
+def _dear():
+    costmap = empty()
+    costmap.cells[80:120, 60:180] = 60
+    return costmap
+
+
+@pytest.mark.parametrize("mode, yaw", [(0, 0.0), (1, np.pi / 2), (4, -np.pi / 2), (5, np.pi),
+                                       (6, 0.0)])
+def test_orientation_modes_along_a_straight_path(mode, yaw):
+    path = np.column_stack((np.zeros(9), np.arange(9.0), np.zeros(9)))
+    path[-1, 2] = 1.0
+    found = orient(path, mode)
+    assert np.cos(found[1:-1, 2] - yaw) == pytest.approx(np.ones(7))
+    assert found[0, 2] == 0.0
+    assert found[-1, 2] == 1.0
+
+
+def test_orientations_that_interpolate():
+    path = np.column_stack((np.arange(9.0), np.zeros(9), np.zeros(9)))
+    path[-1, 2] = 0.8
+    assert orient(path, 2)[:, 2] == pytest.approx(np.arange(9) * 0.1)
+    assert orient(path, 3)[-1, 2] == 0.8
+    with pytest.raises(ValueError, match="0 to 6"):
+        orient(path, 7)
+    assert astar_plan(empty(), START, GOAL, orientation_mode=4)[5, 2] == pytest.approx(
+        np.arctan2(-3, -4), abs=0.1)
+
+
+def test_the_window_of_orientations_smooths():
+    path = np.column_stack((np.arange(20.0), np.arange(20) % 2, np.zeros(20)))
+    rough, smooth = orient(path, 1, 1), orient(path, 1, 5)
+    assert np.abs(smooth[6:-6, 2]).max() <= np.abs(rough[6:-6, 2]).max()
+
+
+def test_a_large_map_takes_less_than_50_ms():
+    costmap = Costmap(np.zeros((400, 400), np.uint8), 0.05, (0.0, 0.0))
+    times = []
+    for _ in range(3):
+        begin = time.process_time()
+        navfn.plan(costmap, np.array([1.0, 1.0, 0]), np.array([19.0, 19.0, 0]))
+        times.append(time.process_time() - begin)
+    assert min(times) < 0.05

@@ -1,0 +1,111 @@
+"""Paths for cars: within the turning radius, free, and with as many cusps as are needed."""
+
+import numpy as np
+import pytest
+
+from nav_algorithms.costmap import footprint
+from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
+from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings, plan
+from nav_algorithms.local_planning.pieces import cut
+from nav_algorithms.poses import wrap_angle
+
+CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])
+WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
+
+
+def road(width=1.2):
+    """A straight road along x, 10 m long, between walls."""
+    costmap = Costmap(np.full((80, 200), LETHAL, np.uint8), 0.05, (0.0, -2.0))
+    half = round(width / 2 / 0.05)
+    costmap.cells[40 - half:40 + half, 2:-2] = 0
+    return costmap
+
+
+def check(path, costmap, start, goal, outline=CAR, radius=0.6):
+    assert path[0] == pytest.approx(start)
+    assert path[-1] == pytest.approx(goal)
+    assert (footprint.costs(costmap, outline, path) >= 0).all()
+    steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
+    assert steps.max() <= 0.05 + 1e-9
+    driven = steps > 1e-3
+    turns = np.abs(wrap_angle(np.diff(path[:, 2])))
+    assert (turns[driven] <= 1.05 * steps[driven] / radius + 1e-6).all()
+
+
+def test_straight_on_is_straight():
+    start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
+    path = plan(road(), start, goal, CAR)
+    check(path, road(), start, goal)
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(8.0, abs=0.05)
+    assert [piece.direction for piece in cut(path)] == [1]
+
+
+def test_turning_round_in_a_road_takes_three_points_or_more():
+    start, goal = np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi])
+    path = plan(road(1.1), start, goal, CAR)
+    check(path, road(1.1), start, np.array([3.0, 0, path[-1, 2]]))
+    assert abs(wrap_angle(path[-1, 2] - np.pi)) < 1e-9
+    assert {piece.direction for piece in cut(path)} == {1, -1}
+    assert 3 <= len(cut(path)) <= 5
+    forwards = HybridAstarSettings(allow_reverse=False)
+    assert plan(road(), start, goal, CAR, forwards) is None
+
+
+def test_backwards_where_that_is_shorter():
+    start, goal = np.array([5.0, 0, 0]), np.array([4.0, 0, 0])
+    assert [piece.direction for piece in cut(plan(road(), start, goal, CAR))] == [-1]
+
+
+def test_a_car_that_cannot_turn_there_finds_no_way():
+    goal = np.array([3.0, 0, np.pi])
+    assert plan(road(0.5), np.array([5.0, 0, 0]), goal, CAR) is None
+
+
+def test_a_robot_that_turns_on_the_spot():
+    settings = HybridAstarSettings(turn_in_place=True)
+    start, goal = np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi])
+    path = plan(road(), start, goal, WAFFLE, settings)
+    check(path, road(), start, np.array([3.0, 0, path[-1, 2]]), WAFFLE)
+    assert 0 in {piece.direction for piece in cut(path)}
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
+
+
+def test_the_unknown_is_crossed_if_allowed():
+    costmap = road()
+    costmap.cells[:, 100:110] = UNKNOWN
+    start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
+    assert plan(costmap, start, goal, CAR) is not None
+    assert plan(costmap, start, goal, CAR, HybridAstarSettings(allow_unknown=False)) is None
+
+
+def test_round_obstacles_and_twice_the_same():
+    generator = np.random.default_rng(4)
+    costmap = Costmap(np.zeros((160, 160), np.uint8), 0.05, (0.0, 0.0))
+    for row, column in generator.integers(20, 140, (25, 2)):
+        costmap.cells[row:row + 4, column:column + 4] = LETHAL
+    costmap.cells[:20] = costmap.cells[-20:] = 0
+    start, goal = np.array([1.0, 0.5, 0.0]), np.array([7.0, 7.5, 3.0])
+    path = plan(costmap, start, goal, CAR)
+    check(path, costmap, start, goal)
+    assert (plan(costmap, start, goal, CAR) == path).all()
+
+
+def test_outside_and_in_walls_is_none():
+    start = np.array([1.0, 0, 0])
+    assert plan(road(), start, np.array([20.0, 0, 0]), CAR) is None
+    assert plan(road(), start, np.array([5.0, 1.0, 0]), CAR) is None
+    assert plan(road(), np.array([1.0, 1.5, 0]), np.array([5.0, 0, 0]), CAR) is None
+
+
+def test_a_start_that_touches_is_left():
+    start, goal = np.array([1.0, 0.43, 0]), np.array([9.0, 0, 0])
+    costmap = road(1.1)
+    assert footprint.costs(costmap, CAR, start)[0] < 0
+    path = plan(costmap, start, goal, CAR)
+    assert path is not None
+    assert (footprint.costs(costmap, CAR, path[-40:]) >= 0).all()
+
+
+def test_the_number_of_steps_is_bounded():
+    settings = HybridAstarSettings(max_expansions=10)
+    assert plan(road(), np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi]), CAR, settings) is None

@@ -1,0 +1,53 @@
+"""Rays with answers worked out by hand."""
+
+import numpy as np
+import pytest
+
+from nav_algorithms import rays
+
+ROOM = np.pad(np.zeros((8, 18), np.uint8), 1, constant_values=1)  # 10 rows, 20 columns
+
+
+def test_ranges_end_at_the_near_border_of_the_wall():
+    angles = np.array([0.0, np.pi / 2, np.pi, -np.pi / 2, np.pi / 4])
+    ranges = rays.cast(ROOM, 0.5, -1.0, 2.0, 1.0, 4.5, angles, 50.0)
+    # The room's inside: x from -0.5 to 8.5, y from 2.5 to 6.5.
+    assert ranges == pytest.approx([7.5, 2.0, 1.5, 2.0, 2.0 * np.sqrt(2)])
+
+
+def test_beyond_range_max_nothing_is_seen():
+    assert rays.cast(ROOM, 0.5, -1.0, 2.0, 1.0, 4.5, np.array([0.0, np.pi]), 2.0).tolist() \
+        == [np.inf, 1.5]
+
+
+def test_from_within_an_occupied_cell_the_range_is_0():
+    assert rays.cast(ROOM, 1.0, 0.0, 0.0, 0.5, 0.5, np.array([1.0]), 5.0).tolist() == [0.0]
+
+
+def test_rays_enter_the_grid_from_outside_and_leave_it():
+    ranges = rays.cast(ROOM, 1.0, 0.0, 0.0, -3.0, 5.5, np.array([0.0, 2.0, np.pi]), 50.0)
+    assert ranges.tolist() == [3.0, np.inf, np.inf]
+
+
+def test_every_cell_on_the_way_is_seen():
+    thin = np.zeros((40, 40), np.uint8)
+    thin[np.arange(40), np.arange(40)] = 1  # a wall of corners that touch
+    angles = np.linspace(-np.pi / 4 + 0.02, 3 * np.pi / 4 - 0.02, 101)
+    ranges = rays.cast(thin, 1.0, 0.0, 0.0, 25.5, 15.5, angles + np.pi / 2, 1000.0)
+    across = 10.0 / np.sqrt(2) / np.cos(angles + np.pi / 2 - 3 * np.pi / 4)
+    inside = across < 12.0
+    assert inside.sum() > 20
+    assert (abs(ranges[inside] - across[inside]) < 1.5).all()
+
+
+def test_cells_between_two_are_counted_once_without_the_last():
+    counts = np.zeros((5, 7), np.int32)
+    rays.count_between(counts, 1, 1, 3, 5, 1)
+    assert counts.sum() == 6 and counts.max() == 1
+    assert counts[1, 1] == 1 and counts[3, 5] == 0
+
+
+def test_counting_passes_over_what_lies_outside():
+    counts = np.zeros((3, 3), np.int32)
+    rays.count_between(counts, 1, -2, 1, 9, 1)
+    assert counts.tolist() == [[0, 0, 0], [1, 1, 1], [0, 0, 0]]

@@ -1,0 +1,66 @@
+"""Recovery behaviours, one command at a time."""
+
+import numpy as np
+import pytest
+
+from nav_algorithms.costmap import footprint as footprints
+from nav_algorithms.costmap.costs import LETHAL, Costmap
+from nav_algorithms.recovery import EscapeSettings, RotateSettings, escape, rotation
+
+WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
+ORIGIN = np.zeros(3)
+
+
+def free():
+    return Costmap(np.zeros((60, 60), np.uint8), 0.05, (-1.5, -1.5))
+
+
+def test_a_turn_goes_once_round_and_slows_down():
+    assert rotation(free(), WAFFLE, ORIGIN, 0.0).omega == 1.0
+    near = rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.11, RotateSettings(acc_lim_th=1.0))
+    assert near.omega == pytest.approx(np.sqrt(0.22))
+    assert rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.101,
+                    RotateSettings(acc_lim_th=0.1)).omega == 0.4
+    assert rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.05).omega == 0.0
+
+
+def test_a_turn_that_would_touch_is_none():
+    costmap = free()
+    costmap.cells[tuple(costmap.cells_of((0.15, 0.0)))] = LETHAL
+    assert footprints.costs(costmap, WAFFLE, ORIGIN)[0] == 0
+    assert rotation(costmap, WAFFLE, ORIGIN, 0.0) is None
+    assert rotation(costmap, WAFFLE, ORIGIN, 6.1) is not None
+
+
+def test_the_way_out_of_a_dead_end_is_backwards():
+    costmap = free()
+    costmap.cells[:, 33:] = LETHAL
+    costmap.cells[:26] = costmap.cells[34:] = LETHAL
+    command = escape(costmap, WAFFLE, ORIGIN)
+    assert (command.vx, command.omega) == (-0.1, 0.0)
+    assert command.trajectory[-1] == pytest.approx([-0.4, 0, 0])
+    assert (footprints.costs(costmap, WAFFLE, command.trajectory) >= 0).all()
+
+
+def test_the_way_out_is_forwards_where_a_wall_is_behind():
+    costmap = free()
+    costmap.cells[:, :25] = LETHAL
+    assert escape(costmap, WAFFLE, ORIGIN).vx == 0.1
+
+
+def test_a_car_leaves_in_a_curve():
+    costmap = free()
+    costmap.cells[:26] = LETHAL
+    command = escape(costmap, WAFFLE, ORIGIN, EscapeSettings(minimum_turning_radius=0.5))
+    assert command.omega != 0.0
+    assert command.trajectory[-1, 1] > 0.05
+
+
+def test_half_the_way_is_better_than_none():
+    costmap = free()
+    costmap.cells[:, 33:] = LETHAL
+    costmap.cells[:, :20] = LETHAL
+    command = escape(costmap, WAFFLE, ORIGIN)
+    assert command.trajectory[-1, 0] == pytest.approx(-0.2)
+    costmap.cells[:, :25] = LETHAL
+    assert escape(costmap, WAFFLE, ORIGIN) is None

@@ -1,0 +1,211 @@
+"""What particle SLAM is made of, each with answers worked out by hand."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from nav_algorithms import poses
+from nav_algorithms.beam_walls import ALONG, holds
+from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
+from nav_algorithms.map_rendering import MapRendering
+from nav_algorithms.pose_tree import PoseTree
+from nav_algorithms.scan_matching import refine, search
+from nav_algorithms.slam_motion import STILL, StepSum
+from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
+
+CORNER = np.vstack([np.column_stack((np.full(120, 2.0), np.linspace(-3, 1, 120))),
+                    np.column_stack((np.linspace(-3, 2, 150), np.full(150, 1.0)))])
+WIDTH = 0.03  # rad, about what lies between two of its points
+LOOSE = np.diag([1e-4, 1e-4, 1e-3])  # information of an odometry that hardly counts
+WIDTHS = np.array([1.5, 20.0, 1.0])
+
+
+def beams_of(points: np.ndarray) -> np.ndarray:
+    """As the matcher wants them."""
+    ranges = np.hypot(points[:, 0], points[:, 1])
+    return np.hstack((points / 0.05, holds(points, ranges, WIDTH)))
+
+
+def corner_map(resolution: float = 0.05) -> HitMaps:
+    maps = HitMaps(1, resolution, (-5, -5), (5, 5))
+    for _ in range(3):
+        maps.add(np.zeros((1, 3)), CORNER)
+    return maps
+
+
+@pytest.mark.parametrize("off", [(0.04, 0.0, 0.0), (-0.03, 0.05, 0.02), (0.0, 0.0, -0.04)])
+def test_refinement_finds_the_pose_finer_than_a_cell(off):
+    maps, off = corner_map(), np.array(off)
+    pose = maps.in_cells(off[None])[0]
+    lower = np.empty((3, 3))
+    _, score = refine(maps.tables[0], maps.pool, beams_of(CORNER), pose.copy(), LOOSE, pose, 15, 1,
+                      WIDTHS, lower)
+    found = pose - maps.in_cells(np.zeros((1, 3)))[0]
+    assert abs(found[:2] * 0.05).max() < 0.004
+    assert abs(found[2]) < 0.002
+    assert score > 0.95 * len(CORNER)
+
+
+def test_along_a_single_wall_the_odometry_decides():
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    wall = np.column_stack((np.linspace(-2, 2, 200), np.full(200, 1.0)))
+    maps.add(np.zeros((1, 3)), wall)
+    prior = maps.in_cells(np.array([[0.2, 0.03, 0.0]]))[0]
+    pose, lower = prior.copy(), np.empty((3, 3))
+    inside = beams_of(wall[abs(wall[:, 0]) < 1.5])
+    refine(maps.tables[0], maps.pool, inside, prior, np.diag([1.0, 0.1, 100.0]), pose, 10, 1,
+           WIDTHS, lower)
+    assert pose[0] == pytest.approx(prior[0], abs=0.3)
+    assert pose[1] == pytest.approx(maps.in_cells(np.zeros((1, 3)))[0][1], abs=0.05)
+
+
+def test_beyond_the_known_part_of_a_wall_nothing_holds_the_robot_back():
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    wall = np.column_stack((np.linspace(-2, 2, 60), np.full(60, 1.0)))
+    for _ in range(5):
+        maps.add(np.zeros((1, 3)), wall)
+    prior = maps.in_cells(np.array([[0.15, 0.0, 0.0]]))[0]
+    pose, lower = prior.copy(), np.empty((3, 3))
+    refine(maps.tables[0], maps.pool, beams_of(wall), prior, np.diag([40.0, 40.0, 4e4]), pose, 10,
+           1, np.array([1.5, 20.0, 0.25]), lower)
+    assert abs(pose[0] - prior[0]) < 0.05
+
+
+def test_beams_hold_across_a_wall_and_both_ways_at_a_corner_or_a_post():
+    angles = np.arange(360) * 2 * np.pi / 360
+    square = 2.0 / np.maximum(abs(np.cos(angles)), abs(np.sin(angles)))
+    square[[20, 21]] = 1.0  # a post before the wall at x = 2
+    ends = square[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+    held = holds(ends, square, angles[1])
+    assert held[0] == pytest.approx((1, 0, ALONG), abs=1e-6)
+    assert held[90] == pytest.approx((ALONG, 0, 1), abs=1e-6)
+    for both_ways in (20, 45):
+        assert held[both_ways] == pytest.approx((1, 0, 1), abs=1e-6)
+
+
+def test_the_search_finds_its_way_from_far():
+    maps = corner_map()
+    truth = maps.in_cells(np.zeros((1, 3)))[0]
+    prior = truth + np.array([4.0, -3.0, 0.15])
+    best = np.empty(3)
+    search(maps.tables[0], maps.pool, beams_of(CORNER), prior, LOOSE,
+           np.array([5, 5, 4]), np.array([1.0, 1.0, 0.05]), 2, best)
+    assert best == pytest.approx(truth, abs=1e-9)
+
+
+def test_patches_are_shared_until_one_owner_writes():
+    maps = HitMaps(2, 0.1, (-3.2, -3.2), (3.2, 3.2))
+    maps.add(np.zeros((2, 3)), np.array([[1.05, 1.05]]))
+    maps.choose(np.array([1, 1]))
+    assert (maps.tables[0] == maps.tables[1]).all()
+    apart = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]])
+    maps.add(apart, np.array([[1.05, 1.05]]))
+    hits = [[value_at(maps.tables[i], maps.pool, 42, c, HITS) for c in (42, 47)] for i in (0, 1)]
+    assert hits == [[2.0, 0.0], [1.0, 1.0]]
+
+
+def test_unowned_patches_are_used_again():
+    maps = HitMaps(4, 0.1, (0, 0), (20, 20))
+    random = np.random.default_rng(0)
+    for _ in range(200):
+        maps.add(np.column_stack((random.uniform(2, 18, (4, 2)), np.zeros(4))),
+                 random.uniform(-1, 1, (50, 2)))
+        maps.choose(np.array([0, 0, 1, 2]))
+    assert len(maps.pool) <= 1024
+    used = maps.tables[maps.tables != ABSENT]
+    assert used.max() < len(maps.pool)
+
+
+def test_maps_keep_their_hits_when_they_grow():
+    maps = HitMaps(1, 0.1, (0, 0), (1, 1))
+    maps.add(np.zeros((1, 3)), np.array([[0.55, 0.55]]))
+    maps.add(np.zeros((1, 3)), np.array([[-7.0, 9.0]]))
+    column, row = np.floor(maps.in_cells(np.array([[0.55, 0.55, 0]]))[0, :2]).astype(int)
+    assert value_at(maps.tables[0], maps.pool, row, column, HITS) == 1.0
+
+
+def test_paths_survive_choosing_and_forgetting():
+    tree, random = PoseTree(3), np.random.default_rng(1)
+    paths = [[], [], []]
+    for scan in range(500):
+        new = random.normal(size=(3, 3))
+        tree.append(new, scan)
+        paths = [[*path, pose] for path, pose in zip(paths, new, strict=True)]
+        if scan % 3 == 0:
+            chosen = random.integers(0, 3, 3)
+            tree.choose(chosen)
+            paths = [list(paths[i]) for i in chosen]
+    for i in range(3):
+        found, scans = tree.path(i)
+        assert found == pytest.approx(np.array(paths[i]))
+        assert scans.tolist() == list(range(500))
+    assert len(tree._parents) < 1500  # of 1500 nodes most were forgotten
+
+
+def test_a_changed_path_leaves_no_trace_in_the_map():
+    random = np.random.default_rng(2)
+    scans = [(random.uniform(-2, 2, (40, 2)), random.random(40) < 0.7) for _ in range(6)]
+    first, second = random.uniform(-1, 1, (2, 6, 3))
+    second[:2] = first[:2]
+    laser = np.array([0.1, 0.0])
+    changed = MapRendering(0.1, (-1, -1), (1, 1))
+    changed.follow(first[:5], np.arange(5), scans, laser)
+    changed.follow(second, np.arange(6), scans, laser)
+    straight = MapRendering(0.1, (-1, -1), (1, 1))
+    straight.follow(second, np.arange(6), scans, laser)
+    low = (-2.0, -2.0)
+    ours, theirs = changed.grid(0.25), straight.grid(0.25)
+    a, b = ours.cells_of(low), theirs.cells_of(low)
+    assert (ours.cells[a[0]:a[0] + 40, a[1]:a[1] + 40]
+            == theirs.cells[b[0]:b[0] + 40, b[1]:b[1] + 40]).all()
+
+
+def test_uncertain_steps_add_up():
+    total = StepSum(0.1, 0.2, 0.0, 0.0)
+    for x in range(4):
+        total.add(np.array([x, 0, 0]), np.array([x + 1.0, 0, 0]))
+    assert total.mean == pytest.approx((4, 0, 0))
+    assert total.distance == pytest.approx(4)
+    assert total.covariance[0, 0] == pytest.approx(4 * 0.1**2 + STILL[0])
+    assert total.covariance[2, 2] == pytest.approx(4 * 0.2**2 + STILL[2])
+    # A turn after the first metre carries the next three aside: 0.2 rad * (3, 2, 1, 0) m.
+    aside = 4 * (0.3 * 0.1)**2 + 0.2**2 * (9 + 4 + 1) + STILL[1] + 16 * STILL[2]
+    assert total.covariance[1, 1] == pytest.approx(aside)
+
+
+def test_what_walls_show_of_the_odometry_is_learnt():
+    posterior = np.diag([1e-6, 1e-6, 1e-8])
+    for error, turning, wanted in ((0.0, 0.0, 0.01), (0.05, 0.1, 0.25), (9.0, 9.0, 4.0)):
+        total = StepSum(0.1, 0.2, 0.0, 0.0)
+        for _ in range(80):
+            total.clear()
+            total.add(np.zeros(3), np.array([1.0, 0, 0]))
+            total.learn(np.array([error, 0.3 * error, turning]), posterior)
+        assert total.scale == pytest.approx((wanted,) * 3, rel=0.1)
+
+
+def test_where_walls_show_nothing_nothing_is_learnt():
+    total = StepSum(0.1, 0.2, 0.0, 0.0)
+    total.add(np.zeros(3), np.array([1.0, 0, 0]))
+    total.learn(np.zeros(3), 0.8 * total.covariance)
+    assert total.scale.tolist() == [1, 1, 1]
+
+
+def test_steps_add_up_to_the_way_between_their_ends():
+    ends = np.random.default_rng(3).normal(size=(8, 3))
+    total = StepSum(0.1, 0.2, 0.1, 0.2)
+    for before, after in pairwise(ends):
+        total.add(before, after)
+    assert total.mean == pytest.approx(poses.relative(ends[0], ends[-1]))
+
+
+def test_cholesky_and_its_solutions():
+    random = np.random.default_rng(4).normal(size=(3, 3))
+    matrix, lower, vector = random @ random.T, np.empty((3, 3)), np.array([1.0, 2.0, 3.0])
+    assert cholesky(matrix, lower)
+    assert lower == pytest.approx(np.linalg.cholesky(matrix))
+    solve_forwards(lower, vector)
+    solve_backwards(lower, vector)
+    assert matrix @ vector == pytest.approx((1, 2, 3))
+    assert not cholesky(-matrix, lower)

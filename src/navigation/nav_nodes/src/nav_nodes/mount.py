@@ -1,0 +1,28 @@
+"""How a laser sits on the robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from geometry_msgs.msg import Transform
+
+LEVEL = 0.02  # how much of a laser's upward axis may lean away from the vertical: about 11 degrees
+
+
+@dataclass(frozen=True)
+class Mount:
+    """`pose` (x, y, yaw) of the laser in the robot's frame; upside down its angles run back."""
+
+    pose: np.ndarray
+    upside_down: bool
+
+    @classmethod
+    def of(cls, transform: Transform) -> Mount:
+        """From the laser's transform in the robot's frame; raises ValueError for a tilted one."""
+        x, y, z, w = (getattr(transform.rotation, axis) for axis in "xyzw")
+        up = 1.0 - 2.0 * (x * x + y * y)
+        if not abs(up) > 1.0 - LEVEL:
+            raise ValueError("the laser must look along the floor, but its transform tilts it")
+        yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        return cls(np.array([transform.translation.x, transform.translation.y, yaw]), up < 0.0)

@@ -1,0 +1,146 @@
+"""A node's parameters as a table in a YAML file: read once, checked, and changed while it runs.
+
+A table is a list of entries with `name`, `type` (bool, int, double, str, list), `default`, and if
+wanted `min`, `max` (numbers), `choices` (str), `change` (true: offered by dynamic_reconfigure),
+`status` (works, or accepted: read, no effect) and `meaning`. READMEs are made from the same file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import rospy
+import yaml
+from dynamic_reconfigure.server import Server
+
+KINDS = {"bool": bool, "int": int, "double": float, "str": str, "list": list}
+
+
+class ParameterError(ValueError):
+    """A parameter that makes no sense; the text names it, its value, and what it may be."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One line of a table."""
+
+    name: str
+    type: str
+    default: Any
+    min: float = -math.inf
+    max: float = math.inf
+    choices: tuple[str, ...] = ()
+    change: bool = False
+    status: str = "works"
+    meaning: str = ""
+
+    def checked(self, value: Any, where: str) -> Any:
+        """The value in this entry's type; raises ParameterError with `where` it was set."""
+        kind = KINDS[self.type]
+        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+            raise ParameterError(f"{where} is {value!r}, but must be of type {self.type}")
+        if kind in (int, float) and not self.min <= value <= self.max:
+            raise ParameterError(f"{where} is {value!r}, but must be {self._range()}")
+        if self.choices and value not in self.choices:
+            raise ParameterError(f"{where} is {value!r}, but must be {' or '.join(self.choices)}")
+        return value
+
+    def _range(self) -> str:
+        if self.max == math.inf:
+            return "a number" if self.min == -math.inf else f"at least {self.min:g}"
+        return f"between {self.min:g} and {self.max:g}"
+
+
+def load_table(path: Path) -> list[Parameter]:
+    """The table in a file; raises ParameterError naming file and key for what it must not hold."""
+    known = {field.name for field in fields(Parameter)}
+    table = []
+    for entry in yaml.safe_load(path.read_text(encoding="utf-8")):
+        strange = entry.keys() - known
+        if strange or entry["type"] not in KINDS:
+            raise ParameterError(f"{path}: {entry['name']}: unknown key or type: "
+                                 f"{', '.join(sorted(strange)) or entry['type']}")
+        entry["choices"] = tuple(entry.get("choices", ()))
+        table.append(Parameter(**entry))
+        table[-1].checked(table[-1].default, f"{path}: default of {table[-1].name}")
+    return table
+
+
+def read_parameters(table: list[Parameter], namespace: str = "~") -> dict[str, Any]:
+    """Every parameter of the table by name, from the parameter server below `namespace`.
+
+    Raises ParameterError for one of the wrong type or out of its range.
+    """
+    values = {}
+    for entry in table:
+        name = rospy.resolve_name(namespace + entry.name)
+        values[entry.name] = entry.checked(rospy.get_param(name, entry.default), name)
+    return values
+
+
+def serve_changes(table: list[Parameter], values: dict[str, Any],
+                  apply: Callable[[dict[str, Any]], dict[str, Any] | None],
+                  namespace: str = "") -> Server:
+    """Offer the changeable entries by dynamic_reconfigure below `~namespace`.
+
+    `apply` gets all values, now and after each change, on ROS's threads, and may answer with those
+    to hold instead; if it raises ParameterError that is a warning, and everything stays as it was.
+    """
+    changeable = [entry for entry in table if entry.change]
+    current = dict(values)
+
+    def change(config: dict, _level: int) -> dict:
+        wanted = {**current, **{entry.name: config[entry.name] for entry in changeable}}
+        try:
+            for entry in changeable:
+                entry.checked(wanted[entry.name], f"dynamic_reconfigure: {entry.name}")
+            current.update(apply(dict(wanted)) or wanted)
+        except ParameterError as error:
+            rospy.logwarn("%s", error)
+        for entry in changeable:
+            config[entry.name] = current[entry.name]
+        return config
+
+    return _QuietServer(_describe(changeable, current), change, namespace)
+
+
+class _QuietServer(Server):
+    """Begins from the values that were read and checked, not from the parameter server again."""
+
+    def _copy_from_parameter_server(self) -> None:
+        """Read already; a whole number there would turn into another type here."""
+
+
+def _describe(changeable: list[Parameter], values: dict[str, Any]) -> SimpleNamespace:
+    """What a class generated from a .cfg file would hold."""
+    parameters = [{"name": entry.name, "type": entry.type, "level": 1,
+                   "description": entry.meaning, "edit_method": "",
+                   "min": _bound(entry, entry.min), "max": _bound(entry, entry.max)}
+                  for entry in changeable]
+    return SimpleNamespace(
+        defaults={entry.name: values[entry.name] for entry in changeable},
+        min={p["name"]: p["min"] for p in parameters},
+        max={p["name"]: p["max"] for p in parameters},
+        level={p["name"]: p["level"] for p in parameters},
+        type={p["name"]: p["type"] for p in parameters},
+        all_level=1,
+        config_description={"name": "Default", "type": "", "state": True, "id": 0, "parent": 0,
+                            "parameters": parameters, "groups": []})
+
+
+def _bound(entry: Parameter, bound: float) -> Any:
+    """A bound in the entry's own type, as the message wants it."""
+    if entry.type == "bool":
+        return bound > 0
+    if entry.type == "str":
+        return ""
+    if entry.type == "int":
+        return int(max(-2**31, min(2**31 - 1, bound)))
+    return float(max(-1e9, min(1e9, bound)))
