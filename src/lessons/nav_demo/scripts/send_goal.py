@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Sends the car to a place on the map: send_goal.py X Y [DEGREES].  把小车派到地图上的一个位置。"""
+
+import math
+import sys
+import time
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+
+WAIT = 30  # s for move_base to answer  等 move_base 应答的秒数
+
+
+def goal_at(x, y, yaw):
+    """A goal in the map's frame; m, rad.  地图坐标系里的目标。"""
+    goal = MoveBaseGoal()
+    goal.target_pose.header.frame_id = "map"
+    goal.target_pose.header.stamp = rospy.Time.now()
+    goal.target_pose.pose.position.x = x
+    goal.target_pose.pose.position.y = y
+    # Half the angle: a quaternion about z.  绕 z 轴的四元数用半角
+    goal.target_pose.pose.orientation.z = math.sin(yaw / 2)
+    goal.target_pose.pose.orientation.w = math.cos(yaw / 2)
+    return goal
+
+
+def wait_for_clock():
+    """Else a wait of 30 s, begun at time 0, is over at once.  否则从 0 开始的等待立刻超时。"""
+    began = time.monotonic()
+    while rospy.get_time() == 0 and not rospy.is_shutdown():
+        time.sleep(0.1)
+        if time.monotonic() - began > 2:
+            rospy.loginfo_once("waiting for /clock: is the simulator running?")
+
+
+def tell_progress(feedback):
+    """Called again and again on the way.  途中反复调用。"""
+    place = feedback.base_position.pose.position
+    rospy.loginfo_throttle(2, f"at {place.x:.2f}, {place.y:.2f}")
+
+
+def stop_if_driving(client):
+    """At Ctrl-C.  Ctrl-C 时让小车停下。"""
+    if client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE):
+        client.cancel_goal()
+
+
+def main():
+    words = rospy.myargv(sys.argv)[1:]  # without ROS's own  去掉 ROS 自己的参数
+    try:
+        x, y, degrees = (float(word) for word in (*words, 0)[:3])
+    except ValueError:
+        sys.exit("which place? e.g. rosrun nav_demo send_goal.py 1.5 -1.5 90")
+    rospy.init_node("send_goal")
+    wait_for_clock()
+    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    if not client.wait_for_server(rospy.Duration(WAIT)):
+        sys.exit("nobody answers as move_base: roslaunch nav_demo nav05_test.launch")
+    client.send_goal(goal_at(x, y, math.radians(degrees)), feedback_cb=tell_progress)
+    rospy.on_shutdown(lambda: stop_if_driving(client))
+    client.wait_for_result()
+    rospy.loginfo(client.get_goal_status_text())
+    sys.exit(0 if client.get_state() == GoalStatus.SUCCEEDED else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,7 @@
+"""Tells catkin where the Python package is."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["nav_demo", "nav_demo.network"],
+                                 package_dir={"": "src"}))

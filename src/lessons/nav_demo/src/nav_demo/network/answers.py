@@ -1,0 +1,110 @@
+"""What the master and the nodes answered, judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nav_demo.network.findings import Finding, is_loopback
+from nav_demo.network.settings import split_uri
+
+SLOW_MS = 100.0   # of a call's median
+CLOCKS_APART = 2  # s; what an HTTP date tells is good to 1 s
+
+
+@dataclass(frozen=True)
+class Node:
+    """A node as the master knows it. `address`: of its host, seen from here; "" where unknown."""
+
+    name: str
+    uri: str
+    address: str
+    answer: str  # "yes", "refused" (nobody listens there), "silence"
+
+
+def check_nodes(nodes: list[Node], master_is_here: bool) -> list[Finding]:
+    """Addresses that lead elsewhere, or nowhere; one line for all nodes of the same mistake."""
+    wrong: dict[tuple[str, str], list[str]] = {}
+    for node in nodes:
+        judged = _judged(node, master_is_here)
+        if judged:
+            wrong.setdefault(judged, []).append(node.name)
+    return [Finding(f"{_names(names)} {sentence}", remedy)
+            for (sentence, remedy), names in wrong.items()]
+
+
+def _judged(node: Node, master_is_here: bool) -> tuple[str, str] | None:
+    """What is wrong with a node, and what to type."""
+    place = split_uri(node.uri)
+    if place is None:
+        return f"registered {node.uri!r}, which is no address", "rosnode cleanup"
+    host, port = place
+    there = "(on the machine where it runs; then start it again)"
+    if not node.address:
+        return (f"registered as {host!r}, and this machine knows no address of it",
+                f"echo 'ADDRESS {host}' | sudo tee -a /etc/hosts, with that machine's address; or "
+                f"export ROS_IP=ADDRESS {there}")
+    if node.answer == "yes":
+        return None
+    if is_loopback(node.address) and not master_is_here:
+        return (f"registered as {host!r}, which leads each machine to itself",
+                f"export ROS_IP=ADDRESS; unset ROS_HOSTNAME {there}")
+    if node.answer == "refused":
+        return f"registered at {host}:{port}, but nobody listens there any more", "rosnode cleanup"
+    return (f"does not answer at {host}:{port} ({node.address})",
+            f"ping -c 3 {node.address}; if that answers, a firewall is between: sudo ufw allow "
+            f"from ADDRESS_OF_THIS_MACHINE, there")
+
+
+def _names(names: list[str]) -> str:
+    listed = ", ".join(names[:3])
+    return f"{listed} and {len(names) - 3} more nodes" if len(names) > 3 else listed
+
+
+def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
+    """Whether there is a master where ROS_MASTER_URI says; `answer` as in Node, or "other"."""
+    place = f"{host}:{port}"
+    wrong, remedy = {
+        "yes": ("", ""),
+        "refused": (f"nobody listens at {place}: there is no master", f"roscore, on {host}"),
+        "silence": (f"{place} does not answer: the address is wrong, or a firewall is between",
+                    f"ping -c 3 {host}"),
+        "other": (f"what listens at {place} is no ROS master", f"roscore -p OTHER_PORT, on {host}, "
+                  f"and that port in ROS_MASTER_URI"),
+    }[answer]
+    return [Finding(wrong, remedy)] if wrong else []
+
+
+def check_callback(came: bool, name: str, host: str, address: str) -> list[Finding]:
+    """Whether the master's machine could call this one by the name it was told."""
+    if came:
+        return []
+    return [Finding(f"the master on {host} cannot call this machine by {name!r}: nodes there will "
+                    f"not hear nodes here",
+                    f"export ROS_IP={address}; unset ROS_HOSTNAME")]
+
+
+def check_latency(calls_ms: list[float], host: str) -> list[Finding]:
+    """Calls to the master, ms each."""
+    median = sorted(calls_ms)[len(calls_ms) // 2]
+    if median <= SLOW_MS:
+        return []
+    return [Finding(f"a call to the master takes {median:.0f} ms: images and scans will come late",
+                    f"ping -c 10 {host}, and use a cable instead of wireless")]
+
+
+def check_clock(use_sim_time: bool, has_clock: bool, ahead_s: float | None,
+                host: str) -> list[Finding]:
+    """`ahead_s`: the master's clock minus this one's, s; None where it did not say."""
+    if use_sim_time:
+        return [] if has_clock else [Finding(
+            "/use_sim_time is true and nobody publishes /clock: every node waits for time to pass",
+            "rosparam set /use_sim_time false, or start the simulator")]
+    found = [] if not has_clock else [Finding(
+        "/clock is published, but /use_sim_time is not true: nodes go by the wall's clock",
+        "rosparam set /use_sim_time true, and start the nodes again")]
+    if ahead_s is not None and abs(ahead_s) > CLOCKS_APART:
+        order = "ahead of" if ahead_s > 0 else "behind"
+        found.append(Finding(
+            f"the clock of {host} is {abs(ahead_s):.0f} s {order} this one: transforms will be "
+            f"too old or in the future", "sudo timedatectl set-ntp true, on both machines"))
+    return found

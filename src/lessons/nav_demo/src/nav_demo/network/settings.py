@@ -1,0 +1,92 @@
+"""ROS_MASTER_URI, ROS_HOSTNAME and ROS_IP of this terminal, as they should be."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from nav_demo.network.findings import Finding, is_loopback
+
+MASTER_PORT = 11311
+ADDRESS = re.compile(r"\d{1,3}(\.\d{1,3}){3}")
+SAMPLE = f"export ROS_MASTER_URI=http://localhost:{MASTER_PORT}"
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the checks may ask of the machine they run on."""
+
+    addresses_of: Callable[[str], list[str]]  # IPv4 addresses of a name; none where unknown
+    is_mine: Callable[[str], bool]            # whether an address is one of this machine's
+    address_towards: Callable[[str], str]     # this machine's address as seen from another one
+    own_name: str                             # as `hostname` has it
+
+
+def split_uri(uri: str) -> tuple[str, int] | None:
+    """Host and port of "http://HOST:PORT/", or None for anything else."""
+    try:
+        parts = urlsplit(uri.strip())
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        return None
+    if parts.scheme != "http" or not host or not port or parts.path not in ("", "/"):
+        return None
+    return host, port
+
+
+def check_master(environment: Mapping[str, str], around: Surroundings) -> list[Finding]:
+    """ROS_MASTER_URI by itself, before anything is asked of the master."""
+    uri = environment.get("ROS_MASTER_URI", "")
+    if not uri:
+        return [Finding("ROS_MASTER_URI is not set: no node finds the master", SAMPLE)]
+    place = split_uri(uri)
+    if place is None:
+        return [Finding(f"ROS_MASTER_URI is {uri!r}, which is not http://HOST:PORT", SAMPLE)]
+    host = place[0]
+    if not around.addresses_of(host):
+        return [Finding(f"ROS_MASTER_URI names {host!r}, and this machine knows no address of it",
+                        f"echo 'ADDRESS {host}' | sudo tee -a /etc/hosts, with the master's "
+                        f"address, or export ROS_MASTER_URI=http://ADDRESS:{place[1]}")]
+    return []
+
+
+def advertised_name(environment: Mapping[str, str], own_name: str) -> tuple[str, str]:
+    """By which name other machines are told to reach nodes of this terminal, and where it is from.
+
+    ROS_HOSTNAME wins over ROS_IP, and that over the machine's name, as in rosgraph.
+    """
+    for variable in ("ROS_HOSTNAME", "ROS_IP"):
+        if environment.get(variable):
+            return environment[variable], variable
+    return own_name, "hostname"
+
+
+def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list[Finding]:
+    """ROS_HOSTNAME and ROS_IP; check_master must have found nothing."""
+    host = split_uri(environment["ROS_MASTER_URI"])[0]
+    master = around.addresses_of(host)[0]
+    remedy = f"export ROS_IP={around.address_towards(master)}; unset ROS_HOSTNAME"
+    name, source = advertised_name(environment, around.own_name)
+    found = []
+    hostname, ip = environment.get("ROS_HOSTNAME"), environment.get("ROS_IP")
+    if hostname and ip and hostname != ip:
+        found.append(Finding(f"ROS_HOSTNAME is {hostname!r} and ROS_IP {ip!r}: the second has no "
+                             f"effect", "unset ROS_IP"))
+    if source == "ROS_IP" and not ADDRESS.fullmatch(name):
+        return [*found, Finding(f"ROS_IP is {name!r}, which is no address", remedy)]
+    if "/" in name or ":" in name:
+        return [*found, Finding(f"{source} is {name!r}: only a name or an address belongs there, "
+                                f"no http:// and no port", remedy)]
+    addresses = around.addresses_of(name)
+    if not addresses:
+        wrong = f"{source} is {name!r}, and not even this machine knows its address"
+    elif is_loopback(addresses[0]) and not around.is_mine(master):
+        wrong = (f"{source} is {name!r}, which is {addresses[0]}: the master is on another machine "
+                 f"({host}), and there that name leads to itself")
+    elif not around.is_mine(addresses[0]):
+        wrong = f"{source} is {name!r}, which is {addresses[0]}, no address of this machine"
+    else:
+        return found
+    return [*found, Finding(wrong, remedy)]
