@@ -222,7 +222,7 @@ def test_a_bad_drive_ends_with_1_and_says_where(start, behaviour, words):
             (),
             "the follower 05follower_proporation.py (process follower-2) died (exit code 3)",
         ),
-        ("no_car", ("--startup-timeout", "4"), "the car (model turtlebot3_waffle) was not there"),
+        ("no_car", ("--startup-timeout", "10"), "the car (model turtlebot3_waffle) was not there"),
         ("pauses", ("--stuck-timeout", "3"), "simulated time has stood still at 6.7 s"),
         ("hangs", ("--stuck-timeout", "3"), "the simulator is paused or hangs"),
     ],

@@ -1,0 +1,1 @@
+"""Maps and paths of navigation against the truth that the simulator knows."""

@@ -1,0 +1,73 @@
+"""Absolute trajectory error: how far an estimated path is from the true one.
+
+ATE as J. Sturm et al. define it, "A benchmark for the evaluation of RGB-D SLAM systems" (2012);
+the alignment is S. Umeyama's without scale, "Least-squares estimation of transformation parameters
+between two point patterns" (1991).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from nav_algorithms.poses import transform_points, wrap_angle
+
+
+@dataclass(frozen=True)
+class TrajectoryError:
+    """Distances between estimated and true positions of the same moments, m."""
+
+    ate_rmse: float    # after the best rigid alignment: the shape of the path
+    rmse: float        # as they are, in one frame: where the robot thought that it was
+    largest: float     # of the distances as they are
+    yaw_rmse: float    # rad, after the alignment
+    alignment: np.ndarray  # (3,) x, y, yaw: puts estimated poses where the true ones are
+
+
+def trajectory_error(estimated: np.ndarray, true: np.ndarray) -> TrajectoryError:
+    """Of poses (N, 3), row by row of the same moment; raises ValueError for other shapes."""
+    estimated, true = np.asarray(estimated, float), np.asarray(true, float)
+    if estimated.shape != true.shape or estimated.ndim != 2 or estimated.shape[1] != 3 \
+            or not len(true):
+        raise ValueError(f"poses are (N, 3) twice, not {estimated.shape} and {true.shape}")
+    alignment = align(estimated[:, :2], true[:, :2])
+    apart = np.linalg.norm(estimated[:, :2] - true[:, :2], axis=1)
+    aligned = np.linalg.norm(transform_points(alignment, estimated[:, :2]) - true[:, :2], axis=1)
+    turned = wrap_angle(estimated[:, 2] + alignment[2] - true[:, 2])
+    return TrajectoryError(_rms(aligned), _rms(apart), float(apart.max()), _rms(turned), alignment)
+
+
+def align(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """Pose (3,) that puts `points` (N, 2) nearest to `targets` (N, 2), in least squares."""
+    middle, target = points.mean(axis=0), targets.mean(axis=0)
+    spread = (points - middle).T @ (targets - target)
+    yaw = np.arctan2(spread[0, 1] - spread[1, 0], spread[0, 0] + spread[1, 1])
+    turned = transform_points(np.array([0.0, 0.0, yaw]), middle[None])[0]
+    return np.array([*(target - turned), yaw])
+
+
+def at_moments(stamps: np.ndarray, poses: np.ndarray, moments: np.ndarray) -> np.ndarray:
+    """Poses (M, 3) at `moments` (M,), s, between poses (N, 3) at rising `stamps` (N,), s.
+
+    NaN before the first and after the last: nothing is known there.
+    """
+    moments, headings = np.asarray(moments, float), np.unwrap(poses[:, 2])
+    columns = [np.interp(moments, stamps, column, np.nan, np.nan)
+               for column in (poses[:, 0], poses[:, 1], headings)]
+    return np.stack((*columns[:2], wrap_angle(columns[2])), axis=1)
+
+
+def read_trajectory(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """(stamps (N,), s, poses (N, 3)) of a file in TUM's format: stamp x y z qx qy qz qw."""
+    rows = np.loadtxt(path, ndmin=2)
+    if rows.shape[1] != 8:
+        raise ValueError(f"{path}: has {rows.shape[1]} columns; stamp x y z qx qy qz qw are wanted")
+    x, y, z, w = rows[:, 4:].T
+    yaw = np.arctan2(2 * (w * z + x * y), w**2 + x**2 - y**2 - z**2)
+    return rows[:, 0], np.stack((rows[:, 1], rows[:, 2], yaw), axis=1)
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))

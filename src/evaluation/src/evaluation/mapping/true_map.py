@@ -1,0 +1,112 @@
+"""The true map of a world: its walls at the height of a laser, as an occupancy grid."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import rospkg
+
+from bullet_sim.formats import Resources, load_world
+from bullet_sim.world import World
+from evaluation.mapping.neighbours import reached, widened
+from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.rays import cast
+
+LINES_A_CELL = 4  # rays beside each other in one cell, so that no corner slips between two
+BEYOND = 1e-4     # m behind a surface: which cell it is in, where it lies on a border; next ray
+MOST_SURFACES = 1000  # behind each other on one line
+
+
+def open_walls(path: Path | str) -> World:
+    """The world of a file without its actors, at its beginning; close it after use.
+
+    Models are sought in the folder `models` beside the file's own folder, and in Gazebo's usual
+    places. Raises bullet_sim.errors.SimulationError for a file that is no world.
+    """
+    path = Path(path)
+    resources = Resources.from_environment(
+        os.environ, extra_model_paths=[path.resolve().parent.parent / "models"],
+        find_package=rospkg.RosPack().get_path)
+    description = load_world(path, resources)
+    return World(replace(description, models=tuple(
+        model for model in description.models if model.trajectory is None)))
+
+
+def true_map(world: World, height: float, inside: Sequence[tuple[float, float]],
+             resolution: float = 0.05, reach: float = 30.0) -> OccupancyGrid:
+    """Walls at `height`, m, in the world's frame, within `reach` m of its origin on each side.
+
+    A cell is FREE where one can get to from a point of `inside` (x, y) without crossing a collision
+    surface; OCCUPIED where a surface runs through it, as rays along x and y meet it from outside,
+    that such a free cell is beside; else UNKNOWN, as the inside of walls is. The grid ends one cell
+    beyond the outermost surface. Raises ValueError where there is none, or where a point of
+    `inside` is in a wall or outside of all.
+    """
+    count = round(reach / resolution)
+    points = np.concatenate([_surfaces(world, axis, height, count * resolution, resolution)
+                             for axis in (0, 1)])
+    if not len(points):
+        raise ValueError(f"no surface at {height:g} m within {reach:g} m of the world's origin")
+    cells = np.floor(points / resolution).astype(int)  # x, y, counted from the world's origin
+    low, high = cells.min(axis=0) - 1, cells.max(axis=0) + 2
+    surface = np.zeros((high - low)[::-1], bool)
+    surface[tuple((cells - low).T[::-1])] = True
+    grid = OccupancyGrid(np.full(surface.shape, UNKNOWN, np.int8), resolution,
+                         tuple((low * resolution).tolist()))
+    starts = grid.cells_of(np.array(inside))
+    for point, cell in zip(inside, starts, strict=True):
+        if not grid.contains(cell) or surface[tuple(cell)]:
+            raise ValueError(f"{point} is in a wall, or outside all of them")
+    free = reached(surface, starts)
+    found = np.where(free, FREE, np.where(surface & widened(free), OCCUPIED, UNKNOWN))
+    return replace(grid, cells=found.astype(np.int8))
+
+
+def visible_walls(grid: OccupancyGrid, poses: np.ndarray, angles: np.ndarray,
+                  range_max: float) -> np.ndarray:
+    """Which OCCUPIED cells some beam ends in, bool (rows, columns).
+
+    The laser was at `poses` (N, 3), with beams at `angles` (M,), rad, from each heading.
+    """
+    occupied = (grid.cells == OCCUPIED).astype(np.uint8)
+    seen = np.zeros(grid.cells.shape, bool)
+    for x, y, yaw in np.asarray(poses, float):
+        directions = yaw + np.asarray(angles, float)
+        ranges = cast(occupied, grid.resolution, *grid.origin, x, y, directions, range_max)
+        hit = np.isfinite(ranges)
+        ways = (ranges[hit] + BEYOND * grid.resolution)[:, None]
+        beams = np.stack((np.cos(directions[hit]), np.sin(directions[hit])), axis=1)
+        cells = grid.cells_of([x, y] + ways * beams)
+        cells = cells[grid.contains(cells)]
+        seen[cells[:, 0], cells[:, 1]] = True
+    return seen & (occupied == 1)
+
+
+def _surfaces(world: World, axis: int, height: float, reach: float,
+              resolution: float) -> np.ndarray:
+    """Points (N, 2), m, just behind the surfaces that rays along an axis meet, both ways."""
+    spacing = resolution / LINES_A_CELL
+    across = np.arange(-reach + spacing / 2, reach, spacing)
+    found = []
+    for sign in (1.0, -1.0):
+        starts = np.empty((len(across), 3))
+        starts[:, axis], starts[:, 1 - axis], starts[:, 2] = -sign * reach, across, height
+        for _ in range(MOST_SURFACES):
+            ends = starts.copy()
+            ends[:, axis] = sign * reach
+            fraction = world.cast_rays(starts, ends).fraction[:, None]
+            ways = fraction * (ends - starts)
+            # A ray that begins inside a sphere meets it again at once, all the way through.
+            again = np.abs(ways[:, axis]) < BEYOND
+            ways[:, axis] += sign * np.where(again, spacing, BEYOND)
+            starts, again = (starts + ways)[fraction[:, 0] < 1], again[fraction[:, 0] < 1]
+            within = sign * starts[:, axis] < reach
+            starts, again = starts[within], again[within]
+            if not len(starts):
+                break
+            found.append(starts[~again, :2])
+    return np.concatenate(found) if found else np.empty((0, 2))
