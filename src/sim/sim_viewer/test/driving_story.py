@@ -60,7 +60,11 @@ class Driving(unittest.TestCase):
 
     def assert_stops(self, stop, what):
         """`stop()` while the robot drives: one zero in time, and nothing more."""
-        wait_until(self.wheel.moving, f"a command before: {what}")
+        try:
+            wait_until(self.wheel.moving, f"a command before: {what}")
+        except AssertionError as error:
+            said = self.page.evaluate("document.querySelector('#drive-state').textContent")
+            raise AssertionError(f"{error}; the page says: {said}") from None
         began = time.monotonic()
         stop()
         ended = time.monotonic()  # a browser may take its time to do what it is told

@@ -1,9 +1,14 @@
 """Who gets in: token, Host and Origin, and what a page without control may do."""
 
+import asyncio
+
 import aiohttp
 import pytest
 from sim_viewer import options as node_options
 from sim_viewer import registry
+from sim_viewer.context import Node
+from sim_viewer.options import Options
+from sim_viewer.server import Server, further_urls, page_url
 from yarl import URL
 
 PATHS = ("/", "/main.js", "/ws")
@@ -60,6 +65,10 @@ def test_a_token_is_made_where_others_can_reach_the_page(monkeypatch):
     ({"Origin": "http://evil.example"}, 403),
     ({"Origin": "http://127.0.0.1:1"}, 403),
     ({"Origin": "null"}, 403),
+    ({"Origin": "http://["}, 403),
+    ({"Host": "[::1]:{port}"}, 200),
+    ({"Host": "[::1]:{port}", "Origin": "http://[::1]:{port}"}, 200),
+    ({"Host": "evil.example@127.0.0.1:{port}"}, 403),
 ])
 def test_a_foreign_page_gets_nothing(visit, headers, status):
     async def story(http, port):
@@ -78,12 +87,52 @@ def test_a_foreign_page_gets_nothing(visit, headers, status):
 
 
 @pytest.mark.parametrize("path", ["/../package.xml", "/%2e%2e/package.xml", "/..%2fpackage.xml",
-                                  "/vendor/../../package.xml", "//etc/passwd", "/%00"])
+                                  "/vendor/../../package.xml", "//etc/passwd", "/%00",
+                                  "/" + "a" * 4000])
 def test_no_path_leads_out_of_the_page(visit, path):
     async def story(http, port):
         async with http.get(URL(f"http://127.0.0.1:{port}{path}", encoded=True)) as answer:
             assert answer.status in (400, 403, 404)
+            if answer.status == 404:
+                assert answer.headers["X-Content-Type-Options"] == "nosniff"
     visit(story)
+
+
+@pytest.mark.parametrize("cookie", ["\\xff", '"\\377"', "\u2603"])
+def test_a_token_that_is_no_text_is_wrong(visit, cookie):
+    async def story(http, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(f"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: sim_viewer_{port}=".encode()
+                     + cookie.encode().decode("unicode_escape").encode("latin-1", "replace")
+                     + b"\r\n\r\n")
+        assert b" 403 " in await reader.readline()
+        writer.close()
+    visit(story, token="secret")
+
+
+def test_two_pages_of_one_machine_keep_their_tokens(visit):
+    async def story(http, port):
+        other = Server(Node(Options(port=port, token="other"), asyncio.get_running_loop()), {})
+        second = await other.start()  # the first has the port
+        async with aiohttp.ClientSession(
+                cookie_jar=aiohttp.CookieJar(unsafe=True)) as browser:
+            for at, token in ((port, "secret"), (second, "other")):
+                async with browser.get(f"http://127.0.0.1:{at}/?token={token}") as answer:
+                    assert answer.status == 200
+            for at in (port, second):
+                async with browser.get(f"http://127.0.0.1:{at}/main.js") as answer:
+                    assert answer.status == 200, at
+        await other.close()
+    visit(story, token="secret")
+
+
+def test_the_printed_addresses_can_be_typed_elsewhere():
+    addresses = ["127.0.0.1", "192.168.1.5", "fe80::1", "2001:db8::5"]
+    everywhere = Options(address="0.0.0.0", token="a+b")
+    assert page_url(everywhere, 8081) == "http://127.0.0.1:8081/?token=a%2Bb"
+    assert further_urls(everywhere, 8081, addresses) == ["http://192.168.1.5:8081/?token=a%2Bb"]
+    assert further_urls(Options(address="::"), 8081, addresses)[1] == "http://[2001:db8::5]:8081/"
+    assert further_urls(Options(address="192.168.1.5"), 8081, addresses) == []
 
 
 def test_without_control_every_operation_that_changes_something_is_refused(visit):
@@ -103,3 +152,14 @@ def test_without_control_every_operation_that_changes_something_is_refused(visit
 async def ask(link, op, **args):
     await link.send_json({"id": 7, "op": op, **args})
     return await link.receive_json(timeout=10)
+
+
+def test_without_a_master_every_question_says_so(visit):
+    async def story(http, port):
+        async with http.ws_connect("/ws") as link:
+            for op, args in (("drive_topics", {}), ("parameters", {}), ("services", {}),
+                             ("image_topics", {}), ("drive_open", {}), ("pause", {}),
+                             ("watch", {"what": "bags"})):
+                answer = await ask(link, op, **args)
+                assert "the ROS master does not answer" in answer["error"], op
+    visit(story, control=True)

@@ -4,9 +4,10 @@ import asyncio
 import time
 
 import pytest
-from sim_viewer import drive, registry
+from sim_viewer import drive, drive_guard, registry
 from sim_viewer.context import Context, Node
 from sim_viewer.dead_man import HOLD, STOP, Command
+from sim_viewer.handles import Handles
 from sim_viewer.options import Options
 from sim_viewer.registry import Refused
 
@@ -38,7 +39,7 @@ def robot():
 
 @pytest.fixture
 def handles(robot):
-    made = drive.Handles(robot.publish)
+    made = Handles(robot.publish)
     yield made
     made.close()
 
@@ -67,14 +68,14 @@ def test_who_turns_to_another_robot_stops_the_first(handles, robot):
 
 
 def test_the_end_of_the_node_stops_everything(robot):
-    handles = drive.Handles(robot.publish)
+    handles = Handles(robot.publish)
     handles.press(1, "/cmd_vel", AHEAD)
     handles.close()
     assert robot.commands() == [AHEAD, STOP]
 
 
 def test_messages():
-    turn = drive.twist(Command(0.2, -1.0))
+    turn = drive_guard.twist(Command(0.2, -1.0))
     assert (turn.linear.x, turn.linear.y, turn.angular.z) == (0.2, 0.0, -1.0)
 
 

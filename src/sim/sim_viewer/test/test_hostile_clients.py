@@ -10,7 +10,7 @@ from pathlib import Path
 
 import aiohttp
 import pytest
-from sim_viewer import registry
+from sim_viewer import hub, registry
 
 MESSAGES = 1000
 SEEDS = range(2)
@@ -87,6 +87,20 @@ def test_five_pages_at_once(visit):
     visit(story)
 
 
+def test_there_is_an_end_to_pages(visit, monkeypatch):
+    async def story(http, port):
+        links = [await http.ws_connect("/ws") for _ in range(5)]
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            await http.ws_connect("/ws")
+        assert refused.value.status == 503
+        await links[0].close()
+        await asyncio.sleep(0.1)
+        assert await asks(await http.ws_connect("/ws"))
+        assert await asks(links[1])
+    monkeypatch.setattr(hub, "MOST_BROWSERS", 5)
+    visit(story)
+
+
 @pytest.fixture
 def flood(monkeypatch):
     """Something to watch that sends as fast as it can, 100 kB at a time."""
@@ -142,6 +156,28 @@ def test_who_asks_without_reading_is_not_listened_to_any_more(visit, monkeypatch
     began = time.monotonic()
     visit(story)
     assert time.monotonic() - began < 10.0, "the server waits at its end for who never reads"
+
+
+def test_a_flood_of_one_leaves_the_others_their_turn(visit):
+    async def story(http, port):
+        flooder, neighbour = await http.ws_connect("/ws"), await http.ws_connect("/ws")
+
+        async def pour():
+            while True:
+                for _ in range(500):
+                    await flooder.send_str('{"id": 1, "op": "about"}')
+                await drain(flooder)
+
+        flood, waits = asyncio.create_task(pour()), []
+        for _ in range(30):
+            began = time.monotonic()
+            assert await asks(neighbour)
+            waits.append(time.monotonic() - began)
+            await asyncio.sleep(0.02)
+        flood.cancel()
+        print(f"waits: {sorted(waits)[15]:.3f} s, at most {max(waits):.3f} s")
+        assert sorted(waits)[15] < 0.2
+    visit(story)
 
 
 def test_what_is_sent_back_is_short(visit):

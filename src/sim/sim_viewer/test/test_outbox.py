@@ -4,7 +4,7 @@ import asyncio
 import json
 import struct
 
-from sim_viewer.outbox import MOST_KEPT, Outbox, encode
+from sim_viewer.outbox import MOST_BYTES, MOST_KEPT, Outbox, encode
 
 
 def drained(fill, watches=(1, 2)):
@@ -33,6 +33,14 @@ def test_of_many_pictures_a_slow_browser_gets_the_newest():
 def test_what_is_kept_comes_whole_and_in_order_up_to_a_limit():
     got = drained(lambda box: [box.post(1, i, keep=True) for i in range(MOST_KEPT + 10)])
     assert [json.loads(text)["data"] for text in got] == list(range(10, MOST_KEPT + 10))
+
+
+def test_what_is_kept_costs_no_more_than_some_memory():
+    got = drained(lambda box: [box.post(1, f"{i:03}" + "x" * 400_000, keep=True)
+                               for i in range(100)])
+    assert sum(map(len, got)) <= MOST_BYTES
+    assert json.loads(got[-1])["data"].startswith("099")
+    assert len(got) > 5
 
 
 def test_the_newest_never_replaces_what_is_kept():

@@ -25,13 +25,43 @@ def compressed(picture, ending=".jpg"):
     return CompressedImage(format=ending[1:], data=cv2.imencode(ending, picture)[1].tobytes())
 
 
-@pytest.mark.parametrize("encoding", ["bgr8", "rgb8", "bgra8", "rgba8"])
+@pytest.mark.parametrize("encoding", ["bgr8", "rgb8", "bgra8", "rgba8", "8UC3", "8UC4"])
 def test_colours_are_the_cameras(encoding):
     code = {"bgr8": None, "rgb8": cv2.COLOR_BGR2RGB, "bgra8": cv2.COLOR_BGR2BGRA,
-            "rgba8": cv2.COLOR_BGR2RGBA}[encoding]
+            "rgba8": cv2.COLOR_BGR2RGBA, "8UC3": None, "8UC4": cv2.COLOR_BGR2BGRA}[encoding]
     picture = plain() if code is None else cv2.cvtColor(plain(), code)
     got = shown(bridge.cv2_to_imgmsg(picture, encoding))
     assert np.abs(got.astype(int) - ORANGE).max() < 8
+
+
+@pytest.mark.parametrize("encoding", ["bgr16", "rgb16", "rgba16"])
+def test_colours_of_16_bit_are_the_cameras(encoding):
+    picture = np.zeros((64, 64, 3), np.uint16)
+    picture[:32, :, 0] = picture[32:, :, 2] = 60_000  # blue above, red below
+    if encoding != "bgr16":
+        picture = cv2.cvtColor(
+            picture, cv2.COLOR_BGR2RGB if encoding == "rgb16" else cv2.COLOR_BGR2RGBA)
+    got = shown(bridge.cv2_to_imgmsg(picture, encoding)).astype(int)
+    assert np.abs(got[8, 32] - (255, 0, 0)).max() < 8
+    assert np.abs(got[56, 32] - (0, 0, 255)).max() < 8
+
+
+def test_pictures_of_a_pattern_of_colours():
+    pattern = np.zeros((64, 64), np.uint8)
+    pattern[::2, ::2] = 200  # of RGGB: all red
+    got = shown(bridge.cv2_to_imgmsg(pattern, "bayer_rggb8")).astype(int)
+    assert np.abs(got[32, 32] - (0, 0, 200)).max() < 30
+
+
+def test_infinite_and_huge_numbers_do_no_harm():
+    depth = np.repeat(np.float32([[-3e38, 3e38, np.inf, -np.inf]]), 16, axis=1).repeat(64, axis=0)
+    got = shown(bridge.cv2_to_imgmsg(depth, "32FC1"))[32, 8::16, 0].astype(int)
+    assert np.abs(got - [0, 255, 0, 0]).max() < 6
+
+
+def test_tall_pictures_shrink_too():
+    got = shown(bridge.cv2_to_imgmsg(np.full((70_000, 100), 90, np.uint8), "mono8"), 640)
+    assert got.shape == (2000, 3, 3)
 
 
 def test_grey_stays_grey():
@@ -76,9 +106,14 @@ def test_the_width_is_read_from_the_header():
 @pytest.mark.parametrize("msg", [
     Image(width=9, height=9, encoding="bgr8", step=27, data=b"short"),
     Image(width=9, height=9, encoding="nonsense", step=27, data=bytes(243)),
+    Image(width=9, height=9, encoding="32FC2", step=72, data=bytes(648)),
+    Image(width=9, height=9, encoding="8UC2", step=18, data=bytes(162)),
+    Image(width=2**32 - 1, height=2**32 - 1, encoding="bgr8", step=27, data=bytes(243)),
     Image(encoding="bgr8"), CompressedImage(format="jpeg", data=b"no picture"),
     CompressedImage(format="jpeg", data=b"\xff\xd8\xff"), CompressedImage(),
-], ids=["short", "encoding", "empty", "letters", "head", "nothing"])
+], ids=["short", "encoding", "two numbers", "two bytes", "vast", "empty",
+        "letters", "head", "nothing"])
 def test_what_cannot_be_shown_is_refused_in_words(msg):
-    with pytest.raises(Refused):
+    with pytest.raises(Refused) as refused:
         to_jpeg(msg, 640)
+    assert "OpenCV" not in str(refused.value)

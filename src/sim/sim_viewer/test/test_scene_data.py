@@ -3,6 +3,7 @@
 import asyncio
 import io
 import struct
+import types
 
 import cv2
 import numpy as np
@@ -13,6 +14,7 @@ from sim_viewer.context import Node
 from sim_viewer.meshes import Meshes, mesh_bytes
 from sim_viewer.options import Options
 from sim_viewer.page_scene import page_scene
+from sim_viewer.scene import Stage
 from sim_viewer.simulator_source import SimulatorSource
 
 from bullet_sim import pose as poses
@@ -125,7 +127,7 @@ def states(*links):
 
 
 def test_poses_are_read_from_the_messages_bytes():
-    source = SimulatorSource()
+    source = SimulatorSource(None)
     assert source.poses() is None
     source._take_states(states(("robot::base", 1.0), ("盒子::link", 4.0)))
     names, rows = source.poses()
@@ -138,3 +140,26 @@ def test_poses_are_read_from_the_messages_bytes():
     assert source.poses()[0] == ("robot::base",)
     source._take_states(states())
     assert source.poses()[1].shape == (0, 7)
+
+
+def test_what_only_trembles_is_not_sent():
+    stage, sent = Stage(types.SimpleNamespace(shared=lambda kind: None)), []
+    stage._watchers[lambda data, keep=False: sent.append(data)] = "poses"
+    rows = np.float32([[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]])
+    stage._take(("robot::base",), rows)
+    assert sent == [{"names": ("robot::base",)}, rows.tobytes()]
+    for _ in range(5):  # 1 micrometre to and fro
+        stage._take(("robot::base",), rows + np.float32(1e-6))
+        stage._take(("robot::base",), rows)
+    assert len(sent) == 2
+    for step in range(1, 21):  # slow, and all the same on its way
+        stage._take(("robot::base",), rows + np.float32(2e-6 * step))
+    assert len(sent) > 4
+
+
+def test_a_simulator_that_is_gone_is_forgotten():
+    source = SimulatorSource(None)
+    source._take_scene(types.SimpleNamespace(data="{}"))
+    source._take_states(states(("robot::base", 1.0)))
+    source.forget()
+    assert source.scene(known=False) is None and source.poses() is None

@@ -43,8 +43,7 @@ class Picture {
     this._times = this._times.filter((time) => now - time < COUNTED_MS);
     const rate = this._times.length / (COUNTED_MS / 1000);
     this.card.dataset.rate = rate;
-    const { naturalWidth: width, naturalHeight: height } = this._image;
-    this._rate.textContent = width ? `${width} × ${height}, ${rate.toFixed(1)} Hz` : "";
+    this._rate.textContent = this._size ? `${this._size}, ${rate.toFixed(1)} Hz` : "";
   }
 
   _show(data) {
@@ -55,7 +54,11 @@ class Picture {
     this._note.hidden = true;
     this._times.push(performance.now());
     const url = URL.createObjectURL(new Blob([data], { type: "image/jpeg" }));
-    this._image.onload = this._image.onerror = () => URL.revokeObjectURL(url);
+    this._image.onload = () => {
+      URL.revokeObjectURL(url);
+      this._size = `${this._image.naturalWidth} × ${this._image.naturalHeight}`;
+    };
+    this._image.onerror = () => URL.revokeObjectURL(url);
     this._image.src = url;
   }
 

@@ -33,6 +33,7 @@ function show(name) {
   open = name;
   content.replaceChildren();
   tabs[name].button.setAttribute("aria-selected", "true");
+  tabs[name].button.scrollIntoView({ block: "nearest", inline: "nearest" });
   history.replaceState(null, "", `#${name}`);
   tabs[name].module.mount(content, link);
 }

@@ -50,15 +50,29 @@ class Tab {
       this._hint.textContent = t("This browser has no WebGL: ", "此浏览器没有 WebGL：") + error.message;
       return;
     }
-    this._stops = [
-      link.watch("scene", {}, (scene) => this._show(scene)),
-      link.watch("poses", {}, (data) => this._move(data)),
-    ];
+    this._link = link;
+    this._onHide = () => (document.hidden ? this._rest() : this._watch());
+    document.addEventListener("visibilitychange", this._onHide);
+    if (!document.hidden) this._watch();
   }
 
   close() {
-    this._stops?.forEach((stop) => stop());
+    document.removeEventListener("visibilitychange", this._onHide);
+    this._rest();
     this._stage?.close();
+  }
+
+  _watch() {
+    this._stops ??= [
+      this._link.watch("scene", {}, (scene) => this._show(scene)),
+      this._link.watch("poses", {}, (data) => this._move(data)),
+    ];
+  }
+
+  /** While nobody sees it, nobody need send it. */
+  _rest() {
+    this._stops?.forEach((stop) => stop());
+    this._stops = null;
   }
 
   _show(scene) {

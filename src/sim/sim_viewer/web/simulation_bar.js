@@ -1,4 +1,4 @@
-// Simulated time, real-time factor, and the buttons that pause, step and reset.
+// Simulated time, real-time factor, the buttons that pause, step and reset, and what is amiss.
 
 import { element } from "./dom.js";
 import { t } from "./language.js";
@@ -14,9 +14,20 @@ function clock(time) {
 export function simulationBar(bar, link) {
   const time = element("span", { id: "time", title: t("simulated time", "仿真时间") });
   const factor = element("span", { id: "factor", title: t("real-time factor", "实时系数") });
-  bar.append(time, factor);
+  const problem = element("span", { id: "problem", class: "error" });
+  bar.append(problem, time, factor);
   let paused = false;
-  const ask = (op, args) => link.call(op, args).catch((error) => (factor.title = error.message));
+  let lost = false; // the ROS master
+  const say = (short, whole = "") => {
+    problem.textContent = short;
+    problem.title = whole;
+  };
+  const ask = (op, args) => link.call(op, args).then(() => say(""),
+    (error) => say(t("failed", "失败"), error.message));
+  link.onConnection((there) => {
+    lost = false;
+    say(there ? "" : t("the server is gone", "服务器已断开"));
+  });
   const button = (id, text, title, onclick) => element("button", { id, text, title, onclick });
   const pause = button("pause", "❚❚", t("pause", "暂停"), () => ask("pause", { paused: !paused }));
   const step = button("step", "▶❚", t("one step", "单步"), () => ask("step", { steps: 1 }));
@@ -24,6 +35,10 @@ export function simulationBar(bar, link) {
     () => ask("reset", { what: "world" }));
   if (link.control) bar.append(pause, step, reset);
   link.watch("status", {}, (status) => {
+    if (Boolean(status.error) !== lost) {
+      lost = Boolean(status.error);
+      say(lost ? t("no ROS master", "没有 ROS master") : "", status.error);
+    }
     time.textContent = status.time == null ? "" : clock(status.time);
     factor.textContent = status.factor == null ? "" : `× ${status.factor.toFixed(FACTOR_DIGITS)}`;
     paused = Boolean(status.paused);

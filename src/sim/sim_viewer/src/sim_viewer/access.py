@@ -30,7 +30,6 @@ class Access:
 
     def __init__(self, options: Options):
         self._token = options.token
-        self._cookie = f"sim_viewer_{options.port}"
         own = socket.gethostname().lower()
         self._names = {"localhost", own, own.split(".")[0], f"{own.split('.')[0]}.local",
                        options.address.lower(), *options.hosts}
@@ -43,11 +42,17 @@ class Access:
         reason = self.refusal(request)
         if reason:
             return web.Response(status=403, text=reason + "\n", headers=HEADERS)
-        answer = await handler(request)
+        try:
+            answer = await handler(request)
+        except web.HTTPException as refused:  # 404 and its like are answers, too
+            refused.headers.update(HEADERS)
+            raise
+        except (OSError, ValueError):  # names of files that no system has
+            return web.Response(status=404, text="no such file\n", headers=HEADERS)
         if not answer.prepared:
             answer.headers.update(HEADERS)
             if self._token and request.query.get("token"):
-                answer.set_cookie(self._cookie, self._token, httponly=True, samesite="Strict")
+                answer.set_cookie(_cookie(request), self._token, httponly=True, samesite="Strict")
         return answer
 
     def refusal(self, request: web.Request) -> str:
@@ -57,7 +62,7 @@ class Access:
             return (f"This server does not go by the name {host!r}; open it by its address, "
                     "or start it with hosts:=NAME.")
         origin = request.headers.get("Origin")
-        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+        if origin is not None and _place(origin) != host.lower():
             return f"A page of {origin!r} may not speak to this server."
         if self._token and not self._shows_token(request):
             return "Open the address with ?token=... that the server printed."
@@ -65,7 +70,8 @@ class Access:
 
     def _known(self, host: str) -> bool:
         try:
-            name = urlsplit(f"//{host}").hostname or ""
+            parts = urlsplit(f"//{host}")
+            name = "" if "@" in host else parts.hostname or ""
         except ValueError:
             return False
         if name in self._names:
@@ -77,5 +83,18 @@ class Access:
         return True
 
     def _shows_token(self, request: web.Request) -> bool:
-        shown = request.query.get("token") or request.cookies.get(self._cookie, "")
-        return hmac.compare_digest(shown.encode(), self._token.encode())
+        shown = request.query.get("token") or request.cookies.get(_cookie(request), "")
+        return hmac.compare_digest(shown.encode(errors="replace"), self._token.encode())
+
+
+def _cookie(request: web.Request) -> str:
+    """Browsers keep one set of cookies for all ports of a machine, and a page runs on each."""
+    return f"sim_viewer_{request.transport.get_extra_info('sockname')[1]}"
+
+
+def _place(origin: str) -> str | None:
+    """Host and port; None where there is none."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None

@@ -1,157 +1,143 @@
-"""Driving from browsers: their commands on a topic of the robot, stopped by a thread of its own.
-
-The thread and not the loop watches the time: a loop that is late must not let a robot drive on.
-"""
+"""Driving from browsers: what they may ask for. The process drive_guard.py publishes and stops."""
 
 from __future__ import annotations
 
+import asyncio
+import json
+import os
+import subprocess
+import sys
 import threading
-import time
-from collections.abc import Callable, Hashable
+from typing import Any
 
 import rosgraph
 import rospy
-from ackermann_msgs.msg import AckermannDriveStamped
-from geometry_msgs.msg import Twist
 
 from sim_viewer.context import Context, Node
-from sim_viewer.dead_man import STOP, Command, DeadMan, HandleTaken
+from sim_viewer.drive_guard import MESSAGES
 from sim_viewer.registry import Refused, operation
+from sim_viewer.tools.master import asked, connect
 
 FASTEST = 20.0  # m/s and rad/s; more is a slip of the hand, whatever the robot
-FLUSH = 0.1  # s in which rospy's threads send what was published last
-
-
-class Handles:
-    """A handle for each topic. All methods may be called from any thread."""
-
-    def __init__(self, publish: Callable[[str, Command], None],
-                 clock: Callable[[], float] = time.monotonic) -> None:
-        self._publish = publish
-        self._clock = clock
-        self._handles: dict[str, DeadMan] = {}
-        self._changed = threading.Condition()
-        self._closed = False
-        self._timer = threading.Thread(target=self._stop_in_time, name="dead man", daemon=True)
-        self._timer.start()
-
-    def press(self, client: Hashable, topic: str, command: Command) -> None:
-        """Pass a command on; HandleTaken if another client drives this topic.
-
-        A client drives one topic: what it drove before is stopped.
-        """
-        with self._changed:
-            self._release(client, besides=topic)
-            handle = self._handles.setdefault(topic, DeadMan())
-            self._send(topic, handle.press(client, command, self._clock()))
-            self._changed.notify()
-
-    def release(self, client: Hashable) -> None:
-        """The client let go, or is gone."""
-        with self._changed:
-            self._release(client)
-
-    def close(self) -> None:
-        """Stop everything that is driven, and the thread."""
-        with self._changed:
-            self._closed = True
-            for topic, handle in self._handles.items():
-                self._send(topic, handle.release(handle.driver))
-            self._changed.notify()
-        self._timer.join()
-
-    def _release(self, client: Hashable, besides: str = "") -> None:
-        for topic, handle in self._handles.items():
-            if topic != besides:
-                self._send(topic, handle.release(client))
-
-    def _send(self, topic: str, commands: list[Command]) -> None:
-        for command in commands:
-            self._publish(topic, command)
-
-    def _stop_in_time(self) -> None:
-        with self._changed:
-            while not self._closed:
-                now = self._clock()
-                for topic, handle in self._handles.items():
-                    self._send(topic, handle.expire(now))
-                due = min((handle.until for handle in self._handles.values()), default=float("inf"))
-                self._changed.wait(None if due == float("inf") else max(due - now, 0.0))
-
-
-def twist(command: Command) -> Twist:
-    """For robots that turn on the spot."""
-    message = Twist()
-    message.linear.x, message.angular.z = command.linear, command.angular
-    return message
-
-
-def ackermann(command: Command) -> AckermannDriveStamped:
-    """For cars: the angle is that of the front wheels."""
-    message = AckermannDriveStamped()
-    message.header.stamp = rospy.Time.now()
-    message.drive.speed, message.drive.steering_angle = command.linear, command.angular
-    return message
-
-
-MESSAGES = {"geometry_msgs/Twist": (Twist, twist),
-            "ackermann_msgs/AckermannDriveStamped": (AckermannDriveStamped, ackermann)}
+PATIENCE = 15.0  # s until the guard has begun and opened a topic, on a busy machine
+GUARD = "_drive"  # what its node's name has more than this one's
 
 
 class Drive:
-    """The topics that browsers drive, one publisher each, kept while the node runs."""
+    """The guard's process, begun with the first topic that somebody drives; all in the loop."""
 
     def __init__(self, node: Node) -> None:
-        self._publishers: dict[str, tuple[rospy.Publisher, Callable]] = {}
-        self._opening = threading.Lock()
+        self._loop = node.loop
+        self._guard: subprocess.Popen | None = None
+        self._topics: dict[str, str] = {}  # that the guard has opened, with their types
+        self._number = 0
+        self._answers: dict[int, asyncio.Future] = {}
         self._known: set[int] = set()  # clients whose end is watched
-        self.handles = Handles(self._publish)
-
-    def open(self, topic: str) -> str:
-        """Get ready to publish on a topic that a robot listens to; its type. Asks the master."""
-        name = rospy.resolve_name(topic)
-        found = driven_topics()
-        if name not in found:
-            raise Refused(f"no robot listens to {name}; there is {', '.join(found) or 'none yet'}")
-        kind, convert = MESSAGES[found[name]]
-        with self._opening:
-            if name not in self._publishers:
-                publisher = rospy.Publisher(name, kind, queue_size=1)
-                self._publishers[name] = publisher, convert
-        return found[name]
 
     def is_open(self, topic: str) -> bool:
-        return rospy.resolve_name(topic) in self._publishers
+        return topic in self._topics
 
-    def press(self, context: Context, topic: str, command: Command) -> None:
-        """One message of a held key, in the loop's thread."""
+    async def open(self, topic: str, kind: str) -> None:
+        """Get ready to publish on a topic; Refused where that takes too long."""
+        if self._guard is None:
+            self._begin()
+        await self._ask({"do": "open", "topic": topic, "type": kind})
+        self._topics[topic] = kind
+
+    async def press(self, context: Context, topic: str, linear: float, angular: float) -> None:
+        """One message of a held key, in order; Refused where another client drives."""
         if context.client not in self._known:
             self._known.add(context.client)
             context.on_close(lambda: self._forget(context.client))
-        self.handles.press(context.client, rospy.resolve_name(topic), command)
+        # 0 instead of -0, which would not count as the same stop.
+        answer = await self._ask({"do": "press", "client": context.client, "topic": topic,
+                                  "linear": linear + 0.0, "angular": angular + 0.0})
+        if answer["taken"]:
+            raise Refused("somebody else drives now; let go of the keys, then press again")
+
+    def release(self, client: int) -> None:
+        """The client let go, or is gone."""
+        if self._guard is not None:
+            self._tell({"do": "release", "client": client})
 
     def close(self) -> None:
-        """The node ends: nothing may be left driving."""
-        self.handles.close()
-        time.sleep(FLUSH)
+        """The node ends, and the guard with its input: nothing is left driving."""
+        if self._guard is not None:
+            self._guard.stdin.close()
 
     def _forget(self, client: int) -> None:
         self._known.discard(client)
-        self.handles.release(client)
+        self.release(client)
 
-    def _publish(self, topic: str, command: Command) -> None:
-        publisher, convert = self._publishers[topic]
+    def _begin(self) -> None:
+        # A session of its own: Ctrl-C in the terminal must not end it before all is stopped.
+        self._guard = subprocess.Popen(
+            [sys.executable, "-m", "sim_viewer.drive_guard", f"__name:={_name()}",
+             f"__ns:={rospy.get_namespace()}"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, start_new_session=True)
+        os.set_blocking(self._guard.stdin.fileno(), False)
+        threading.Thread(target=self._listen, args=(self._guard,), daemon=True).start()
+
+    def _listen(self, guard: subprocess.Popen) -> None:
+        """In a thread of its own."""
         try:
-            publisher.publish(convert(command))
-        except rospy.ROSException:
-            pass  # the node ends
+            for line in guard.stdout:
+                self._loop.call_soon_threadsafe(self._take, json.loads(line))
+            guard.wait()
+            self._loop.call_soon_threadsafe(self._ended, guard)
+        except RuntimeError:
+            pass  # the loop has ended
+
+    def _take(self, answer: dict[str, Any]) -> None:
+        waiting = self._answers.get(answer["number"])
+        if waiting is not None and not waiting.done():
+            waiting.set_result(answer)
+
+    def _ended(self, guard: subprocess.Popen) -> None:
+        if guard is not self._guard:
+            return
+        rospy.logwarn("the process that drives has ended with %s; it begins anew", guard.returncode)
+        topics, self._topics, self._guard = self._topics, {}, None
+        for waiting in self._answers.values():
+            waiting.cancel()
+        self._stopping = self._loop.create_task(self._stop(topics))
+
+    async def _stop(self, topics: dict[str, str]) -> None:
+        """A new guard does not know what the last one left driving."""
+        for topic, kind in topics.items():
+            try:
+                await self.open(topic, kind)
+                self._tell({"do": "stop", "topic": topic})
+            except Refused as error:
+                rospy.logwarn("%s: %s", topic, error)
+
+    async def _ask(self, order: dict[str, Any]) -> dict[str, Any]:
+        self._number += 1
+        number, waiting = self._number, self._loop.create_future()
+        self._answers[number] = waiting
+        try:
+            self._tell({**order, "number": number})
+            done, _ = await asyncio.wait([waiting], timeout=PATIENCE)
+        finally:
+            del self._answers[number]
+        if not done or waiting.cancelled():
+            raise Refused("the process that drives does not answer; press again")
+        return waiting.result()
+
+    def _tell(self, order: dict[str, Any]) -> None:
+        line = json.dumps(order).encode() + b"\n"  # so short that a pipe takes all of it or nothing
+        try:
+            if self._guard.stdin.write(line) is None:
+                raise Refused("the process that drives does not listen; press again")
+        except (OSError, ValueError):
+            pass  # it has ended, which `_listen` finds out
 
 
 def driven_topics() -> dict[str, str]:
     """Topics that somebody listens to and whose type we can drive by, with that type, sorted."""
-    master = rosgraph.Master(rospy.get_name())
-    types = dict(master.getTopicTypes())
-    listened = sorted(name for name, _ in master.getSystemState()[1])
+    types, (_, subscribers, _) = asked(lambda: (dict(connect().getTopicTypes()),
+                                                connect().getSystemState()))
+    listened = sorted(name for name, _ in subscribers)
     return {name: types[name] for name in listened if types.get(name) in MESSAGES}
 
 
@@ -165,8 +151,12 @@ async def drive_topics(context: Context) -> list[dict[str, str]]:
 @operation("drive_open", control=True)
 async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]:
     """Get ready to drive, so that the first key is not lost while connections are made."""
-    kind = await context.run_in_thread(context.node.shared(Drive).open, _legal(topic))
-    return {"topic": rospy.resolve_name(topic), "type": kind}
+    name = _legal(topic)
+    found = await context.run_in_thread(driven_topics)
+    if name not in found:
+        raise Refused(f"no robot listens to {name}; there is {', '.join(found) or 'none yet'}")
+    await context.node.shared(Drive).open(name, found[name])
+    return {"topic": name, "type": found[name]}
 
 
 @operation("drive", control=True)
@@ -175,23 +165,25 @@ async def drive(context: Context, linear: float, angular: float, topic: str = "c
     release, and must not drive after that."""
     if max(abs(linear), abs(angular)) > FASTEST:
         raise Refused(f"drive: {linear:g} m/s and {angular:g} rad/s are more than {FASTEST:g}")
-    driven = context.node.shared(Drive)
-    if not driven.is_open(_legal(topic)):
-        await context.run_in_thread(driven.open, topic)
-        return
-    try:
-        driven.press(context, topic, Command(linear, angular) if linear or angular else STOP)
-    except HandleTaken:
-        raise Refused("somebody else drives now; let go of the keys, then press again") from None
+    driven, name = context.node.shared(Drive), _legal(topic)
+    if driven.is_open(name):
+        await driven.press(context, name, linear, angular)
+    else:
+        await drive_open(context, topic)
 
 
 @operation("drive_release", control=True)
 async def drive_release(context: Context) -> None:
     """All keys are up."""
-    context.node.shared(Drive).handles.release(context.client)
+    context.node.shared(Drive).release(context.client)
 
 
 def _legal(topic: str) -> str:
+    """Its full name."""
     if len(topic) > 256 or not rosgraph.names.is_legal_name(topic) or topic.startswith("~"):
         raise Refused(f"{topic[:40]!r} is no name of a topic; cmd_vel is one")
-    return topic
+    return rospy.resolve_name(topic)
+
+
+def _name() -> str:
+    return rospy.get_name().rpartition("/")[2] + GUARD

@@ -17,6 +17,7 @@ from sim_viewer.outbox import Outbox
 from sim_viewer.registry import Refused
 
 LARGEST_MESSAGE = 1 << 20  # bytes; more closes the connection
+MOST_BROWSERS = 100
 MOST_AT_ONCE = 64  # operations of one browser under way, and things it watches
 LONGEST_ID = 64  # characters of a message's number, which is sent back
 GOODBYE = 1.0  # s for all browsers together, when the node ends
@@ -33,17 +34,24 @@ class Hub:
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
         """The handler of /ws: returns when the connection has ended."""
+        if len(self._sockets) >= MOST_BROWSERS:
+            raise web.HTTPServiceUnavailable(text=f"{MOST_BROWSERS} pages are open already\n")
         socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=PATIENCE,
                                        compress=False)
-        await socket.prepare(request)
-        client = Client(socket, Context(self._node, next(self._numbers)))
         self._sockets.add(socket)
+        try:
+            await socket.prepare(request)
+            await self._serve(socket)
+        finally:
+            self._sockets.discard(socket)
+        return socket
+
+    async def _serve(self, socket: web.WebSocketResponse) -> None:
+        client = Client(socket, Context(self._node, next(self._numbers)))
         try:
             await client.serve()
         finally:
-            self._sockets.discard(socket)
             await client.close()
-        return socket
 
     async def close(self) -> None:
         """Say goodbye to all who listen; the others are not waited for."""

@@ -8,13 +8,14 @@ import sys
 import webbrowser
 
 import rospy
+from rosgraph.network import get_local_addresses
 
 from sim_viewer import registry
 from sim_viewer.context import Node
 from sim_viewer.meshes import Meshes
 from sim_viewer.options import OptionError, read_options
 from sim_viewer.restart import restart, wait_for_other_master
-from sim_viewer.server import NoPort, Server, page_url
+from sim_viewer.server import NoPort, Server, further_urls, page_url
 
 
 def main() -> None:
@@ -64,6 +65,8 @@ async def _announce(node: Node, port: int) -> None:
         print(f"viewer: port {node.options.port} is taken, so it is {port}")
     url = page_url(node.options, port)
     print(f"viewer: {url}", flush=True)
+    for further in further_urls(node.options, port, get_local_addresses()):
+        print(f"viewer, from other machines: {further}", flush=True)
     await node.run_in_thread(rospy.set_param, "~url", url)  # for who did not see the line
     if node.options.open:
         await node.run_in_thread(webbrowser.open, url)

@@ -10,6 +10,7 @@ from typing import Any
 
 MOST_ANSWERS = 100  # that a browser may leave unread before nothing more is read from it
 MOST_KEPT = 500  # of one thing watched; the oldest goes first
+MOST_BYTES = 4 << 20  # of one thing watched, likewise
 
 
 class Outbox:
@@ -64,6 +65,9 @@ class Outbox:
         if mail and not keep and not mail[-1][0]:
             mail.pop()
         mail.append((keep, message))
+        size = sum(len(one) for _, one in mail) if len(mail) > 1 else 0
+        while size > MOST_BYTES:
+            size -= len(mail.popleft()[1])
         self._something.set()
 
     async def next(self) -> str | bytes:

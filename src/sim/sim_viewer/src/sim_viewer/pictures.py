@@ -10,6 +10,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from sim_viewer.registry import Refused
 
 QUALITY = 80  # of 100
+TALLEST_PX = 2000
 JPEG_START = b"\xff\xd8"
 _bridge = CvBridge()
 
@@ -25,32 +26,47 @@ def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
     else:
         picture = visible(msg)
     height_px, width_px = picture.shape[:2]
-    if width_px > width:
-        size = (width, max(1, round(height_px * width / width_px)))
+    shrink = max(width_px / width, height_px / TALLEST_PX)
+    if shrink > 1:
+        size = (max(1, round(width_px / shrink)), max(1, round(height_px / shrink)))
         picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
     return cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])[1].tobytes()
 
 
 def visible(msg: Image) -> np.ndarray:
     """(h, w) or (h, w, 3) uint8, grey or BGR. Depths and 16 bit are spread from black to white
-    between the least and the largest in the picture; what is no number is black."""
+    between the least and the largest in the picture; what is no number is black. Pictures that
+    only say how many numbers a pixel has (8UC3) are BGR, as OpenCV's are."""
     if not msg.width or not msg.height:
         raise Refused("the picture has no pixels")
     try:
         picture = _bridge.imgmsg_to_cv2(msg)
-        if picture.dtype == np.uint8 and msg.encoding != "mono8" and "8UC1" not in msg.encoding:
+        named = "C" not in msg.encoding  # bgr8 and its like, not 8UC3
+        if named and picture.dtype == np.uint8 and msg.encoding != "mono8":
             return _bridge.imgmsg_to_cv2(msg, "bgr8")
-    except (CvBridgeError, ValueError, TypeError) as error:
-        raise Refused(f"a picture of {msg.width} x {msg.height} in {msg.encoding!r} cannot be "
-                      f"shown: {error}") from None
-    return picture if picture.dtype == np.uint8 else _spread(picture)
+    except (CvBridgeError, ValueError, TypeError, MemoryError) as error:
+        raise _cannot(msg, str(error)) from None
+    channels = 1 if picture.ndim == 2 else picture.shape[2]
+    if channels not in (1, 3, 4):
+        raise _cannot(msg, f"{channels} numbers a pixel are no colour")
+    colours = picture[..., :3] if channels == 4 else picture
+    if msg.encoding.startswith("rgb"):
+        colours = colours[..., ::-1]
+    return colours if colours.dtype == np.uint8 else _spread(colours)
+
+
+def _cannot(msg: Image, reason: str) -> Refused:
+    return Refused(f"a picture of {msg.width} x {msg.height} in {msg.encoding!r:.30} cannot be "
+                   f"shown: {reason}")
 
 
 def _spread(values: np.ndarray) -> np.ndarray:
     values = np.asarray(values, np.float32)
     finite = np.isfinite(values)
     low, high = (values[finite].min(), values[finite].max()) if finite.any() else (0.0, 1.0)
-    grey = (np.where(finite, values, low) - low) * (255 / max(high - low, 1e-6))
+    span = max(float(high) - float(low), 1e-6)
+    grey = np.where(finite, values, low).astype(np.float64) - float(low)
+    grey *= 255 / span
     return grey.astype(np.uint8)
 
 

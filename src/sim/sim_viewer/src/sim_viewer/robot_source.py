@@ -9,12 +9,15 @@ import rospkg
 import rospy
 import tf2_ros
 import yaml
+from tf2_msgs.msg import TFMessage
 
 from bullet_sim.description import LightDescription, SceneDescription
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.urdf_visuals import RobotLinks, read_robot_visuals
 from bullet_sim.pose import IDENTITY
 from bullet_sim.rendering.scene_text import SceneContent
+from sim_viewer.subscription import Subscription
+from sim_viewer.tools import names
 
 DESCRIPTION = "/robot_description"
 LOOK_AGAIN = 2.0  # s between looks at the parameter and at tf's tree
@@ -28,7 +31,7 @@ class RobotSource:
 
     def __init__(self):
         self._buffer: tf2_ros.Buffer | None = None
-        self._listener: tf2_ros.TransformListener | None = None
+        self._listeners: list[Subscription] = []
         self._text: str | None = None
         self._name = ""
         self._links: tuple[str, ...] = ()
@@ -37,10 +40,9 @@ class RobotSource:
 
     def close(self) -> None:
         """Let tf go."""
-        if self._listener is not None:
-            self._listener.unregister()
-        self._buffer = self._listener = None
-        self._text = None
+        for listener in self._listeners:
+            listener.unregister()
+        self._buffer, self._listeners, self._text = None, [], None
 
     def scene(self, known: bool) -> SceneContent | None:
         """If there is another one than at the last call, or if that one is not `known`."""
@@ -58,11 +60,20 @@ class RobotSource:
         """Names and (n, 7) of links that tf has."""
         if self._buffer is None:
             self._buffer = tf2_ros.Buffer()
-            self._listener = tf2_ros.TransformListener(self._buffer)
+            self._listeners = [Subscription(topic, TFMessage, self._take_transforms, static)
+                               for topic, static in ((names.TF, False), (names.TF_STATIC, True))]
         self._root = self._root or self._find_root()
         found = {link: row for link in self._links if (row := self._row(link)) is not None}
         rows = np.array(list(found.values()), np.float32).reshape(-1, 7)
         return tuple(f"{self._name}::{link}" for link in found), rows
+
+    def _take_transforms(self, message: TFMessage, static: bool) -> None:
+        buffer = self._buffer
+        if buffer is None:
+            return  # closed meanwhile
+        keep = buffer.set_transform_static if static else buffer.set_transform
+        for transform in message.transforms:
+            keep(transform, "tf")
 
     def _read(self, text: str) -> SceneContent:
         links: RobotLinks = {}

@@ -17,11 +17,13 @@ from bullet_sim.rendering.scene_text import SceneContent
 from sim_viewer.context import Context, Node
 from sim_viewer.meshes import Meshes
 from sim_viewer.page_scene import NOTHING, page_scene
-from sim_viewer.registry import watchable
+from sim_viewer.registry import Refused, watchable
 from sim_viewer.robot_source import RobotSource
 from sim_viewer.simulator_source import SimulatorSource
+from sim_viewer.tools.master import MasterView
 
 RATE_HZ = 20.0  # of poses, at most
+UNSEEN = 1e-5  # m, and of quaternions: a robot that stands trembles less; nothing is drawn for that
 PATIENCE = 1.0  # s without a simulator before the robot's own description counts
 
 Send = Callable[..., None]
@@ -49,7 +51,7 @@ class Stage:
     def __init__(self, node: Node):
         self._node = node
         self._meshes: Meshes = node.shared(Meshes)
-        self._simulator = SimulatorSource()
+        self._simulator = SimulatorSource(node.shared(MasterView))
         self._robot = RobotSource()
         self._shown: Source | None = None
         self._watchers: dict[Send, str] = {}
@@ -81,7 +83,6 @@ class Stage:
             self._task = None
 
     async def _run(self) -> None:
-        await self._node.run_in_thread(self._simulator.open)
         clock = self._node.loop.time
         seen = clock()
         try:
@@ -90,12 +91,21 @@ class Stage:
                 if self._simulator.present():
                     seen = clock()
                     await self._show(self._simulator)
-                elif clock() - seen > PATIENCE:
+                    continue
+                await self._find_simulator()
+                if clock() - seen > PATIENCE:
+                    self._simulator.forget()
                     await self._show(self._robot)
         finally:
             self._shown = None
             self._simulator.close()
             self._robot.close()
+
+    async def _find_simulator(self) -> None:
+        try:
+            await self._node.run_in_thread(self._simulator.open)
+        except Refused:
+            pass  # the master is gone; what was connected still sends
 
     async def _show(self, source: Source) -> None:
         known, self._shown = source is self._shown, source
@@ -118,7 +128,7 @@ class Stage:
 
     def _take(self, names: tuple[str, ...], rows: np.ndarray) -> None:
         renamed = names != self._names
-        if not renamed and np.array_equal(rows, self._rows):
+        if not renamed and np.allclose(rows, self._rows, rtol=0.0, atol=UNSEEN):
             return
         self._names, self._rows = names, rows
         self._send_poses(self._watching("poses"), renamed)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Awaitable, Callable
+from ipaddress import ip_address
 from pathlib import Path
+from urllib.parse import quote
 
 import rospkg
 from aiohttp import web
@@ -15,6 +17,7 @@ from sim_viewer.hub import Hub
 from sim_viewer.options import Options
 
 PORTS_TRIED = 100
+EVERYWHERE = ("0.0.0.0", "::", "")  # all addresses of the machine
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
@@ -63,7 +66,18 @@ class Server:
 
 def page_url(options: Options, port: int) -> str:
     """What to type into a browser on this machine."""
-    everywhere = options.address in ("0.0.0.0", "::", "")
-    host = "127.0.0.1" if everywhere else options.address
+    return _url(options, "127.0.0.1" if options.address in EVERYWHERE else options.address, port)
+
+
+def further_urls(options: Options, port: int, addresses: list[str]) -> list[str]:
+    """What to type on other machines, where the page listens at all `addresses` of this one."""
+    if options.address not in EVERYWHERE:
+        return []
+    return [_url(options, address, port) for address in addresses
+            if not ip_address(address).is_loopback and not ip_address(address).is_link_local
+            and (options.address != "0.0.0.0" or ":" not in address)]
+
+
+def _url(options: Options, host: str, port: int) -> str:
     host = f"[{host}]" if ":" in host else host
-    return f"http://{host}:{port}/" + (f"?token={options.token}" if options.token else "")
+    return f"http://{host}:{port}/" + (f"?token={quote(options.token)}" if options.token else "")

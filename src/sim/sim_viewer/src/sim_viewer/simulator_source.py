@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import struct
+import time
 
 import numpy as np
 import rospy
 from std_msgs.msg import String
 
 from bullet_sim.rendering.scene_text import SceneContent, scene_from_text
+from sim_viewer.subscription import Subscription
+from sim_viewer.tools import names
+from sim_viewer.tools.master import MasterView
+from sim_viewer.tools.simulator_name import simulator_name
 
-SCENE = "/gazebo/scene"
-LINK_STATES = "/gazebo/link_states"
+LOOK_AGAIN = 2.0  # s between looks whether the simulator goes by another name
 POSE = np.dtype("<f8")
 _COUNT = struct.Struct("<I")
 
@@ -19,8 +23,11 @@ _COUNT = struct.Struct("<I")
 class SimulatorSource:
     """Messages of link states come faster than anybody looks, so that only the last is read."""
 
-    def __init__(self):
-        self._subscribers: list[rospy.Subscriber] = []
+    def __init__(self, master: MasterView):
+        self._master = master
+        self._name = ""
+        self._looked = 0.0
+        self._subscribers: list[Subscription | rospy.Subscriber] = []
         self._text: str | None = None
         self._read: str | None = None  # which text was read last
         self._states: bytes | None = None
@@ -28,17 +35,32 @@ class SimulatorSource:
         self._names_bytes = b""
 
     def open(self) -> None:
-        """Subscribe."""
+        """Subscribe; again and again, since the simulator may come later, under another name."""
+        if self._name and time.monotonic() - self._looked < LOOK_AGAIN:
+            return
+        self._looked = time.monotonic()
+        name = simulator_name(self._master.state())
+        if name == self._name:
+            return
+        self.close()
+        self._name = name
         self._subscribers = [
-            rospy.Subscriber(SCENE, String, self._take_scene, queue_size=1),
-            rospy.Subscriber(LINK_STATES, rospy.AnyMsg, self._take_states, queue_size=1),
+            Subscription(name + names.SCENE, String, self._take_scene),
+            rospy.Subscriber(name + names.LINK_STATES, rospy.AnyMsg, self._take_states,
+                             queue_size=1),
         ]
 
     def close(self) -> None:
         """Let the topics go."""
         for subscriber in self._subscribers:
             subscriber.unregister()
-        self._subscribers = []
+        self._subscribers, self._name = [], ""
+        self.forget()
+
+    def forget(self) -> None:
+        """What the last simulator said, which is gone."""
+        if not self.present():
+            self._text = self._states = None
 
     def present(self) -> bool:
         """Whether a simulator is there."""
@@ -76,10 +98,10 @@ def _read_names(states: bytes) -> tuple[tuple[str, ...], int]:
 
     string[] name is followed by geometry_msgs/Pose[] pose: their number, then seven float64 each.
     """
-    count, at, names = _COUNT.unpack_from(states)[0], _COUNT.size, []
+    count, at, found = _COUNT.unpack_from(states)[0], _COUNT.size, []
     for _ in range(count):
         length = _COUNT.unpack_from(states, at)[0]
         at += _COUNT.size
-        names.append(states[at:at + length].decode("utf-8", "replace"))
+        found.append(states[at:at + length].decode("utf-8", "replace"))
         at += length
-    return tuple(names), at
+    return tuple(found), at

@@ -60,6 +60,12 @@ export function reveal(detail) {
   detail.scrollIntoView({ block: "nearest" });
 }
 
+/** Write a name into a cell; where it must be broken, that is behind a slash. */
+export function writeName(cell, name) {
+  const parts = name.split(/(?<=\/)/);
+  cell.replaceChildren(...parts.flatMap((part) => [part, element("wbr")]));
+}
+
 export function bytes(count) {
   const units = ["B", "kB", "MB", "GB", "TB"];
   let step = 0;

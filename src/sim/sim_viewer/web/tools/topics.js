@@ -3,7 +3,7 @@
 import { element } from "../dom.js";
 import { t } from "../language.js";
 import { FilteredTable } from "./filtered_table.js";
-import { bytes, checkbox, errorLine, reveal, toldError } from "./parts.js";
+import { bytes, checkbox, errorLine, reveal, toldError, writeName } from "./parts.js";
 
 export const title = t("Topics", "话题");
 
@@ -81,8 +81,9 @@ export function mount(place, link) {
     id: "topics",
     search: (row) => `${row.name} ${row.type}`,
     columns: [
-      { title: t("topic", "话题"), className: "mono", write: write((row) => row.name) },
-      { title: t("type", "类型"), className: "mono wide", write: write((row) => row.type) },
+      { title: t("topic", "话题"), className: "mono", write: (cell, row) => writeName(cell, row.name) },
+      { title: t("type", "类型"), className: "mono wide",
+        write: (cell, row) => writeName(cell, row.type) },
       { title: t("pub", "发布"), write: write((row) => row.publishers.length) },
       { title: t("sub", "订阅"), write: write((row) => row.subscribers.length) },
       { title: t("rate", "频率"), className: "number rate", write: writeRate },

@@ -12,6 +12,7 @@ import rospy
 
 from sim_viewer.registry import Refused
 from sim_viewer.tools import names
+from sim_viewer.tools.master import asked
 
 DEFAULT_FOLDER = "~/bags"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,79}")
@@ -20,7 +21,7 @@ MOST_LISTED = 500
 
 def read_folder() -> Path:
     """Where bags are, from the node's parameter; made when the first is recorded."""
-    wanted = str(rospy.get_param(names.BAG_FOLDER, "")).strip()
+    wanted = str(asked(lambda: rospy.get_param(names.BAG_FOLDER, ""))).strip()
     return Path(wanted or DEFAULT_FOLDER).expanduser().resolve()
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import rospy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
+from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
 
 FACTOR_WINDOW = 2.0  # s of wall time that the real-time factor is measured over
@@ -25,7 +26,7 @@ class SharedClock:
     def __init__(self, node: Any = None):
         self._lock = threading.Lock()
         self._holders = 0
-        self._subscriber: rospy.Subscriber | None = None
+        self._subscriber: Subscription | None = None
         self._stamp: rospy.Time | None = None
 
     def hold(self) -> None:
@@ -34,8 +35,7 @@ class SharedClock:
             self._holders += 1
             if self._holders == 1:
                 self._stamp = None
-                self._subscriber = rospy.Subscriber(names.CLOCK, ClockMessage, self._take,
-                                                    tcp_nodelay=True)
+                self._subscriber = Subscription(names.CLOCK, ClockMessage, self._take)
 
     def release(self) -> None:
         """The last one out unsubscribes."""

@@ -7,10 +7,10 @@ import threading
 from collections import deque
 from typing import Any
 
-import rospy
 from rosgraph_msgs.msg import Log
 
 from sim_viewer.registry import Refused, argument, watchable
+from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
 from sim_viewer.tools.paced import Paced
 
@@ -30,14 +30,14 @@ class SharedLog:
         self._lines: deque[tuple[int, dict[str, Any]]] = deque(maxlen=MOST_REMEMBERED)
         self._numbers = itertools.count(1)
         self._holders = 0
-        self._subscriber: rospy.Subscriber | None = None
+        self._subscriber: Subscription | None = None
 
     def hold(self) -> None:
         """Subscribe if nobody has yet."""
         with self._lock:
             self._holders += 1
             if self._holders == 1:
-                self._subscriber = rospy.Subscriber(names.ROSOUT, Log, self._take)
+                self._subscriber = Subscription(names.ROSOUT, Log, self._take)
 
     def release(self) -> None:
         """The last one out unsubscribes; lines stay for who comes back."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import rospy
 
+from sim_viewer.drive import GUARD
 from sim_viewer.registry import Refused, argument, watchable
 from sim_viewer.tools.layers import layout
 from sim_viewer.tools.master import SystemState
@@ -44,7 +45,8 @@ class Graph(Paced):
 
 def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str = "",
          own: str = "") -> dict[str, Any]:
-    """The picture of `state`; `quiet` leaves out what every system has, and the node `own`."""
+    """The picture of `state`; `quiet` leaves out what every system has, and the node `own` with
+    its guard."""
     if quiet:
         state = _without_quiet(state, own)
     flows = _flows(state)
@@ -78,7 +80,8 @@ def _flows(state: SystemState) -> list[Flow]:
 
 def _without_quiet(state: SystemState, own: str) -> SystemState:
     def loud(part: dict[str, list[str]]) -> dict[str, list[str]]:
-        kept = {name: [node for node in nodes if node != own and not node.startswith(QUIET_NODES)]
+        kept = {name: [node for node in nodes
+                       if node not in (own, own + GUARD) and not node.startswith(QUIET_NODES)]
                 for name, nodes in part.items()
                 if name not in QUIET_TOPICS and not name.endswith(QUIET_ENDINGS)}
         return {name: nodes for name, nodes in kept.items() if nodes}

@@ -75,6 +75,6 @@ def asked(ask: Callable[[], Any]) -> Any:
         return ask()
     except OSError as error:
         raise Refused(f"the ROS master does not answer ({error.strerror or error}); "
-                      "start roscore or your launch file, then this page's node anew") from None
+                      "start roscore or your launch file, and this page comes back") from None
     except rosgraph.MasterException as error:
         raise Refused(f"the ROS master refused: {error}") from None

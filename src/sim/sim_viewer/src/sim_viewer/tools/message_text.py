@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import genpy
+import numpy as np
 
 MOST_ELEMENTS = 24  # of an array, before it is cut
 MOST_LETTERS = 2_000  # of a string
@@ -48,10 +49,16 @@ def _inline(value: Any, most: int) -> str:
         return f"{{secs: {value.secs}, nsecs: {value.nsecs}}}"
     if isinstance(value, str):
         return _quoted(value)
-    if isinstance(value, (bytes, bytearray, list, tuple)) or hasattr(value, "tolist"):
-        shown = ", ".join(_inline(one, most) for one in list(value[:most]))
-        return f"[{shown}]" + (f"  # ... {len(value)} in all" if len(value) > most else "")
+    if isinstance(value, np.ndarray):
+        return _cut_list(value[:most].tolist(), len(value), most)
+    if isinstance(value, (bytes, bytearray, list, tuple)):
+        return _cut_list(list(value[:most]), len(value), most)
     return str(value)
+
+
+def _cut_list(first: list, count: int, most: int) -> str:
+    shown = ", ".join(_inline(one, most) for one in first)
+    return f"[{shown}]" + (f"  # ... {count} in all" if count > most else "")
 
 
 def _quoted(text: str) -> str:

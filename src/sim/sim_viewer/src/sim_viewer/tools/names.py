@@ -5,11 +5,15 @@ ROSOUT = "/rosout_agg"
 TF = "/tf"
 TF_STATIC = "/tf_static"
 
-GAZEBO = "/gazebo"
-PAUSE = "/gazebo/pause_physics"
-UNPAUSE = "/gazebo/unpause_physics"
-RESET_WORLD = "/gazebo/reset_world"
-RESET_SIMULATION = "/gazebo/reset_simulation"
-PHYSICS = "/gazebo/get_physics_properties"
+GAZEBO = "/gazebo"  # the simulator's usual name; the next are below it
+SCENE = "/scene"
+LINK_STATES = "/link_states"
+PAUSE = "/pause_physics"
+UNPAUSE = "/unpause_physics"
+STEP = "/step_physics"  # not of Gazebo itself
+RESET_WORLD = "/reset_world"
+RESET_SIMULATION = "/reset_simulation"
+PHYSICS = "/get_physics_properties"
+WORLD = "/get_world_properties"
 
 BAG_FOLDER = "~bags"

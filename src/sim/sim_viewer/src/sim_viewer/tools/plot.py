@@ -7,9 +7,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-import rospy
-
 from sim_viewer.registry import Refused, argument, operation, watchable
+from sim_viewer.subscription import Subscription
 from sim_viewer.tools.clock import SharedClock
 from sim_viewer.tools.fields import expand, numeric_paths, parse_steps, split_topic, value
 from sim_viewer.tools.master import MasterView
@@ -54,7 +53,7 @@ class Plot(Paced):
         if not 0 < len(paths) <= MOST_LINES or not all(isinstance(path, str) for path in paths):
             raise Refused(f"paths are 1 to {MOST_LINES} texts such as /odom/pose/pose/position/x")
         self._waiting = {path: deque(maxlen=MOST_WAITING) for path in paths}
-        self._subscribers: list[rospy.Subscriber] = []
+        self._subscribers: list[Subscription] = []
         self._clock: SharedClock = context.node.shared(SharedClock)
         self._holds_clock = False
 
@@ -69,7 +68,7 @@ class Plot(Paced):
         for topic, lines in by_topic.items():
             kind = self.master.message_class(topic)
             self._subscribers.append(
-                rospy.Subscriber(topic, kind, self._taker(lines), tcp_nodelay=True))
+                Subscription(topic, kind, self._taker(lines)))
 
     def close(self) -> None:
         for subscriber in self._subscribers:

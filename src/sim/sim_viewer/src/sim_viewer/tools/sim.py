@@ -1,4 +1,7 @@
-"""The simulator behind Gazebo's services: its time and speed, pause, step and reset."""
+"""The simulator behind Gazebo's services: its time and speed, pause, step and reset.
+
+Its node goes by `name`, which is /gazebo but in another namespace.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,15 @@ import time
 from typing import Any
 
 import rospy
-from gazebo_msgs.srv import GetPhysicsProperties
+from gazebo_msgs.srv import GetPhysicsProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
 from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools import names
 from sim_viewer.tools.clock import FactorMeter, SharedClock
+from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.simulator_name import simulator_name
 
 PAUSE_ASKED = 1.0  # s between two questions whether it is paused
 MOST_STEPS = 100_000
@@ -24,7 +29,8 @@ RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
 @operation("pause", control=True)
 async def pause(context: Any, paused: bool = True) -> None:
     """Stop simulated time, or let it go on."""
-    await context.run_in_thread(call_empty, names.PAUSE if paused else names.UNPAUSE)
+    name = await _find_simulator(context)
+    await context.run_in_thread(call_empty, name + (names.PAUSE if paused else names.UNPAUSE))
     context.node.shared(SharedPause).forget()
 
 
@@ -33,32 +39,60 @@ async def reset(context: Any, what: str = "world") -> None:
     """`world`: models back to where they began; `simulation`: time to 0 as well."""
     if what not in RESETS:
         raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
-    await context.run_in_thread(call_empty, RESETS[what])
+    await context.run_in_thread(call_empty, await _find_simulator(context) + RESETS[what])
 
 
 @operation("step", control=True)
 async def step(context: Any, steps: int = 1) -> dict[str, float]:
-    """Go on for at least this many physics steps, then pause; answers with `{"from", "to"}` in s.
+    """Go on for this many physics steps, then pause; answers with `{"from", "to"}` in s.
 
-    Gazebo's ROS interface cannot step, so this lets go and stops at the first /clock that is late
-    enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
+    The ROS interface of Gazebo itself cannot step, so there this lets go and stops at the first
+    /clock that is late enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
     """
     if not 0 < steps <= MOST_STEPS:
         raise Refused(f"steps is {steps}; give 1 to {MOST_STEPS}")
+    name = await _find_simulator(context)
+    state = await context.run_in_thread(context.node.shared(MasterView).state)
     try:
-        return await context.run_in_thread(_step, context.node.shared(SharedClock), steps)
+        if name + names.STEP in state.services:
+            return await context.run_in_thread(_step_exactly, name, steps)
+        return await context.run_in_thread(_step_by_clock, name, context.node.shared(SharedClock),
+                                           steps)
     finally:
         context.node.shared(SharedPause).forget()
 
 
-def _step(clock: SharedClock, steps: int) -> dict[str, float]:
-    duration = steps * physics().time_step
+async def _find_simulator(context: Any) -> str:
+    master = context.node.shared(MasterView)
+    return simulator_name(await context.run_in_thread(master.state))
+
+
+def _step_exactly(name: str, steps: int) -> dict[str, float]:
+    one = rospy.ServiceProxy(name + names.STEP, Empty, persistent=True)
+    world = rospy.ServiceProxy(name + names.WORLD, GetWorldProperties)
+    limit = time.monotonic() + STEP_LIMIT
+    try:
+        call_empty(name + names.PAUSE)
+        begin = world().sim_time
+        for _ in range(steps):
+            one()
+            if time.monotonic() > limit:
+                break
+        return {"from": begin, "to": world().sim_time}
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise Refused(f"{name + names.STEP}: {error}; is a simulator running?") from None
+    finally:
+        one.close()
+
+
+def _step_by_clock(name: str, clock: SharedClock, steps: int) -> dict[str, float]:
+    duration = steps * physics(name).time_step
     clock.hold()
     try:
-        call_empty(names.PAUSE)
+        call_empty(name + names.PAUSE)
         begin = clock.simulated
         limit = time.monotonic() + STEP_LIMIT
-        call_empty(names.UNPAUSE)
+        call_empty(name + names.UNPAUSE)
         while time.monotonic() < limit:
             now = clock.simulated
             if begin is None:
@@ -66,7 +100,7 @@ def _step(clock: SharedClock, steps: int) -> dict[str, float]:
             elif now is not None and now >= begin + duration and now > begin:
                 break
             time.sleep(0.001)
-        call_empty(names.PAUSE)
+        call_empty(name + names.PAUSE)
         time.sleep(0.02)
         return {"from": begin, "to": clock.simulated}
     finally:
@@ -81,12 +115,12 @@ def call_empty(name: str) -> None:
         raise Refused(f"{name}: {error}; is a simulator running?") from None
 
 
-def physics() -> Any:
+def physics(name: str) -> Any:
     """The simulator's physics properties; Refused where there is no simulator."""
     try:
-        return rospy.ServiceProxy(names.PHYSICS, GetPhysicsProperties)()
+        return rospy.ServiceProxy(name + names.PHYSICS, GetPhysicsProperties)()
     except (rospy.ServiceException, rospy.ROSException) as error:
-        raise Refused(f"{names.PHYSICS}: {error}; is a simulator running?") from None
+        raise Refused(f"{name + names.PHYSICS}: {error}; is a simulator running?") from None
 
 
 class SharedPause:
@@ -97,12 +131,12 @@ class SharedPause:
         self._asked = -PAUSE_ASKED
         self._paused: bool | None = None
 
-    def read(self) -> bool | None:
+    def read(self, name: str) -> bool | None:
         """As it was at most a second ago; None where there was no answer."""
         with self._lock:
             if time.monotonic() - self._asked >= PAUSE_ASKED:
                 try:
-                    self._paused = physics().pause
+                    self._paused = physics(name).pause
                 except Refused:
                     self._paused = None
                 self._asked = time.monotonic()
@@ -117,6 +151,8 @@ class SharedPause:
 @watchable("status")
 class Status(Paced):
     """Sends `{time: s, factor: real-time factor, paused, simulator}`; null where unknown."""
+
+    PERIOD = 0.4  # s: each change makes a browser draw, on the simulator's processor perhaps
 
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
@@ -137,8 +173,9 @@ class Status(Paced):
     def collect(self) -> Any:
         simulated = self._clock.simulated
         factor = self._meter.add(time.monotonic(), simulated)
-        simulator = names.PAUSE in self.master.state().services
-        paused = self._pause.read() if simulator else None
+        state = self.master.state()
+        name = simulator_name(state)
+        paused = self._pause.read(name) if name + names.PAUSE in state.services else None
         return self._changes.of({
             "time": simulated, "factor": None if factor is None else round(factor, 3),
             "paused": bool(paused), "simulator": paused is not None})

@@ -9,10 +9,10 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
-import rospy
 from tf2_msgs.msg import TFMessage
 
 from sim_viewer.registry import watchable
+from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
 from sim_viewer.tools.clock import SharedClock
 from sim_viewer.tools.paced import Changes, Paced
@@ -134,7 +134,7 @@ class Tf(Paced):
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
         self._tree = FrameTree()
-        self._subscribers: list[rospy.Subscriber] = []
+        self._subscribers: list[Subscription] = []
         self._clock: SharedClock = context.node.shared(SharedClock)
         self._holds_clock = False
         self._changes = Changes()
@@ -143,7 +143,7 @@ class Tf(Paced):
         self._clock.hold()
         self._holds_clock = True
         for topic, static in ((names.TF, False), (names.TF_STATIC, True)):
-            self._subscribers.append(rospy.Subscriber(topic, TFMessage, self._take, static))
+            self._subscribers.append(Subscription(topic, TFMessage, self._take, static))
 
     def close(self) -> None:
         for subscriber in self._subscribers:

@@ -10,6 +10,7 @@ from typing import Any
 import rospy
 
 from sim_viewer.registry import argument, watchable
+from sim_viewer.subscription import decode
 from sim_viewer.tools.master import SystemState
 from sim_viewer.tools.message_text import MOST_ELEMENTS, to_text
 from sim_viewer.tools.paced import Changes, Paced
@@ -46,15 +47,16 @@ class OneTopic(Paced):
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
         self.topic = argument(args, "topic", str)
+        self.kind: type | None = None
         self.subscriber: rospy.Subscriber | None = None
 
     def take(self, message: Any) -> None:
-        """Called by rospy's threads for each message."""
+        """Called by rospy's threads for each message, raw: few of them need to be read."""
         raise NotImplementedError
 
     def open(self) -> None:
-        kind = self.master.message_class(self.topic)
-        self.subscriber = rospy.Subscriber(self.topic, kind, self.take, tcp_nodelay=True)
+        self.kind = self.master.message_class(self.topic)
+        self.subscriber = rospy.Subscriber(self.topic, rospy.AnyMsg, self.take, tcp_nodelay=True)
 
     def close(self) -> None:
         if self.subscriber:
@@ -80,7 +82,7 @@ class Echo(OneTopic):
         message, self._newest = self._newest, None
         if message is None:
             return None
-        return {"text": to_text(message, self._elements), "count": self._count,
+        return {"text": to_text(decode(message, self.kind), self._elements), "count": self._count,
                 "publisher": (message._connection_header or {}).get("callerid", "")}
 
 

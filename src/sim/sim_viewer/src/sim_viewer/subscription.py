@@ -1,0 +1,49 @@
+"""Subscriptions that do not disturb each other, and messages read without unpacking their arrays.
+
+rospy keeps one connection for each topic of a process, and all who subscribe there get messages of
+the class that the first of them named. So everything of this node asks for raw messages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import rospy
+
+
+def decode(message: Any, kind: type) -> Any:
+    """A raw message as one of class `kind`; long arrays of numbers stay numpy views of it.
+
+    Python's own lists of a map with 16 million cells hold up everything else for half a second.
+    """
+    if not isinstance(message, rospy.AnyMsg):
+        return message  # of rospy's own subscription to /clock
+    read = kind().deserialize_numpy(message._buff, np)
+    read._connection_header = message._connection_header
+    return read
+
+
+class Subscription:
+    """`take(message, *args)` is called in rospy's threads, with messages of class `kind`."""
+
+    def __init__(self, topic: str, kind: type, take: Callable[..., None], *args: Any):
+        self._topic, self._kind, self._take_read, self._args = topic, kind, take, args
+        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, tcp_nodelay=True)
+
+    def get_num_connections(self) -> int:
+        """How many publishers there are."""
+        return self._subscriber.get_num_connections()
+
+    def unregister(self) -> None:
+        """Let the topic go."""
+        self._subscriber.unregister()
+
+    def _take(self, raw: Any) -> None:
+        try:
+            message = decode(raw, self._kind)
+        except Exception as error:  # a publisher with another definition of the type
+            rospy.logwarn_throttle(10, f"{self._topic}: no {self._kind._type}: {error}")
+            return
+        self._take_read(message, *self._args)
