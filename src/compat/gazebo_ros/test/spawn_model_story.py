@@ -85,11 +85,13 @@ class SpawnModelStory(unittest.TestCase):
         # conforms: spawn_model/-sdf, spawn_model/-stdin, spawn_model/-database
         # conforms: spawn_model/-reference_frame, spawn_model/-robot_namespace
         # conforms: gazebo_ros.gazebo_interface/spawn_sdf_model_client
-        code, _ = self.run_to_end("-sdf", "-stdin", "-model", "box", text="<sdf/>")
+        code, said = self.run_to_end("-sdf", "-stdin", "-model", "box", text="<sdf/>")
         self.assertEqual((code, self.gazebo.names()), (0, ["spawn_sdf_model"]))
-        code, _ = self.run_to_end("-sdf", "-database", "coke_can", "-model", "can",
+        self.assertIn("Loading model XML from stdin", said)
+        code, said = self.run_to_end("-sdf", "-database", "coke_can", "-model", "can",
                                   "-reference_frame", "car", "-robot_namespace", "r")
         self.assertEqual((code, self.gazebo.names()), (0, ["spawn_sdf_model"] * 2))
+        self.assertIn("Loading model XML from Gazebo Model Database", said)
         request = self.request(1)
         self.assertIn("model://coke_can", request.model_xml)
         self.assertEqual((request.reference_frame, request.robot_namespace), ("car", "r"))
@@ -123,6 +125,7 @@ class SpawnModelStory(unittest.TestCase):
         code, said = self.run_to_end("-urdf", "-file", "/none.urdf", "-model", "car")
         self.assertEqual(code, 1)
         self.assertIn("FATAL", said)
+        self.assertIn("Loading model XML from file /none.urdf", said)
         self.assertIn("Error: specified file /none.urdf does not exist", said)
         code, said = self.run_to_end("-urdf", "-stdin", "-model", "car", text="<robot>")
         self.assertEqual(code, 1)
@@ -143,7 +146,10 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual(
             (request.model_name, request.urdf_param_name, request.joint_names,
              request.joint_positions), ("car", "", ["left", "right"], (0.5, -1.0)))
-        self.assertIn("Set model configuration status: set_model_configuration answered", said)
+        for line in ("Waiting for service /gazebo/set_model_configuration", "(upstream issue 93)",
+                     "Calling service /gazebo/set_model_configuration",
+                     "Set model configuration status: set_model_configuration answered"):
+            self.assertIn(line, said)
         self.assertIn("Unpausing physics", said)
 
     def test_joints_or_unpause_fail(self):
@@ -212,6 +218,16 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual(self.gazebo.names()[1:], ["delete_model"])
         self.assertEqual(self.request(1).model_name, "car")
         self.assertIn("Deleting model car", said)
+
+    def test_a_bond_whose_model_cannot_be_deleted(self):
+        # conforms: spawn_model/-b, spawn_model/log lines, spawn_model/exit codes
+        self.gazebo.broken.add("delete_model")
+        process = self.start(*PLAIN, "-b")
+        next(line for line in process.stdout if "Waiting for shutdown" in line)
+        process.send_signal(signal.SIGINT)
+        said, _ = process.communicate(timeout=LIMIT)
+        self.assertEqual((process.returncode, self.gazebo.names()[1:]), (0, ["delete_model"]))
+        self.assertIn("Delete model service call failed: ", said)
 
 
 if __name__ == "__main__":

@@ -107,11 +107,12 @@ def test_parameters():
 def test_parameters_of_our_own():
     # conforms: empty_world.launch/lockstep, empty_world.launch/lockstep_timeout
     # conforms: empty_world.launch/profile
-    _, params = load("lockstep:=/cmd_vel", "profile:=true")
+    _, params = load("lockstep:=/cmd_vel", "lockstep_timeout:=2.5", "profile:=true")
     ours = {name: value for name, value in params.items()
             if name not in ("/use_sim_time", "/gazebo/enable_ros_network")}
-    assert ours == {"/gazebo/lockstep": "/cmd_vel", "/gazebo/lockstep_timeout": 1.0,
+    assert ours == {"/gazebo/lockstep": "/cmd_vel", "/gazebo/lockstep_timeout": 2.5,
                     "/gazebo/profile": True}
+    assert load("lockstep:=/cmd_vel")[1]["/gazebo/lockstep_timeout"] == 1.0
 
 
 def test_in_a_group_node_and_parameters_share_the_namespace(tmp_path):

@@ -2,6 +2,7 @@
 
 import io
 import math
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
@@ -139,3 +140,16 @@ def test_an_empty_parameter(monkeypatch):
     monkeypatch.setattr(rospy, "get_param", lambda name: "")
     with pytest.raises(model_source.SourceError, match="param does not exist or is empty"):
         load("-param", "robot_description")
+
+
+def test_a_file_that_cannot_be_read(tmp_path, monkeypatch):
+    # conforms: spawn_model/-file, spawn_model/log lines
+    path = tmp_path / "car.urdf"
+    path.write_text("<robot/>")
+
+    def fails(_path):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", fails)
+    with pytest.raises(model_source.SourceError, match=f"Error reading file {path}: .*Permission"):
+        load("-file", str(path))

@@ -9,6 +9,7 @@ from bullet_sim.control.limits import JointLimits, SoftLimits
 from bullet_sim.errors import FormatError, UnknownName
 from bullet_sim.formats.urdf_facts import RobotFacts
 from bullet_sim.formats.urdf_transmission import Transmission, read_transmissions
+from bullet_sim.formats.xml_values import parse_xml
 
 EFFORT = "<hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface>"
 ACTUATOR = "<actuator name='m'/>"
@@ -17,11 +18,11 @@ TYPE = "<type>transmission_interface/SimpleTransmission</type>"
 
 def read(body, name="name='t'"):
     return read_transmissions(
-        fromstring(f"<robot><transmission {name}>{body}</transmission></robot>"))
+        parse_xml(f"<robot><transmission {name}>{body}</transmission></robot>", "a test"))
 
 
 def test_what_is_usable():
-    # conforms: urdf transmission/hardwareInterface
+    # conforms: urdf transmission/joint/hardwareInterface
     reduction = "<actuator name='m'><mechanicalReduction>50</mechanicalReduction></actuator>"
     for kind, interface in (("Effort", "effort"), ("Position", "position"),
                             ("Velocity", "velocity")):
@@ -43,7 +44,8 @@ def test_without_the_prefix_it_works_with_a_warning(caplog):
     (f"{TYPE}<joint>{EFFORT}</joint>{ACTUATOR}", "name='t'", "a <joint> of it has no name"),
     (f"{TYPE}<joint name='j'>{EFFORT}</joint><actuator/>", "name='t'", "a <actuator> of it"),
     (f"{TYPE}<joint name='j'/><actuator name='m'>{EFFORT}</actuator>", "name='t'",
-     "No valid hardware interface element found in joint 'j'; its actuator has one"),
+     "No valid hardware interface element found in joint 'j'; its actuator has one, which belongs "
+     "into the <joint>. Failed to load joints for transmission 't'."),
     (f"{TYPE}<joint name='j'>{EFFORT}</joint><joint name='k'>{EFFORT}</joint>{ACTUATOR}",
      "name='t'", "more than one joint"),
 ])

@@ -51,6 +51,22 @@ def test_a_number_that_is_none_is_one_short_error_line(text, message, caplog):
     assert "\n" not in record.getMessage() and len(record.getMessage()) < 500
 
 
+def test_a_name_of_a_million_letters_is_one_short_line():
+    robot = ('<robot name="r"><link name="base"/><joint name="j" type="fixed"><parent link="base"/>'
+             f'<child link="{"x" * 1_000_000}"/></joint></robot>')
+    with pytest.raises(FormatError) as raised:
+        load_model(robot, RESOURCES)
+    said = str(raised.value)
+    assert len(said) < 1000 and said.startswith("joint 'j': child link 'xxx")
+    assert said.endswith("not found; the links are: base")
+
+
+def test_an_unknown_element_of_the_root_says_where_it_is(caplog):
+    load_model(MODEL.format("").replace("</sdf>", "<lamp/></sdf>"), RESOURCES)
+    assert [record.getMessage() for record in caplog.records] == [
+        "<sdf>: <lamp> is not known, left out"]
+
+
 def test_the_number_of_elements_is_bounded(monkeypatch):
     monkeypatch.setattr(xml_text, "MOST_ELEMENTS", 1000)
     with pytest.raises(FormatError, match="line 1: more than 1000 elements; split the file"):

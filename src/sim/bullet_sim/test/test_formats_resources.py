@@ -59,7 +59,8 @@ def test_world_is_looked_up_here_then_in_the_resource_paths(tmp_path, monkeypatc
 
 @pytest.mark.parametrize("uri, message", [
     ("model://X/y", r"model://X/y not found \(searched: /m/X\)"),
-    ("http://host/x", "unknown URI prefix"),
+    ("http://host/x", r"http://host/x not found \(searched: nowhere. Unknown URI prefix: nothing"),
+    ("fuel2://x", r"searched: nowhere. Unknown URI prefix; known: model package file\)"),
     ("package://gone/x", r"package gone not found \(searched: no package finder was given\)"),
     ("/abs/x.stl", r"/abs/x.stl not found \(searched: /abs\)"),
 ])

@@ -1,11 +1,14 @@
 """rosrun bullet_sim_ros check: what it finds, how it says so, and its exit code."""
 
+import os
 import threading
+import time
 from pathlib import Path
 
 import pytest
 import rospy
 
+from bullet_sim_ros.check import launch_files
 from bullet_sim_ros.check.command import main
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
@@ -84,7 +87,7 @@ CONTROL = """<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/
 @pytest.mark.parametrize("wrong, right, why", [
     (DRIVE.format(tag="leftJont"), DRIVE.format(tag="leftJoint"), ") is not loaded: no joint"),
     (CAMERA.format(""), SENSOR.format("camera", "R8G8B8"), ") is not loaded: it belongs"),
-    (SENSOR.format("camera", "RGB9"), SENSOR.format("camera", "L8"), "format RGB9 is not supp"),
+    (SENSOR.format("camera", "RGB9"), SENSOR.format("camera", "L8"), "ImageFormat RGB9"),
     (SENSOR.format("camra", "L8"), SENSOR.format("camera", "L8"), "there is no type 'camra'"),
     ('<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
      '<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName>'
@@ -258,3 +261,96 @@ def test_launch_files_that_need_arguments(package, capsys):
     assert main([f"{folder}/part.launch", "world:=w"]) == 1
     assert "PROBLEM       launch file: it needs model:=…; " in capsys.readouterr().out
     assert main([f"{folder}/part.launch", "world:=w", "model:=m"]) == 0
+
+
+def test_commands_run_once_and_files_are_read_once(check, tmp_path):
+    runs = tmp_path / "runs"
+    again = f'<param name="{{}}" command="bash -c \'echo x >> {runs}; echo made\'"/>'
+    code, said = check("a.launch", f"<launch>{again.format('a')}{again.format('b')}</launch>")
+    assert code == 0, said
+    assert runs.read_text() == "x\n"
+
+
+@pytest.mark.parametrize("inside, words", [
+    ('<param name="a" textfile="{}/pipe"/>', "/pipe cannot be read: it is a pipe or device"),
+    ('<param name="a" textfile="/dev/zero"/>', "/dev/zero cannot be read: it is a pipe or device"),
+    ('<param name="a" value="$(eval 2**2**40)"/>', "takes more than 3 s or 1 GiB; look at its $("),
+    ('<include file="{}/a.launch"/>', "a.launch includes itself without end; take the <include>"),
+    ('<include file="{}/b.launch"/>', "a.launch includes itself by way of "),
+    ("<group>" * 1500 + "</group>" * 1500, "elements are nested too deep"),
+])
+def test_launch_files_that_do_not_end(check, tmp_path, inside, words):
+    if "pipe" in inside:
+        os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "b.launch").write_text(f'<launch><include file="{tmp_path}/a.launch"/></launch>')
+    code, said = check("a.launch", f"<launch>{inside.replace('{}', str(tmp_path))}</launch>")
+    (line,) = [line for line in said.splitlines() if "PROBLEM" in line]
+    assert code == 1 and words in line, said
+
+
+def test_a_part_that_many_robots_include_is_no_circle(check, tmp_path):
+    (tmp_path / "one.launch").write_text("<launch/>")
+    inside = f'<include file="{tmp_path}/one.launch"/>' * 30
+    assert check("a.launch", f"<launch>{inside}</launch>")[0] == 0
+
+
+def test_a_command_that_waits_is_ended(check, tmp_path, monkeypatch):
+    monkeypatch.setattr(launch_files, "LONGEST_WAIT", 8)  # roslaunch runs one of its own first
+    pid = tmp_path / "pid"
+    code, said = check("a.launch", '<launch><param name="a" command="bash -c \'echo $$ > '
+                       f'{pid}; exec sleep 100\'"/></launch>')
+    assert code == 1 and "its command has not ended after 8 s: bash -c 'echo $$" in said
+    stat = Path(f"/proc/{int(pid.read_text())}/stat")
+    for _ in range(100):
+        try:
+            if ") Z " in stat.read_text():  # dead; nobody may be there to collect it
+                return
+        except OSError:
+            return
+        time.sleep(0.1)
+    pytest.fail("its command still runs")
+
+
+def test_memory_that_runs_out_is_said_as_such():
+    assert "1 GiB; look at its $(eval" in launch_files._said(MemoryError())
+
+
+def test_files_that_are_not_utf8(check, tmp_path):
+    (tmp_path / "a.urdf").write_bytes(b"<robot name='r'>\n<!-- \xd6\xd0 --></robot>")
+    assert main([str(tmp_path / "a.urdf")]) == 1
+    model = "<sdf version='1.6'><model name='m'><link name='l'/></model></sdf>"
+    (tmp_path / "a.sdf").write_bytes(model.encode("utf-16"))
+    launch = ('<launch><node name="s" pkg="gazebo_ros" type="spawn_model" '
+              f'args="-sdf -file {tmp_path}/a.sdf -model m"/></launch>')
+    code, said = check("a.launch", launch)
+    assert "a.urdf, line 2: this is not UTF-8, which roslaunch needs; save the file" in said
+    assert code == 0 and "works         model m" in said
+
+
+@pytest.mark.parametrize("name, content", [
+    ("a", b"a: \xe9"), ("b", b"a: \xe9 b"), ("c", "a: 1".encode("utf-16"))])
+def test_a_parameter_file_that_is_not_utf8(check, tmp_path, name, content):
+    (tmp_path / f"{name}.yaml").write_bytes(content)
+    inside = f'<rosparam file="{tmp_path}/{name}.yaml"/>'
+    code, said = check("a.launch", f"<launch>{inside}</launch>")
+    assert code == 1 and "tag: it is not UTF-8; save it as UTF-8 XML is <rosparam file=" in said
+
+
+def test_a_texture_that_is_no_image(check, tmp_path):
+    (tmp_path / "a.png").write_text("no image")
+    code, said = check("a.world", WORLD.format(
+        "<model name='m'><link name='l'><visual name='v'><geometry><box><size>1 1 1</size></box>"
+        "</geometry><material><pbr><metal><albedo_map>file://" + str(tmp_path / "a.png")
+        + "</albedo_map></metal></pbr></material></visual></link></model>"))
+    assert code == 1 and "a.png cannot be read: it is no image; give a PNG or JPEG" in said
+
+
+def test_a_name_of_a_million_letters_is_one_short_line(check):
+    code, said = check("a.urdf", ROBOT.format("").replace('"r"', f'"{"x" * 1_000_000}"'))
+    assert code == 0 and max(map(len, said.splitlines())) < 1000
+    assert "(1 links, 0 joints)" in said
+
+
+def test_an_encoding_that_there_is_not(check):
+    code, said = check("a.launch", '<?xml version="1.0" encoding="no-such-code"?><launch/>')
+    assert code == 1 and "PROBLEM       launch file: " in said

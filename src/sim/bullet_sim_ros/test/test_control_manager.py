@@ -115,7 +115,8 @@ def test_from_loaded_to_unloaded():
         assert bench.states() == {"wheel": "initialized", "reader": "initialized"}
         bench.switch(["wheel"])
         assert bench.states() == {"wheel": "running", "reader": "initialized"}
-        with pytest.raises(ManagerError, match="'wheel' because it is still running"):
+        with pytest.raises(ManagerError, match=(
+                "Could not unload controller with name 'wheel' because it is still running")):
             bench.manager.unload("wheel")
         bench.switch(stop=["wheel"])
         calls = bench.calls("wheel")
@@ -130,8 +131,11 @@ def test_from_loaded_to_unloaded():
 
 
 @pytest.mark.parametrize(("name", "parts"), [
-    ("untyped", ["type was not specified", "'/r/untyped'", "/r/untyped/type"]),
-    ("unknown", ["'test/Recorde' does not exist", "Did you mean 'test/Recorder'"]),
+    ("untyped", ["Could not load controller 'untyped' because the type was not specified. Did you "
+                 "load the controller configuration on the parameter server (namespace: "
+                 "'/r/untyped')?", "/r/untyped/type"]),
+    ("unknown", ["Could not load controller 'unknown' because controller type 'test/Recorde' does "
+                 "not exist.", "Did you mean 'test/Recorder'?", "list_controller_types"]),
     ("refusing", ["Initializing controller 'refusing' failed", "joint 'x' is bent"]),
 ])
 def test_what_cannot_be_loaded(name, parts):
@@ -145,9 +149,11 @@ def test_what_cannot_be_loaded(name, parts):
 
 def test_a_name_is_loaded_once():
     bench = Bench("wheel")
-    with pytest.raises(ManagerError, match="'wheel' was already loaded"):
+    with pytest.raises(ManagerError, match="A controller named 'wheel' was already loaded inside "
+                       "the controller manager"):
         bench.manager.load("wheel")
-    with pytest.raises(ManagerError, match="no controller with this name exists; there are: wheel"):
+    with pytest.raises(ManagerError, match="Could not unload controller with name 'whel' because "
+                       "no controller with this name exists; there are: wheel"):
         bench.manager.unload("whel")
 
 
@@ -183,9 +189,11 @@ def test_switching(strict, before, start, stop, error, after):
 
 @pytest.mark.parametrize("strict", [True, False])
 @pytest.mark.parametrize(("before", "start", "stop", "error"), [
-    (["wheel"], ["both"], [], "joint 'left' is claimed by 'wheel' .running. and by 'both'"),
+    (["wheel"], ["both"], [], "Could not switch controllers, due to resource conflict: "
+     "joint 'left' is claimed by 'wheel' .running. and by 'both'"),
     ([], ["wheel", "also_wheel"], [], "joint 'left' is claimed by 'wheel'"),
-    (["wheel"], ["wheel"], ["wheel"], "'wheel' because of conflicting switching command"),
+    (["wheel"], ["wheel"], ["wheel"],
+     "Could no start or stop controller 'wheel' because of conflicting switching command"),
 ])
 def test_refused_however_it_is_asked(strict, before, start, stop, error):
     with Bench(*CLAIMS) as bench:

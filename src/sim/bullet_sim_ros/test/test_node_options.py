@@ -1,9 +1,13 @@
 """The simulator node's command line, without a master."""
 
+import logging
 from pathlib import Path
 
 import pytest
+import rosgraph
+import rospy
 
+from bullet_sim_ros import node
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 
@@ -51,3 +55,44 @@ def test_a_value_that_makes_no_sense_is_named(capsys, option, value, said):
         parse([f"{option}={value}"])
     assert ended.value.code == 2
     assert f"{value!r} {said}" in capsys.readouterr().err
+
+
+def test_without_a_master_it_says_so_and_waits(monkeypatch, capsys):
+    looks = iter((False, False, False, True))
+    monkeypatch.setattr(rosgraph, "is_master_online", lambda: next(looks))
+    monkeypatch.setattr("time.sleep", lambda _seconds: None)
+    node.wait_for_master()
+    assert "No ROS master - start roscore to continue..." in capsys.readouterr().err
+    assert next(looks, "all taken") == "all taken"
+
+
+@pytest.mark.parametrize("engine, said", [
+    ("ode", ""), ("simbody", ""), ("newton", "There is no physics engine 'newton'; there are ode")])
+def test_an_engine_that_gazebo_does_not_know_is_an_error_line(caplog, engine, said):
+    # conforms: gzserver/-e
+    node.check_engine(engine)
+    assert [record.levelno for record in caplog.records] == ([logging.ERROR] if said else [])
+    assert said in caplog.text
+
+
+def test_without_a_ros_network_it_says_so(caplog):
+    # conforms: ~enable_ros_network
+    with caplog.at_level(logging.INFO):
+        node.open_network(None, None, False)
+    assert "ROS gazebo topics/services are disabled" in caplog.text
+
+
+def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch, caplog):
+    # conforms: gzserver/WORLD
+    monkeypatch.setattr("sys.argv", ["gzserver", "--world", "worlds/nowhere.world"])
+    monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
+    monkeypatch.setattr(rospy, "init_node", lambda *_words, **_options: None)
+    monkeypatch.setattr(rospy.rostime, "set_rostime_initialized", lambda _yes: None)
+    for name in ("send_promptly", "forward_core_log"):
+        monkeypatch.setattr(node, name, lambda *_words: None)
+    monkeypatch.setattr("sys.setswitchinterval", lambda _seconds: None)
+    assert node.main() == 1
+    (record,) = caplog.records
+    assert record.levelno == logging.CRITICAL
+    assert record.getMessage().startswith(
+        "Could not open file worlds/nowhere.world: worlds/nowhere.world not found (searched: ")

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
+
+
+def shortened(text: str) -> str:
+    """Both ends of one that is too long: what is wrong, and what to do about it."""
+    half = LONGEST_LINE // 2
+    return text if len(text) <= LONGEST_LINE else f"{text[:half]} … {text[-half:]}"
+
 
 class SimulationError(Exception):
     """Base of everything the simulator core raises on purpose."""
+
+    def __str__(self) -> str:
+        return shortened(super().__str__())
 
 
 class FormatError(SimulationError):

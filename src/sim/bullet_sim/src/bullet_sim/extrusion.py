@@ -11,6 +11,7 @@ import numpy as np
 
 from bullet_sim.description import ImageExtrusion, Polyline, Strip
 from bullet_sim.errors import FormatError
+from bullet_sim.images import read_image, shrunk
 from bullet_sim.mesh_part import MeshPart, flat_shaded
 
 MOST_POINTS = 2000  # of all outlines together: the work grows with the square
@@ -29,17 +30,18 @@ def polyline_part(shape: Polyline) -> MeshPart:
 
 def image_part(shape: ImageExtrusion) -> MeshPart:
     """Blocks where the picture is dark; its upper edge is +y, its right edge +x."""
-    image = cv2.imread(shape.path, cv2.IMREAD_GRAYSCALE)
-    if image is None:
-        raise FormatError(f"image {shape.path} cannot be read; give a PNG or JPEG")
+    try:
+        image = read_image(shape.path, cv2.IMREAD_GRAYSCALE)
+    except FormatError as error:
+        raise FormatError(f"image {error}") from None
     pixel = shape.scale  # m
     longest = max(image.shape)
     if longest > LARGEST_PICTURE_PX:
         shrink = LARGEST_PICTURE_PX / longest
-        image = cv2.resize(image, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
+        image = shrunk(image, shrink)
         pixel /= shrink
     while len(blocks := dark_rectangles(image <= shape.threshold)) > MOST_BLOCKS:
-        image = cv2.resize(image, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+        image = shrunk(image, 0.5)
         pixel *= 2
     if not blocks:
         raise FormatError(f"image {shape.path} has no pixel as dark as {shape.threshold}; "

@@ -8,8 +8,6 @@ from pathlib import Path
 
 from bullet_sim.errors import FormatError
 
-LARGEST_IMAGE = 100 * 10**6  # bytes
-
 
 def check_file(path: Path | str, largest: int, advice: str = "") -> os.stat_result:
     """Its status; FormatError, of one line that begins with the path, if it is not to be opened.

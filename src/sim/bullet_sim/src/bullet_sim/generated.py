@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from bullet_sim.description import Generated, Heightmap, ImageExtrusion, Polyline, Strip
 from bullet_sim.errors import FormatError
 from bullet_sim.extrusion import image_part, polyline_part, strip_part
-from bullet_sim.files import LARGEST_IMAGE, check_file
+from bullet_sim.images import check_image
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.terrain import heightmap_parts
 
@@ -25,7 +25,7 @@ def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
     """Parts of one material each, in the link frame; FormatError where there is nothing to see."""
     path = getattr(shape, "path", None)
     try:
-        modified_ns = check_file(path, LARGEST_IMAGE).st_mtime_ns if path else 0
+        modified_ns = check_image(path).st_mtime_ns if path else 0
     except FormatError as error:
         raise FormatError(f"image {error}") from None
     parts = _made(_Version(shape, modified_ns))

@@ -52,7 +52,7 @@ def _cut_or_padded_corners(content: bytes) -> np.ndarray:
     stated = int.from_bytes(content[_HEADER_BYTES - 4:_HEADER_BYTES], "little")
     present = max(0, len(content) - _HEADER_BYTES) // _FACET.itemsize
     if not present or stated > _MOST_FACETS:
-        raise FormatError("neither text nor binary STL, or empty")
+        raise FormatError("neither text nor binary STL, or empty; export the file again")
     if stated > present:
         raise FormatError(f"cut off: the header says {stated} triangles, {present} are there; "
                           "copy or export the file again")

@@ -115,14 +115,21 @@ def _read(path: Path, submesh: str | None) -> list[NamedPart]:
             warnings.simplefilter("ignore")  # of the parsers' own arithmetic
             parts = reader(path, submesh is not None)
     except Exception as error:  # parsers of three libraries, each with its own exceptions
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FormatError(f"mesh {path} cannot be read: {reason}") from error
+        raise FormatError(f"mesh {path} cannot be read: {_reason(error)}") from error
     parts = [(name, part) for name, part in parts if len(part.faces)]
     if not parts:
         raise FormatError(f"mesh {path} cannot be read: it has no triangles")
     if not all(np.isfinite(part.vertices).all() for _, part in parts):
         raise FormatError(f"mesh {path} cannot be read: a vertex is not a finite number")
     return parts
+
+
+def _reason(error: Exception) -> str:
+    """In one line, with what to do where a parser does not say it."""
+    reason = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, FormatError):
+        return reason
+    return f"{reason}; export the file again"
 
 
 def _chosen(parts: list[NamedPart], geometry: Mesh) -> list[NamedPart]:

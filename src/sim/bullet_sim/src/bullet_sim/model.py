@@ -14,6 +14,7 @@ from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.filters import Filters
 from bullet_sim.physics.joint_group import JointGroup
+from bullet_sim.physics.levelling import levelled
 from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loops import Closures
 from bullet_sim.pose import Pose, Vector3
@@ -34,7 +35,7 @@ class Model:
         self._rest = client.rest
         self._set_pose = pose  # of a model without links
         self._states: dict[str, tuple[Pose, Twist]] | None = None
-        trees = assemble(description)
+        trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
         check_trees(name, trees)
         try:
             self._build(client, trees, pose)

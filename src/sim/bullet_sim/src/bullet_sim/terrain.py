@@ -7,6 +7,7 @@ import numpy as np
 
 from bullet_sim.description import Heightmap, Material, TerrainLayer
 from bullet_sim.errors import FormatError
+from bullet_sim.images import read_image
 from bullet_sim.mesh_part import MeshPart
 
 FINEST = 173  # corners along a side; larger images are taken coarser, see MOST_COLLIDING
@@ -44,24 +45,34 @@ def _heights(shape: Heightmap) -> np.ndarray:
     """(rows, columns) m above the black level, the image's upper row first."""
     if shape.path is None:
         return np.zeros((2, 2))
-    image = cv2.imread(shape.path, cv2.IMREAD_ANYDEPTH | cv2.IMREAD_GRAYSCALE)
-    if image is None:
-        raise FormatError(f"heightmap {shape.path} cannot be read; give a grey PNG")
+    try:
+        image = read_image(shape.path, cv2.IMREAD_ANYDEPTH | cv2.IMREAD_GRAYSCALE,
+                           "give a grey PNG")
+    except FormatError as error:
+        raise FormatError(f"heightmap {error}") from None
     white = np.iinfo(image.dtype).max if image.dtype.kind == "u" else max(float(image.max()), 1e-9)
-    grey = np.nan_to_num(image.astype(np.float64) / white)
-    size = [min(max(side, 2), FINEST) for side in grey.shape]
-    if size != list(grey.shape):
-        grey = _sampled(grey, *size)
-    return grey * shape.size[2]
+    size = [min(max(side, 2), FINEST) for side in image.shape]
+    grey = image if size == list(image.shape) else _sampled(image, *size)
+    return np.nan_to_num(grey.astype(np.float64) / white) * shape.size[2]
 
 
 def _sampled(grey: np.ndarray, rows: int, columns: int) -> np.ndarray:
     """Fewer corners, at the same edges: a pixel is a corner of the ground, not a cell of it."""
-    row = np.linspace(0, grey.shape[0] - 1, rows, dtype=np.float32)
-    column = np.linspace(0, grey.shape[1] - 1, columns, dtype=np.float32)
-    where_x, where_y = np.meshgrid(column, row)
-    return cv2.remap(grey.astype(np.float32), where_x, where_y,
-                     cv2.INTER_LINEAR).astype(np.float64)
+    upper, lower, down = _between(grey.shape[0], rows)
+    left, right, along = _between(grey.shape[1], columns)
+    down = down[:, None]
+
+    def row(index: np.ndarray) -> np.ndarray:
+        return grey[np.ix_(index, left)] * (1 - along) + grey[np.ix_(index, right)] * along
+
+    return row(upper) * (1 - down) + row(lower) * down
+
+
+def _between(pixels: int, corners: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each corner on a line the pixels before and after it, and how near the latter is."""
+    place = np.linspace(0, pixels - 1, corners)
+    before = place.astype(np.int64)
+    return before, np.minimum(before + 1, pixels - 1), place - before
 
 
 def _grid(rows: int, columns: int) -> np.ndarray:

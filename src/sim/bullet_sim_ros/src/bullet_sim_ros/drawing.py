@@ -7,12 +7,14 @@ lock, and what a picture is made from never changes while it is drawn.
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 import rospy
 
 from bullet_sim.rendering.renderer import Renderer, open_renderer
 from bullet_sim.stages import Stages
+
+PATIENCE = 1.0  # s, wall
 
 
 class DrawingThread:
@@ -40,6 +42,13 @@ class DrawingThread:
         """Have something done after all that was submitted before."""
         self._last = self._executor.submit(job)
         return self._last
+
+    def trim(self) -> None:
+        """Give back the memory of pictures, now; only a renderer that is very slow does so later.
+
+        The world stands still meanwhile, so there is an end to the patience.
+        """
+        wait([self.submit(self.renderer().trim)], PATIENCE)
 
     def settle(self) -> None:
         """Wait until nothing is being drawn."""

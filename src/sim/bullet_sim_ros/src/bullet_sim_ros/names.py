@@ -35,6 +35,7 @@ SET_PHYSICS_PROPERTIES = "~set_physics_properties"
 GET_WORLD_PROPERTIES = "~get_world_properties"
 PAUSE_PHYSICS = "~pause_physics"
 UNPAUSE_PHYSICS = "~unpause_physics"
+STEP_PHYSICS = "~step_physics"  # ours: Gazebo steps by its own transport only
 RESET_WORLD = "~reset_world"
 RESET_SIMULATION = "~reset_simulation"
 SET_PARAMETERS = "~set_parameters"

@@ -16,7 +16,7 @@ import rospy
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import load_world
+from bullet_sim.formats import Resources, load_world
 from bullet_sim.physics.limits import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
@@ -32,6 +32,7 @@ from bullet_sim_ros.simulation import Simulation
 SWITCH_INTERVAL = 0.0005
 FASTEST = 1000.0  # real-time factor; 0 is for more
 LATEST = 4e9  # s; ROS counts to 2**32
+ENGINES = ("ode", "bullet", "dart", "simbody")  # that Gazebo 11 knows
 
 
 class _Parser(argparse.ArgumentParser):
@@ -88,13 +89,28 @@ def open_world(options: argparse.Namespace, resources) -> World:
 
 
 def wait_for_master() -> None:
-    """Say once that roscore is missing, then wait for it."""
+    """Say once that roscore is missing, then wait for it; upstream says it twice a second."""
     if rosgraph.is_master_online():
         return
-    print(f"[WARN] No ROS master at {rosgraph.get_master_uri()} - start roscore to continue...",
-          file=sys.stderr, flush=True)
+    print("[WARN] No ROS master - start roscore to continue... (looked for it at "
+          f"{rosgraph.get_master_uri()})", file=sys.stderr, flush=True)
     while not rosgraph.is_master_online():
         time.sleep(0.5)
+
+
+def check_engine(name: str) -> None:
+    """An engine that Gazebo does not know either is an error line; the default goes on."""
+    if name not in ENGINES:
+        rospy.logerr("There is no physics engine %r; there are %s; Bullet computes, whichever is "
+                     "asked for", name, ", ".join(ENGINES))
+
+
+def open_network(simulation: Simulation, resources: Resources, wanted: bool) -> None:
+    """The services of /gazebo, unless the parameter `~enable_ros_network` says no."""
+    if wanted:
+        offer_services(simulation, resources)
+    else:
+        rospy.loginfo("ROS gazebo topics/services are disabled")
 
 
 def main() -> int:
@@ -109,11 +125,12 @@ def main() -> int:
     rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
     rospy.rostime.set_rostime_initialized(True)
     forward_core_log(options.verbose)
+    check_engine(options.physics)
     resources = open_resources()
     try:
         world = open_world(options, resources)
     except SimulationError as error:
-        rospy.logfatal("Could not open world %s: %s", options.world, error)
+        rospy.logfatal("Could not open file %s: %s", options.world, error)
         return 1
     parameters = read_node_parameters()
     if not all(is_legal_name(topic) for topic in split(parameters.lockstep)):
@@ -121,10 +138,7 @@ def main() -> int:
                        rospy.resolve_name(names.LOCKSTEP), parameters.lockstep)
         return 1
     simulation = Simulation(world, parameters)
-    if parameters.enable_ros_network:
-        offer_services(simulation, resources)
-    else:
-        rospy.loginfo("ROS gazebo topics/services are disabled")
+    open_network(simulation, resources, parameters.enable_ros_network)
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
     for number in (signal.SIGINT, signal.SIGTERM):

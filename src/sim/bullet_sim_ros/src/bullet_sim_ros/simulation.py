@@ -103,6 +103,15 @@ class Simulation:
         self.speed.update(world.time, self.pacer.factor)
         return steps
 
+    def step(self) -> None:
+        """One step and what is due then; time stands still afterwards, and /clock has it."""
+        self.world.paused = False
+        try:
+            self._advance(1)
+        finally:
+            self.world.paused = True
+        self._publish_clock()
+
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
         # This node needs no /clock: its log stamps get the time directly. Nobody here sleeps by it.

@@ -42,7 +42,7 @@ def refused(answer, text):
     return (answer.success, answer.status_message) == (False, text)
 
 
-def test_the_state_of_a_model_in_the_world(bench):
+def test_the_state_of_a_model_in_the_world(bench, caplog):
     # conforms: /gazebo/get_model_state, /gazebo/get_model_state/model_name
     # conforms: /gazebo/get_model_state/header, /gazebo/get_model_state/pose
     # conforms: /gazebo/get_model_state/twist, /gazebo/get_model_state/success
@@ -62,6 +62,8 @@ def test_the_state_of_a_model_in_the_world(bench):
     assert (answer.success, answer.status_message) == (True, "GetModelState: got properties")
     assert refused(bench.call("/gazebo/get_model_state", model_name="bo"),
                    "GetModelState: model does not exist")
+    logged = [(record.levelname, record.getMessage()) for record in caplog.records]
+    assert logged == [("ERROR", "GetModelState: model does not exist")]  # each time, as upstream
 
 
 def test_a_state_relative_to_another_entity(bench):

@@ -98,6 +98,21 @@ def test_pause_stops_everything_but_services(bench):
     assert len(truth) == 20
 
 
+def test_a_step_is_one_step_and_time_stands_again(bench):
+    # conforms: /gazebo/step_physics
+    bench.spawn(BOX)
+    clock, truth = bench.listen("/clock"), bench.listen("/truth")
+    bench.run(0.1)
+    bench.call("/gazebo/pause_physics")
+    count = len(truth)
+    for _ in range(10):
+        bench.call("/gazebo/step_physics")
+    assert bench.call("/gazebo/get_world_properties").sim_time == pytest.approx(0.11)
+    assert bench.call("/gazebo/get_physics_properties").pause is True
+    assert len(truth) == count + 1  # at 100 Hz
+    assert clock[-1].clock.to_sec() == pytest.approx(0.11)
+
+
 # --- reset
 
 def test_reset_world_puts_models_back_and_leaves_time_alone(bench):

@@ -1,5 +1,7 @@
 """The bench that the conformance tests stand on."""
 
+import logging
+
 import pytest
 import rospy
 from geometry_msgs.msg import Twist
@@ -48,3 +50,10 @@ def test_pictures_are_drawn(bench):
     bench.run(0.55)
     assert len(images) == 5
     assert (images[0].width, images[0].height, images[0].encoding) == (32, 24, "rgb8")
+
+
+def test_what_upstream_says_when_its_services_are_there(make_bench, caplog):
+    with caplog.at_level(logging.INFO):
+        make_bench()
+    said = [record.getMessage() for record in caplog.records if record.name == "rosout"]
+    assert said == ["Physics dynamic reconfigure ready.", "Finished loading Gazebo ROS API Plugin."]

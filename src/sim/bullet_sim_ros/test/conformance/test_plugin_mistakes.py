@@ -1,5 +1,7 @@
 """Numbers, words and names in plugins that cannot be meant: one line names the tag or the name."""
 
+import logging
+
 import pytest
 
 LINKS = """<link name="a"/><link name="b"><pose>0 0 1 0 0 0</pose></link>
@@ -76,3 +78,20 @@ def test_a_link_is_not_attached_to_itself(make_bench, caplog):
     assert "cannot attach: bot::a is one link; it takes two" in caplog.text
     assert bench.call("/link_attacher_node/attach", model_name_1="bot", link_name_1="a",
                       model_name_2="bot", link_name_2="b").ok
+
+
+def test_what_ros_control_says_until_it_is_there(bench, caplog):
+    # conforms: libgazebo_ros_control.so, libgazebo_ros_control.so/robotNamespace
+    # conforms: libgazebo_ros_control.so/robotParam
+    bench.graph.parameters["/arm/urdf"] = "<robot name='r'><link name='a'/></robot>"
+    tags = "<robotNamespace>/arm</robotNamespace><robotParam>urdf</robotParam>"
+    with caplog.at_level(logging.INFO):
+        bench.spawn(robot("libgazebo_ros_control.so", tags))
+    assert [record.getMessage() for record in caplog.records if record.levelname == "INFO"] == [
+        "Loading gazebo_ros_control plugin",
+        "Starting gazebo_ros_control plugin in namespace: /arm",
+        "gazebo_ros_control plugin is waiting for model URDF in parameter [/arm/urdf] on the ROS "
+        "param server.",
+        "Loaded gazebo_ros_control."]
+    assert bench.call("/arm/controller_manager/switch_controller", strictness=0).ok
+    assert "you need to specify a strictness level of" in caplog.records[-1].getMessage()

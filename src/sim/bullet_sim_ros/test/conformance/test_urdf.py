@@ -379,9 +379,12 @@ def test_an_unknown_material_is_one_warning_and_the_default_surface(caplog):
 def test_a_robot_drives_through_spawn(bench):
     # conforms: urdf robot, urdf robot/link, urdf robot/joint, urdf robot/gazebo
     spin = joint("j", "a", "b", "continuous", '<axis xyz="0 0 1"/>')
-    robot = f'<robot name="r">{link("a", SHAPES)}{link("b", SHAPES)}{spin}</robot>'
-    model = bench.spawn(robot)
+    still = "<gazebo><static>true</static></gazebo>"
+    robot = f'<robot name="r">{link("a", SHAPES)}{link("b", SHAPES)}{spin}GAZEBO</robot>'
+    assert bench.spawn(robot.replace("GAZEBO", still).replace('"r"', '"s"')).static
+    model = bench.spawn(robot.replace("GAZEBO", ""))
     bench.run(0.1)
+    assert not model.static
     assert sorted(model.links) == ["a", "b"] and list(model.joints) == ["j"]
     assert all(math.isfinite(value) for value in model.pose.position)
 

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from random import Random
+from xml.dom import minidom
 from xml.etree import ElementTree
 
 import pytest
 
 import bullet_sim
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import xacro_limits
+from bullet_sim.formats import xacro_limits, xacro_reading
 from bullet_sim.formats.xacro_files import expand, expand_file
 from bullet_sim.formats.xacro_limits import run_bounded
+from bullet_sim.formats.xacro_nodes import Siblings, replace_node
 
 ROOT = Path(__file__).resolve().parents[5]
 COMMAND = ROOT / "src/compat/xacro/xacro"
@@ -216,6 +220,24 @@ def test_old_files(write):
     assert links(expand(write(earlier))) == ["6"]
 
 
+def test_old_ways_inside_of_links_and_joints(write):
+    # conforms: xacro styles/without prefix
+    text = expand(write("""
+        <xacro:macro name="hinge" params="*o"><joint name="j"><insert_block name="o"/></joint>
+        </xacro:macro><xacro:macro name="own"><inertial><mass value="2"/></inertial></xacro:macro>
+        <xacro:hinge><origin xyz="1 2 3"/></xacro:hinge>
+        <link name="a"><own/><if value="0"><visual/></if></link>"""))
+    assert '<origin xyz="1 2 3"/>' in text and '<mass value="2"/>' in text
+    assert "insert_block" not in text and "visual" not in text
+
+
+def test_a_macro_named_as_a_tag_of_sdf_is_not_called_by_it(write):
+    # conforms: xacro styles/without prefix
+    text = expand(write("""<xacro:macro name="camera"><link name="a"/></xacro:macro>
+        <xacro:camera/><gazebo reference="a"><sensor name="s"><camera/></sensor></gazebo>"""))
+    assert links(text) == ["a"] and "<camera/>" in text
+
+
 def doubling(levels):
     """2 ** levels links, by macros that call the next one twice."""
     calls = "".join(f'<xacro:macro name="m{i}"><xacro:m{i + 1}/><xacro:m{i + 1}/></xacro:macro>'
@@ -253,6 +275,74 @@ def test_macros_that_double(write, monkeypatch):
         expand(write(doubling(25)))
 
 
+def test_parts_that_come_too_often(write, monkeypatch):
+    # conforms: xacro mistakes/size of the result
+    monkeypatch.setattr(xacro_limits, "MOST_TEXTS", 1000)
+    with pytest.raises(FormatError, match="more than 1000 attributes and texts"):
+        expand(write('<link name="a"/>' * 1001))
+    monkeypatch.setattr(xacro_reading, "MOST_FILES", 10)
+    part = write("", "part.xacro")
+    assert expand(write(f'<xacro:include filename="{part}"/>' * 10))
+    with pytest.raises(FormatError, match="more than 10 files are included"):
+        expand(write(f'<xacro:include filename="{part}"/>' * 11))
+    monkeypatch.setattr(xacro_reading, "LARGEST_FILE", 1000)
+    part.write_text("<a>" + " " * 1000 + "</a>")
+    with pytest.raises(FormatError, match=r"part.xacro cannot be read: 0 MB, more than 0; split"):
+        expand(write(f'<xacro:include filename="{part}"/>'))
+
+
+def test_the_time_grows_with_the_size_and_not_with_its_square():
+    # conforms: xacro mistakes/size of the result
+    document = minidom.parseString("<a>" + "<b/>" * 200_000 + "</a>")
+    call = document.createElement("call")
+    document.documentElement.insertBefore(call, document.documentElement.lastChild)
+    body = minidom.parseString("<c>" + "<d/>" * 200_000 + "</c>").documentElement
+    began = time.process_time()
+    replace_node(call, by=body, content_only=True)
+    assert time.process_time() - began < 5  # xacro's own takes minutes
+    children = document.documentElement.childNodes
+    assert len(children) == 400_000 and children[-2].tagName == "d" and not body.childNodes
+    assert [child.nextSibling for child in children[:-1]] == children[1:]
+    assert [child.previousSibling for child in children[1:]] == children[:-1]
+    assert all(child.parentNode is document.documentElement for child in children)
+
+
+def test_siblings_are_found_as_in_a_list():
+    # conforms: xacro mistakes/size of the result
+    plain = [object() for _ in range(1000)]
+    near, random = Siblings(plain), Random(1)
+    for _ in range(300):
+        node = random.choice(plain)
+        assert near.index(node) == plain.index(node)
+        near.remove(node)
+        plain.remove(node)
+        assert near == plain
+    with pytest.raises(ValueError):
+        near.remove(object())
+
+
+@pytest.mark.parametrize("inside", [
+    '<xacro:include filename="{}"/>', "<link name=\"${{xacro.load_yaml('{}')}}\"/>"])
+def test_what_is_no_file(write, tmp_path, inside):
+    # conforms: xacro mistakes/no file
+    signal.alarm(20)  # where a pipe is opened after all, the test ends
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "loop").symlink_to("loop")
+    for name, reason in (("pipe", "it is a pipe"), ("loop", "Too many"), (".", "it is a folder")):
+        path = tmp_path / name
+        with pytest.raises(FormatError) as caught:
+            expand(write(inside.format(path)))
+        assert f"{path} cannot be read: {reason}" in str(caught.value)
+    signal.alarm(0)
+
+
+def test_yaml_too_deep(write, tmp_path):
+    # conforms: xacro mistakes/no file
+    (tmp_path / "deep.yaml").write_text("[" * 10_000)
+    with pytest.raises(FormatError, match=r"deep.yaml is nested too deep; flatten it"):
+        expand(write(one_link("${xacro.load_yaml('deep.yaml')}")))
+
+
 def test_letters_and_entities(write):
     # conforms: xacro mistakes/not UTF-8, xacro mistakes/entity bombs
     path = write("")
@@ -261,7 +351,7 @@ def test_letters_and_entities(write):
         expand(path)
     bomb = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 20}">' for i in range(1, 12))
     path.write_text(f'<!DOCTYPE r [<!ENTITY e0 "aaaaaaaa">{bomb}]><robot name="r">&e11;</robot>')
-    with pytest.raises(FormatError, match="amplification"):
+    with pytest.raises(FormatError, match=r"amplification.*; write the entity's text where it is"):
         expand(path)
 
 
@@ -276,6 +366,18 @@ def test_expressions_that_do_not_end(write):
     with pytest.raises(FormatError, match=r"\$\{10 \*\* 10 \*\* 10\} takes longer than 0.3 s"):
         run_bounded(work, str(path), 0.3)
     assert run_bounded(lambda: 7, str(path)) == 7
+
+
+def test_an_expression_is_blamed_only_for_its_own_time(write):
+    # conforms: xacro mistakes/endless expressions
+    path = write('<xacro:macro name="m"><link name="${1}"/></xacro:macro>' + "<xacro:m/>" * 10_000)
+
+    def work():
+        while True:
+            expand(path)
+
+    with pytest.raises(FormatError, match=f"^{path}: expanding it takes longer than 0.5 s"):
+        run_bounded(work, str(path), 0.5)
 
 
 def run(folder, *words):

@@ -1,6 +1,7 @@
 """Has `check` read spoilt files, each in a process of its own, and says what it did with them.
 
     python3 drive.py FIRST LAST       the mutants with these seeds; a line for each bad one
+    python3 drive.py parts [WORD]     all files with spoilt parts, or those with WORD in their names
 """
 
 from __future__ import annotations
@@ -13,14 +14,18 @@ import tempfile
 import time
 import traceback
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import rospkg
+from large_texts import LARGE
 from mutations import mutant
+from spoilt_parts import PARTS
 
 from bullet_sim_ros.check import command
 
 PACKAGES = rospkg.RosPack()
+STYLES = Path(__file__).resolve().parents[1] / "styles"
 LIMIT = 5.0  # s, of processor time: other work on the machine counts nothing
 LONGEST_WAIT = 60.0  # s, wall; then it hangs
 MEMORY = 1 << 30  # bytes in RAM
@@ -35,19 +40,16 @@ def sources() -> list[Path]:
         "learning_topic": ["worlds/course.world", "launch/0course.launch"],
         "turtlebot3_gazebo": ["worlds/turtlebot3_world.world", "models/turtlebot3_world/model.sdf"],
     }
-    here = Path(__file__).resolve().parent
     found = [Path(PACKAGES.get_path(package)) / name
              for package, names in named.items() for name in names]
-    return found + sorted((here.parent / "styles").glob("*.*"))
+    return found + sorted(STYLES.glob("*.*"))
 
 
 @dataclass
 class Outcome:
     """How it went with one file."""
 
-    seed: int
-    source: str
-    mutation: str
+    name: str
     code: int  # exit code; negative: the signal that ended it
     seconds: float  # of processor time
     memory: int  # bytes, at most
@@ -71,7 +73,7 @@ class Outcome:
 
     def line(self) -> str:
         """For people."""
-        return f"seed {self.seed} ({self.mutation} of {self.source}): {self.fault() or 'well'}"
+        return f"{self.name}: {self.fault() or 'well'}"
 
 
 def run(seed: int, folder: Path) -> Outcome:
@@ -79,15 +81,44 @@ def run(seed: int, folder: Path) -> Outcome:
     files = sources()
     source = files[(seed // 7) % len(files)]
     mutation, content = mutant(source.read_text(encoding="utf-8"), seed)
-    path = folder / f"{seed}{source.suffix}"
+    path = _beside(source, folder / str(seed))
     path.write_bytes(content.replace(b"THIS_FILE", str(path).encode()))
-    log = folder / f"{seed}.log"
+    if source.suffix == ".yaml":
+        launch = path.with_name("of_the_mutant.launch")
+        launch.write_text(f'<launch><rosparam file="{path}"/></launch>', encoding="utf-8")
+        path = launch
+    return checked(path, f"seed {seed} ({mutation} of {source.name})")
+
+
+def _beside(source: Path, folder: Path) -> Path:
+    """Where the source would stand in a folder that has all that stands beside it."""
+    folder.mkdir()
+    for other in source.parent.iterdir():
+        if other != source:
+            (folder / other.name).symlink_to(other)
+    return folder / source.name
+
+
+def run_case(name: str, folder: Path) -> Outcome:
+    """A file with spoilt parts, or with very many."""
+    inner = Path(tempfile.mkdtemp(dir=folder))
+    if name in PARTS:
+        return checked(PARTS[name](inner), name)
+    file, text = LARGE[name]
+    path = inner / file
+    path.write_text(text, encoding="utf-8")
+    return checked(path, name)
+
+
+def checked(path: Path, name: str) -> Outcome:
+    """What `check` makes of a file."""
+    log = path.with_suffix(".log")
     sys.stdout.flush()
     child = os.fork()
     if child == 0:
         _be_checked(path, log)
     _, status, usage = _wait(child, time.monotonic() + LONGEST_WAIT)
-    return Outcome(seed, source.name, mutation, os.waitstatus_to_exitcode(status),
+    return Outcome(name, os.waitstatus_to_exitcode(status),
                    usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024,
                    log.read_text(encoding="utf-8", errors="replace") if log.exists() else "")
 
@@ -112,6 +143,8 @@ def _be_checked(path: Path, log: Path) -> None:
     os.dup2(output.fileno(), 2)
     sys.stdout = sys.stderr = output
     os.chdir(path.parent)
+    models = os.environ.get("GAZEBO_MODEL_PATH", "")
+    os.environ["GAZEBO_MODEL_PATH"] = f"{STYLES / 'models'}:{models}"
     code = 99
     try:
         code = command.main([str(path)])
@@ -123,17 +156,22 @@ def _be_checked(path: Path, log: Path) -> None:
 
 
 def main() -> int:
-    """The seeds of the command line."""
-    first, last = int(sys.argv[1]), int(sys.argv[2])
-    bad = 0
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        for seed in range(first, last):
-            outcome = run(seed, Path(folder))
+    """The seeds of the command line, or all files with spoilt parts."""
+    with tempfile.TemporaryDirectory(prefix="mutants-") as name:
+        folder, bad = Path(name), 0
+        if sys.argv[1] == "parts":
+            outcomes = [partial(run_case, case, folder) for case in (*PARTS, *LARGE)
+                        if all(word in case for word in sys.argv[2:])]
+        else:
+            first, last = int(sys.argv[1]), int(sys.argv[2])
+            outcomes = [partial(run, seed, folder) for seed in range(first, last)]
+        for make in outcomes:
+            outcome = make()
             if outcome.fault():
                 bad += 1
                 tail = "\n".join(outcome.output.splitlines()[-4:])
                 print(f"{outcome.line()}\n{tail[-600:]}", flush=True)
-    print(f"{last - first} files, {bad} bad", flush=True)
+    print(f"{len(outcomes)} files, {bad} bad", flush=True)
     return 1 if bad else 0
 
 

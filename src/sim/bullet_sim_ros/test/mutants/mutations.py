@@ -112,7 +112,7 @@ def element_deep(text: str, rng: random.Random) -> bytes:
 def elements_many(text: str, rng: random.Random) -> bytes:
     """An element many times."""
     match = _some(ELEMENT, text, rng)
-    return _put(text, match, (match[0] if match else "") * rng.choice([100, 10_000]))
+    return _put(text, match, (match[0] if match else "") * rng.choice([100, 20_000]))
 
 
 def path_spoilt(text: str, rng: random.Random) -> bytes:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
+from bullet_sim.pose import Pose, rotate
 
 SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
 
@@ -49,6 +50,23 @@ class DiffDrive:
         radius = p.wheel_diameter / 2
         for joint, speed in zip((self._left, self._right), self._commanded, strict=True):
             joint.drive_velocity(speed / radius, p.wheel_torque)
+
+
+def turns_backwards(left: tuple[Joint, Pose], right: tuple[Joint, Pose]) -> bool:
+    """Whether a positive rate of yaw would turn to the right: "left" is the right wheel.
+
+    Each joint comes with the pose of its child link. A wheel that turns about an axis drives to
+    where that axis points to the left, so the left wheel lies further along it.
+    """
+    across = [a - b for a, b in zip(left[1].position, right[1].position, strict=True)]
+    return all(
+        sum(a * b for a, b in zip(_axis(*wheel), across, strict=True)) < 0
+        for wheel in (left, right))
+
+
+def _axis(joint: Joint, link: Pose) -> tuple[float, float, float]:
+    turn = (link * joint.description.pose).orientation
+    return rotate(turn, joint.description.axis)
 
 
 def ramp(now: tuple[float, float], wanted: tuple[float, float],

@@ -26,7 +26,6 @@ NOT_A_MODEL = (
 )
 SDF_ROOTS = ("sdf", "gazebo")
 PACKAGE_URI = re.compile(r"package://([^/\\\s\"'<>]+)")
-COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
@@ -34,7 +33,7 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
     root = _parse_model(text)
     named = root
     if root.tag == "robot":
-        named = root = parse_xml(_with_package_folders(text, resources), "model")
+        _put_in_package_folders(root, resources)
     elif root.tag in SDF_ROOTS:
         named = _model_of(root)
     else:
@@ -82,8 +81,8 @@ def _parse_model(text: str) -> Element:
         raise FormatError(f"{NOT_A_MODEL} ({error})") from None
 
 
-def _with_package_folders(text: str, resources: Resources) -> str:
-    """The text with `package://NAME` as the package's folder, as the URDF spawn service does."""
+def _put_in_package_folders(root: Element, resources: Resources) -> None:
+    """`package://NAME` becomes the package's folder, as the URDF spawn service does it."""
     def folder(match: re.Match) -> str:
         try:
             return str(resources.package_folder(match[1]))
@@ -91,7 +90,13 @@ def _with_package_folders(text: str, resources: Resources) -> str:
             raise FormatError(
                 f"urdf reference package name does not exist: {match[1]}"
             ) from error
-    return PACKAGE_URI.sub(folder, COMMENT.sub("", text))
+
+    for element in root.iter():
+        for key, value in element.items():
+            if "package://" in value:
+                element.set(key, PACKAGE_URI.sub(folder, value))
+        if element.text and "package://" in element.text:
+            element.text = PACKAGE_URI.sub(folder, element.text)
 
 
 def _read_root(root: Element, source: Source) -> ModelDescription:

@@ -71,10 +71,10 @@ class Resources:
         if scheme == "file":
             return self._first(uri, self._plain_candidates(rest, base))
         if scheme in ("http", "https", "fuel"):
-            raise ResourceNotFound(uri, ["nowhere, unknown URI prefix: nothing is downloaded; "
+            raise ResourceNotFound(uri, ["nowhere. Unknown URI prefix: nothing is downloaded; "
                                          "put the files into a folder of GAZEBO_MODEL_PATH and "
                                          "write model://NAME"])
-        raise ResourceNotFound(uri, ["nowhere, unknown URI prefix; known: model package file"])
+        raise ResourceNotFound(uri, ["nowhere. Unknown URI prefix; known: model package file"])
 
     def find_world(self, name: str) -> Path:
         """A world file: as given, else below the resource paths."""

@@ -61,4 +61,4 @@ def _strange(element: Element, parent: str, place: str) -> Iterator[tuple[str, s
         if child.tag in known:
             yield from _strange(child, element.tag, place)
         elif ":" not in child.tag and not _is_old_pose(child):
-            yield path, child.tag, place
+            yield path, child.tag, place or f"<{element.tag}>"

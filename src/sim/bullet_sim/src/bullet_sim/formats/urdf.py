@@ -17,7 +17,7 @@ from bullet_sim.formats.sdf_sensor import read_plugins
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf_extensions import Extensions, extend_link
 from bullet_sim.formats.urdf_joint import read_urdf_joint
-from bullet_sim.formats.urdf_link import link_as_sdf, read_urdf_inertial
+from bullet_sim.formats.urdf_link import read_urdf_link
 from bullet_sim.formats.urdf_tree import WORLD, UrdfJoint, UrdfTree, read_origin, read_tree
 from bullet_sim.pose import IDENTITY, Pose
 
@@ -62,11 +62,10 @@ def read_robot(robot: Element, source: Source) -> ModelDescription:
 def _read_body(
     tree: UrdfTree, name: str, extensions: Extensions, lumped: bool, source: Source
 ) -> Body:
-    element = tree.links[name]
-    sdf = link_as_sdf(element)
+    sdf, inertial, _ = read_urdf_link(tree.links[name])
     extend_link(sdf, extensions.of(name), lumped)
     link = read_link(sdf, source, f"robot {tree.name!r}")
-    return Body.of(link, read_urdf_inertial(element))
+    return Body.of(link, inertial)
 
 
 def _poses(tree: UrdfTree) -> dict[str, Pose]:
@@ -99,8 +98,9 @@ def _with_mass(
             continue
         kept.append(name)
     if not kept:
-        raise FormatError(f"robot {tree.name!r}: no link is left, as the root has no mass; "
-                          f"give link {tree.root!r} an <inertial>")
+        raise read_urdf_link(tree.links[tree.root])[-1] or FormatError(
+            f"robot {tree.name!r}: no link is left, as the root has no mass; "
+            f"give link {tree.root!r} an <inertial>")
     return kept
 
 

@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import mistake
 from bullet_sim.formats.urdf_tree import read_origin
 from bullet_sim.formats.xml_values import (
     bounded,
@@ -23,14 +24,37 @@ TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 DIAGONAL = ("ixx", "iyy", "izz")  # the products of inertia may be negative
 
 
+def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError | None]:
+    """An SDF `<link>` as of `link_as_sdf`, what `read_urdf_inertial` finds, and what was wrong.
+
+    As with urdfdom, what cannot be read is an error line, and neither it nor what comes after it
+    in the link is there; inertial, visuals and collisions are read in this order.
+    """
+    shapes, inertial, wrong = _named_link(link), None, None
+    try:
+        inertial = read_urdf_inertial(link)
+        _add_shapes(shapes, link)
+    except FormatError as error:
+        wrong = error
+        mistake(f"{error}; left out, with the visuals and collisions after it")
+    return shapes, inertial, wrong
+
+
 def link_as_sdf(link: Element) -> Element:
     """An SDF `<link>` with the URDF link's shapes; their names are still URDF's, often empty."""
-    name = link.get("name", "")
-    result = Element("link", {"name": name})
+    result = _named_link(link)
+    _add_shapes(result, link)
+    return result
+
+
+def _named_link(link: Element) -> Element:
+    return Element("link", {"name": link.get("name", "")})
+
+
+def _add_shapes(result: Element, link: Element) -> None:
     for tag in ("visual", "collision"):
         for part in link.findall(tag):
-            result.extend(_part_as_sdf(part, f"link {name!r} <{tag}>"))
-    return result
+            result.extend(_part_as_sdf(part, f"link {link.get('name', '')!r} <{tag}>"))
 
 
 def read_urdf_inertial(link: Element) -> Inertial | None:

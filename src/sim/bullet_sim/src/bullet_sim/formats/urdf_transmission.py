@@ -75,7 +75,8 @@ def _fault(element: Element) -> str:
             where = ("; its actuator has one, which belongs into the <joint>"
                      if _interfaces(element.find("actuator")) else "")
             return ("No valid hardware interface element found in joint "
-                    f"'{joint.get('name')}'{where}")
+                    f"'{joint.get('name')}'{where}. Failed to load joints for transmission "
+                    f"'{element.get('name')}'.")
     return ""
 
 

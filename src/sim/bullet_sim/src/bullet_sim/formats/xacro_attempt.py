@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 from xml.dom import minidom
 
@@ -18,7 +17,10 @@ from xacro import substitution_args
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro_errors import located, one_line, place, root_of
 from bullet_sim.formats.xacro_limits import Budget, TooLarge, noted_eval
+from bullet_sim.formats.xacro_nodes import Siblings, safe_eval
+from bullet_sim.formats.xacro_reading import load_yaml, parse
 from bullet_sim.formats.xacro_substitutions import LEXER, directory, resolver
+from bullet_sim.formats.xacro_unanswered import unanswered_inside
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
 
@@ -51,21 +53,24 @@ class Attempt:
     document: minidom.Document
     files: tuple[str, ...]
     messages: list[tuple[int, str]]
+    macros: frozenset[str] = frozenset()  # the names of those that are defined
 
     def text(self) -> str:
         """The document as XML."""
         try:
             return self.document.toprettyxml(indent="  ")
         except RecursionError:
-            raise FormatError(f"{self.path}: elements are nested too deep to be written") from None
+            raise FormatError(f"{self.path}: elements are nested too deep to be written; "
+                              "flatten them") from None
 
     def unknown_tags(self) -> list[str]:
-        """Top-level tags that look like calls nobody answered."""
+        """Tags that look like calls nobody answered."""
         root = self.document.documentElement
         tags = [element.tagName for element in elements(root)]
+        inside = unanswered_inside(root, self.macros)
         if root.tagName == "robot":
-            return [tag for tag in tags if tag not in _ROBOT_TAGS]
-        return [tag for tag in tags if tag in KEYWORDS]
+            return [tag for tag in tags if tag not in _ROBOT_TAGS] + inside
+        return [tag for tag in tags if tag in KEYWORDS] + inside
 
     def has_unique_names(self) -> bool:
         """Whether each link and each joint has a name of its own."""
@@ -76,7 +81,14 @@ class Attempt:
 
 def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
     """Expands once, with these functions of xacro replaced; FormatError (TooLarge) is one line."""
-    messages = _Messages()
+    messages, macros = _Messages(), set()
+    grab = replacements.get("grab_macro", xacro.grab_macro)
+
+    def noted_grab(element: minidom.Element, table: xacro.Table) -> None:
+        macros.add(element.getAttribute("name").removeprefix("xacro:"))
+        grab(element, table)
+
+    replacements = {**replacements, "grab_macro": noted_grab}
     with _private_state(replacements, messages, run.find_package):
         try:
             document = xacro.process_file(run.path, mappings=dict(run.mappings))
@@ -85,7 +97,8 @@ def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
             beyond = isinstance(root_of(error), TooLarge | RecursionError | MemoryError)
             kind = TooLarge if beyond else FormatError
             raise kind(located(error, run.path)) from error
-        return Attempt(run.path, document, tuple(xacro.all_includes), messages.lines)
+        return Attempt(run.path, document, tuple(xacro.all_includes), messages.lines,
+                       frozenset(macros))
 
 
 def _only_text(document: minidom.Document) -> None:
@@ -101,12 +114,14 @@ def _private_state(
     replacements: dict[str, Any], messages: _Messages, find_package: FindPackage | None
 ) -> Iterator[None]:
     """Fresh module variables for one expansion; the old ones come back afterwards."""
+    budget = Budget()
     fresh = {
         "message": messages.message, "warning": messages.warning, "error": messages.error,
         "print_location": messages.print_location, "verbosity": 1, "all_includes": [],
         "filestack": None, "macrostack": None, "substitution_args_context": {"filename": ""},
-        "parse": parse, "LEXER": LEXER, "replace_node": Budget().replace_node,
-        "safe_eval": noted_eval(xacro.safe_eval), **replacements,
+        "parse": parse, "LEXER": LEXER, "replace_node": budget.replace_node,
+        "safe_eval": noted_eval(safe_eval), "eval_text": budget.eval_text,
+        "load_yaml": load_yaml, **replacements,
     }
     commands = {"_eval_find": _finder(find_package), "_eval_dirname": directory,
                 "resolve_args": resolver(substitution_args.resolve_args)}
@@ -117,6 +132,7 @@ def _private_state(
             _swapped(vars(xacro), fresh),
             _swapped(vars(xacro), {"_global_symbols": xacro.create_global_symbols()}),
             _swapped(vars(substitution_args), commands),
+            _swapped(vars(minidom), {"NodeList": Siblings}),
             _swapped(substitution_args._eval_dict, {"find": commands["_eval_find"]}),
         ):
             yield
@@ -155,17 +171,6 @@ class _Messages:
     def _add(self, level: int, words: tuple[object, ...]) -> None:
         text = one_line(" ".join(map(str, words)))
         self.lines.append((level, f"{place('xacro')}: {text}"))
-
-
-def parse(_source: object, filename: str) -> minidom.Document:
-    """Reads bytes, so that the file's own encoding counts and not the terminal's."""
-    try:
-        content = Path(filename).read_bytes()
-    except OSError as error:
-        xacro.filestack.pop()  # the place of the mistake is the file that asked for this one
-        reason = "does not exist" if isinstance(error, FileNotFoundError) else error.strerror
-        raise xacro.XacroException(f"{filename} {reason}", exc=error) from error
-    return minidom.parseString(content)
 
 
 def _finder(find_package: FindPackage | None) -> FindPackage:

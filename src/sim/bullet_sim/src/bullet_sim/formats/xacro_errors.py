@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from xml.parsers.expat import ExpatError
 
@@ -11,7 +12,6 @@ from xacro import substitution_args
 from bullet_sim.errors import FormatError
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-REPEATED = 20  # a file this often in the stack of includes includes itself
 LONGEST = 600  # letters of a line
 
 
@@ -43,7 +43,8 @@ def _reason(error: BaseException) -> str:
     if isinstance(root, FormatError):
         return one_line(str(root))
     if isinstance(root, RecursionError):
-        return _endless()
+        return ("macros call each other without end, or elements are nested too deep; end the "
+                "calls with an <xacro:if>")
     if isinstance(root, MemoryError):
         return "an expression or macro needs more memory than there is; make it smaller"
     if isinstance(root, OSError) and isinstance(error, xacro.XacroException):
@@ -61,21 +62,21 @@ def _reason(error: BaseException) -> str:
     return text.replace("name '", "property '", 1) if isinstance(root, NameError) else text
 
 
-def _endless() -> str:
-    files = xacro.filestack or []
-    if files and files.count(files[-1]) > REPEATED:
+def includes_itself(files: list[str]) -> str:
+    """Of a stack of files whose last one is among them again and again."""
+    other = os.path.normpath(files[-2])
+    if other == os.path.normpath(files[-1]):
         return "the file includes itself without end; put the <xacro:include> into an <xacro:if>"
-    if len(files) > REPEATED and files.count(files[-2]) > REPEATED:
-        return f"this file and {files[-2]} include each other without end; take one include out"
-    return ("macros call each other without end, or elements are nested too deep; end the calls "
-            "with an <xacro:if>")
+    return f"this file and {other} include each other without end; take one include out"
 
 
 def _xml_hint(error: ExpatError) -> str:
-    """What to do about the two usual mistakes."""
+    """What to do about the usual mistakes."""
     text = str(error)
     if text.startswith("unbound prefix"):
         return f"; declare it in the <robot> tag, such as {NAMESPACE}"
+    if "entit" in text:
+        return "; write the entity's text where it is used"
     if text.startswith("not well-formed") and not _is_utf8():
         return "; the file is not UTF-8, save it as UTF-8"
     return ""

@@ -7,7 +7,8 @@ from xml.dom import minidom
 
 import xacro
 
-from bullet_sim.formats.xacro_attempt import KEYWORDS, elements, parse
+from bullet_sim.formats.xacro_attempt import KEYWORDS, elements
+from bullet_sim.formats.xacro_reading import parse
 
 
 class Melodic:

@@ -43,14 +43,18 @@ def parse_xml(text: str, what: str = "XML") -> Element:
 
 def read_xml_file(path: Path) -> Element:
     """Root element of a file; FormatError where it cannot be read."""
+    return parse_xml(decoded(read_bytes(path)), str(path))
+
+
+def read_bytes(path: Path) -> bytes:
+    """A file's content; FormatError where it cannot be read, or is too large for one text."""
     try:
         size = check_file(path, sys.maxsize).st_size
         if size > LARGEST_TEXT:
             raise FormatError(_too_large(str(path), size))
-        content = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise FormatError(f"{path} cannot be read: {error.strerror}") from None
-    return parse_xml(decoded(content), str(path))
 
 
 def decoded(content: bytes) -> str:

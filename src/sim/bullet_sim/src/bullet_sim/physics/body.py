@@ -15,7 +15,13 @@ from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.joint_side import JointSide
 from bullet_sim.physics.link_side import BASE, LinkSide
 from bullet_sim.physics.quiet import EngineError, pybullet
-from bullet_sim.physics.surfaces import coming_out, contact_values, gives_way, giving_way
+from bullet_sim.physics.surfaces import (
+    coming_out,
+    contact_values,
+    corrected_part,
+    gives_way,
+    giving_way,
+)
 from bullet_sim.pose import Pose
 
 NOWHERE = -1  # the number of what the engine does not have
@@ -143,8 +149,10 @@ class Body(LinkSide, JointSide):
             self._call(pybullet.changeDynamics, self._index[link.name], **values)
 
     def come_out(self, part: float | None, timestep: float) -> None:
-        """Have contacts correct that part of their depth in each step (s); None: as usual."""
-        values = giving_way(self._mass()) if part is None else coming_out(part, timestep)
+        """Have contacts correct no more of their depth in each step (s); None: as usual."""
+        values = giving_way(self._mass())
+        if part is not None and part < corrected_part(values, timestep):
+            values = coming_out(part, timestep)
         for link in self.tree.links:
             if link.collisions and gives_way(link.collisions[0], self.tree.fixed):
                 self._read(pybullet.changeDynamics, self._index[link.name], **values)

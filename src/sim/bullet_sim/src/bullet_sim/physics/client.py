@@ -63,6 +63,7 @@ class PhysicsClient:
         self.call(pybullet.setGravity, *gravity)
         self._tolerance = EXACT
         self.timestep = physics.max_step_size  # s
+        self.surface_layer = physics.contact_surface_layer  # m
         self.rest.set_step(physics.max_step_size)
 
     def call(self, function, *args, **kwargs):

@@ -12,7 +12,8 @@ from typing import Protocol
 
 from bullet_sim.physics.quiet import pybullet
 
-CORRECTED = 0.08  # part of the depth in each step; PyBullet's own
+CORRECTED = 0.08  # part of the depth in each step; PyBullet's own, of rigid contacts
+ALL = 1.0  # of it: what is no deeper comes out at the engine's own pace
 FASTEST = 0.2  # m/s at which it comes out
 DEEPEST = 1.0  # m, that is reckoned with
 LONGEST = 5.0  # s, simulated, after which the engine has its own way again
@@ -23,7 +24,7 @@ class Placed(Protocol):
     """A body as seen from here."""
 
     def come_out(self, part: float | None, timestep: float) -> None:
-        """Have contacts correct that part of their depth in each step (s); None: as usual."""
+        """Have contacts correct no more of their depth in each step (s); None: as usual."""
         ...
 
 
@@ -36,7 +37,7 @@ class Embedded:
     def __init__(self, call: Callable, bodies: Sequence[Placed]):
         self._call = call
         self._bodies = bodies
-        self._part = CORRECTED
+        self._part = ALL
         self._left = 0.0  # s, for which to look on
         self._placed = False  # since the last step
 
@@ -56,17 +57,17 @@ class Embedded:
             self._come_out(FASTEST * timestep / DEEPEST, timestep)
         self._left = max(0.0, self._left - timestep)
         deepest = self._deepest() if self._left else 0.0
-        part = min(CORRECTED, FASTEST * timestep / deepest) if deepest > 0.0 else CORRECTED
-        if part == CORRECTED:
+        part = min(ALL, FASTEST * timestep / deepest) if deepest > 0.0 else ALL
+        if part == ALL:
             self._left = 0.0
         if part != self._part:
             self._come_out(part, timestep)
 
     def _come_out(self, part: float, timestep: float) -> None:
         self._part = part
-        self._call(pybullet.setPhysicsEngineParameter, contactERP=part)
+        self._call(pybullet.setPhysicsEngineParameter, contactERP=min(CORRECTED, part))
         for body in self._bodies:
-            body.come_out(None if part == CORRECTED else part, timestep)
+            body.come_out(None if part == ALL else part, timestep)
 
     def _deepest(self) -> float:
         """Greatest depth of all contacts, m; 0 or less where nothing overlaps."""

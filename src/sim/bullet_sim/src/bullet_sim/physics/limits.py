@@ -17,7 +17,8 @@ SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and with it an answe
 LONGEST_STEP = 0.1  # s; with longer ones things pass through each other
 MOST_ITERATIONS = 10_000  # a step; upstream's bound in dynamic_reconfigure
 HIGHEST_RATE = 1e6  # Hz
-# Fields of PhysicsDescription that are only kept, and their names in messages: from 0 on.
+# Fields of PhysicsDescription that no engine's number follows, and their names in messages: from
+# 0 on.
 KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
         "contact_surface_layer": "contact_surface_layer",
         "contact_max_correcting_vel": "contact_max_correcting_vel"}
@@ -55,7 +56,7 @@ def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
 def check_kept(before: PhysicsDescription, after: PhysicsDescription) -> None:
     """A SimulationError that names what of KEPT was changed to no number, or below zero.
 
-    What a world file says is left alone: it has no effect.
+    What a world file says is left alone: it does no harm.
     """
     for field, name in KEPT.items():
         value = getattr(after, field)

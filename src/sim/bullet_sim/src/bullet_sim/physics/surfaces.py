@@ -59,9 +59,14 @@ def giving_way(mass: float) -> dict[str, float]:
     return {"contactStiffness": stiffness, "contactDamping": DAMPING_RATIO * critical}
 
 
+def corrected_part(values: dict[str, float], timestep: float) -> float:
+    """Part of its depth that a contact with these values corrects in each step (s)."""
+    pushed = values["contactStiffness"] * timestep
+    return pushed / (pushed + values["contactDamping"])
+
+
 def coming_out(part: float, timestep: float) -> dict[str, float]:
     """Stiffness and damping of a contact that corrects `part` of its depth in each step (s)."""
-    # The engine's part is k h / (k h + c).
     return {"contactStiffness": UNYIELDING,
             "contactDamping": UNYIELDING * timestep * (1.0 / part - 1.0)}
 

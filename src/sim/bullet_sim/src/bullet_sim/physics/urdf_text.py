@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
+
 from bullet_sim.description import (
     Box,
     Collision,
@@ -24,11 +26,13 @@ from bullet_sim.description import (
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
+from bullet_sim.physics.tyres import engine_shapes
 from bullet_sim.pose import Pose
 
 log = logging.getLogger(__name__)
 
 Triangles = Mesh | Generated
+MeshPath = Callable[[Triangles, bool], str]  # of a mesh, or of its hull, to a file
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 
 
@@ -39,8 +43,15 @@ class MeshFiles:
         self._folder = folder
         self._written = 0
 
-    def __call__(self, mesh: Triangles) -> str:
+    def __call__(self, mesh: Triangles, hull: bool) -> str:
+        """The file's path; with `hull` only the corners of the triangles count.
+
+        The engine keeps every corner that it reads until the world ends, also of bodies that have
+        gone; of a closed surface each comes six times.
+        """
         vertices, faces = collision_mesh(mesh)
+        if hull:
+            faces = _each_once(faces)
         lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in faces + 1]
         path = self._folder / f"mesh_{self._written}.obj"
@@ -49,13 +60,20 @@ class MeshFiles:
         return str(path)
 
 
-def urdf_text(links: Iterable[PhysicsLink], mesh_path: Callable[[Triangles], str]) -> str:
+def _each_once(faces: np.ndarray) -> np.ndarray:
+    """Faces (m, 3) with the corners of others, in their order; the last begins anew to be full."""
+    _, first = np.unique(faces, return_index=True)
+    corners = faces.ravel()[np.sort(first)]
+    return np.resize(corners, (-(-len(corners) // 3), 3))
+
+
+def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
     """A `<robot>` whose links keep the order given, the first being the base."""
     parts = ['<robot name="body">']
     for link in links:
         parts.append(f"<link name={quoteattr(link.name)}>{_inertial(link.inertial)}")
         fixed = link.inertial.mass == 0.0
-        parts.extend(_collision(collision, fixed, mesh_path) for collision in link.collisions)
+        parts.extend(_collision(collision, fixed, mesh_path) for collision in engine_shapes(link))
         parts.append("</link>")
         if link.parent is not None:
             parts.append(_joint(link))
@@ -78,11 +96,11 @@ def _inertial(inertial: Inertial) -> str:
             f"<inertia {tensor}/></inertial>")
 
 
-def _collision(collision: Collision, fixed: bool, mesh_path: Callable[[Triangles], str]) -> str:
+def _collision(collision: Collision, fixed: bool, mesh_path: MeshPath) -> str:
     # Triangles as they are for what never moves; a convex hull otherwise (the engine has no more).
     concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Triangles) else ""
     try:
-        geometry = _geometry(collision.geometry, mesh_path)
+        geometry = _geometry(collision.geometry, mesh_path, hull=not fixed)
     except FormatError as error:  # of a mesh file; the rest of the model still spawns
         log.warning("collision %s is left out: %s", collision.name, error)
         return ""
@@ -90,7 +108,7 @@ def _collision(collision: Collision, fixed: bool, mesh_path: Callable[[Triangles
             f"<geometry>{geometry}</geometry></collision>")
 
 
-def _geometry(geometry: Geometry, mesh_path: Callable[[Triangles], str]) -> str:
+def _geometry(geometry: Geometry, mesh_path: MeshPath, hull: bool) -> str:
     match geometry:
         case Box(size):
             return f'<box size="{_numbers(size)}"/>'
@@ -101,7 +119,7 @@ def _geometry(geometry: Geometry, mesh_path: Callable[[Triangles], str]) -> str:
         case Plane(normal, _):
             return f'<plane normal="{_numbers(normal)}"/>'
         case Mesh() | Heightmap() | Polyline() | ImageExtrusion():
-            return f'<mesh filename={quoteattr(mesh_path(geometry))}/>'
+            return f'<mesh filename={quoteattr(mesh_path(geometry, hull))}/>'
     raise TypeError(f"no engine shape for {geometry!r}")
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from bullet_sim.rendering import lights
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
+from bullet_sim.rendering.own_memory import own_array, own_blocks
 from bullet_sim.rendering.projection import (
     metres_from_depth,
     projection_matrix,
@@ -78,6 +79,7 @@ class EglRenderer:
                                   *info["GL_MAX_VIEWPORT_DIMS"])
             self._store = SurfaceStore(self._context)
             self._sky = Sky(self._context)
+            self._smallest = _Target(self._context, (1, 1))
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int], _Target] = {}
         self._finish = _finish_without_gil() or self._context.finish
@@ -101,8 +103,12 @@ class EglRenderer:
         return Frame(rgb, metres)
 
     def trim(self) -> None:
+        self._prepared.clear()
         self._targets.clear()
         with self._context:
+            # Drivers keep what was drawn in last, deleted or not, until something else is.
+            self._smallest.start(self._context, (0.0, 0.0, 0.0))
+            self._finish()
             self._context.gc()
 
     def close(self) -> None:
@@ -172,9 +178,10 @@ class _Target:
     """Where one size of picture is drawn, and read back."""
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]):
-        colour = context.renderbuffer(size, 4)
-        self._framebuffer = context.framebuffer([colour], context.depth_renderbuffer(size))
-        self._rgba = np.empty((size[1], size[0], 4), np.uint8)
+        with own_blocks():
+            colour, depth = context.renderbuffer(size, 4), context.depth_renderbuffer(size)
+        self._framebuffer = context.framebuffer([colour], depth)
+        self._rgba = own_array((size[1], size[0], 4))
 
     def start(self, context: moderngl.Context, background: tuple[float, ...]) -> None:
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)

@@ -32,7 +32,10 @@ class Renderer(Protocol):
         ...
 
     def trim(self) -> None:
-        """Give back the memory that pictures were drawn in; the next ones take it anew."""
+        """Give back the memory that pictures were drawn in, and models that have gone.
+
+        The next pictures take anew what they need.
+        """
         ...
 
     def close(self) -> None:

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from bullet_sim.errors import FormatError
-from bullet_sim.files import LARGEST_IMAGE, check_file
+from bullet_sim.images import read_image, shrunk
 
 log = logging.getLogger(__name__)
 
@@ -19,15 +19,11 @@ def load_image(path: str, largest_px: int) -> np.ndarray | None:
     An image larger than `largest_px` on a side is shrunk to fit.
     """
     try:
-        check_file(path, LARGEST_IMAGE)
+        image = read_image(path, cv2.IMREAD_COLOR)
     except FormatError as error:
         log.warning("texture %s; left out", error)
         return None
-    image = cv2.imread(path, cv2.IMREAD_COLOR)
-    if image is None:
-        log.warning("texture %s is left out: it is not an image that can be read", path)
-        return None
     shrink = largest_px / max(image.shape[:2])
     if shrink < 1:
-        image = cv2.resize(image, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
+        image = shrunk(image, shrink)
     return np.ascontiguousarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGBA)[::-1])

@@ -15,7 +15,7 @@ import pybullet
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
-from bullet_sim.files import LARGEST_IMAGE, check_file
+from bullet_sim.images import check_image
 from bullet_sim.mesh_part import MeshPart
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
@@ -74,7 +74,7 @@ class TinyRenderer:
         return Frame(rgb, metres if depth else None)
 
     def trim(self) -> None:
-        """It keeps only the last picture's."""
+        """It keeps only the last picture's, and what there was to see in that."""
 
     def close(self) -> None:
         pybullet.disconnect(self._client)
@@ -136,7 +136,7 @@ class TinyRenderer:
     def _paint(self, body: int, path: str) -> None:
         if path not in self._textures:
             try:
-                check_file(path, LARGEST_IMAGE)
+                check_image(path)
                 texture = pybullet.loadTexture(path, physicsClientId=self._client)
             except (pybullet.error, FormatError):
                 log.warning("texture %s is left out: TinyRenderer cannot read it", path)

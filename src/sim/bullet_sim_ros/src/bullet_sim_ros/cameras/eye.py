@@ -14,6 +14,7 @@ from bullet_sim_ros.cameras.topics import CameraTopics
 if TYPE_CHECKING:
     from bullet_sim_ros.plugins.host import Host
 
+TRIALS = 3
 LONGEST_TRIAL = 0.2  # s, wall: a slow renderer is tried once
 
 
@@ -25,7 +26,7 @@ class Eye:
         drawing = host.shared.drawing
         self._camera = Camera(host.world, host.link, host.sensor, drawing.renderer(),
                               number, host.parameters.flag("borderCrop", True))
-        host.on_close(lambda: drawing.submit(drawing.renderer().trim))
+        host.on_close(drawing.trim)
         self.settings = CameraSettings(host, self._camera.description, suffix, baseline)
         self.topics = CameraTopics(host, self.settings)
         _tell_frame_time(host, self._camera, self.settings.image_topic)
@@ -46,18 +47,23 @@ class Eye:
 
 
 def _tell_frame_time(host: Host, camera: Camera, topic: str) -> None:
-    """Log what a picture of this camera costs to draw; by the drawing thread, before the first."""
+    """Log what a picture of this camera costs to draw; by the drawing thread, before the first.
+
+    A camera that has gone meanwhile is not drawn.
+    """
     exposure = camera.expose()
 
     def measure() -> None:
-        camera.develop(exposure)  # the first one also loads what there is to see
-        took = []
-        while len(took) < 3 and sum(took) < LONGEST_TRIAL:
+        took: list[float] = []
+        while len(took) <= TRIALS and sum(took[1:]) < LONGEST_TRIAL:
+            if host.closed:
+                return
             start = time.perf_counter()
             camera.develop(exposure)
             took.append(time.perf_counter() - start)
         view = exposure.view
-        line = f"camera {topic} ({view.width}x{view.height}): {min(took) * 1e3:.1f} ms a frame"
+        frame_ms = min(took[1:]) * 1e3  # the first one also loads what there is to see
+        line = f"camera {topic} ({view.width}x{view.height}): {frame_ms:.1f} ms a frame"
         host.shared.mailbox.leave(lambda: rospy.loginfo("%s", line))
 
     host.shared.drawing.submit(measure)

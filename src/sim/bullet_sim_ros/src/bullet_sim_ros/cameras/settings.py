@@ -59,7 +59,7 @@ class CameraSettings:
     def _encoding(self) -> str:
         format = self._description.format
         if format not in ENCODINGS:
-            log.error("%s: image format %s is not supported; there are %s; %s is used",
+            log.error("%s: Unsupported Gazebo ImageFormat %s; there are %s; %s is used",
                       self._host.describe(), format, ", ".join(ENCODINGS), UNKNOWN_FORMAT)
         return ENCODINGS.get(format, UNKNOWN_FORMAT)
 

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from bullet_sim.description import ModelDescription, WorldDescription
+from bullet_sim.images import warn_if_unreadable
 from bullet_sim.pose import IDENTITY
 from bullet_sim.world import World
 from bullet_sim_ros.check.findings import PROBLEM
@@ -90,7 +91,16 @@ def _try(world: World, parameters: Mapping[str, object],
             fill(simulation)
             simulation.pacer.factor = 0.0
             simulation.run(STEPS)
+            for path in _textures(world):
+                warn_if_unreadable(path)
         finally:
             for name in list(world.models):
                 simulation.delete(name)  # ends the threads that wait for a parameter
             simulation.close()
+
+
+def _textures(world: World) -> list[str]:
+    """The image files that its surfaces show."""
+    parts = [part for node in world.scene.nodes.values() for part in node.shape.parts]
+    named = {part.material.texture for part in parts if part.uv is not None} - {None}
+    return sorted(named - world.scene.images.keys())

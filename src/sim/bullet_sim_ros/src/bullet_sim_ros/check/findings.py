@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from bullet_sim.errors import shortened
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS
 
 PROBLEM = "problem"
@@ -32,10 +33,10 @@ def table(findings: Iterable[Finding]) -> str:
     places = list(dict.fromkeys(finding.where for finding in unique))
     for finding in sorted(unique, key=lambda f: (places.index(f.where), ORDER.index(f.status))):
         if finding.where != last:
-            lines.append(f"\n{finding.where}")
+            lines.append("\n" + shortened(finding.where))
             last = finding.where
         how = f": {finding.how}" if finding.how else ""
-        lines.append(f"  {WORDS[finding.status]:13s} {finding.part}{how}")
+        lines.append(shortened(f"  {WORDS[finding.status]:13s} {finding.part}{how}"))
     return "\n".join(lines).lstrip("\n")
 
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
+import re
 import resource
-from collections.abc import Collection
+import signal
+from collections.abc import Callable, Collection
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -12,19 +16,31 @@ from xml.etree.ElementTree import ParseError, parse
 
 import roslaunch.config
 import roslaunch.core
+import roslaunch.loader
 import roslaunch.xmlloader
 import rospkg
 import yaml
 from roslaunch.substitution_args import SubstitutionException
 
 from bullet_sim.errors import SimulationError
+from bullet_sim.files import check_file
 
 ERRORS = (roslaunch.core.RLException, roslaunch.xmlloader.XmlParseException,
           SubstitutionException, rospkg.ResourceNotFound, yaml.YAMLError, OSError, ValueError,
-          KeyError, SyntaxError, ArithmeticError, TypeError, NameError, RecursionError, MemoryError)
-LONGEST = 2  # s of processor time to read a launch file, without the commands that it runs
+          LookupError, SyntaxError, ArithmeticError, TypeError, NameError, RecursionError,
+          MemoryError, SimulationError)
+LONGEST = 3.0  # s of processor time to read a launch file, without the commands that it runs
+LONGEST_WAIT = 30  # s, for all its commands
 MOST_MEMORY = 1 << 30  # bytes
+LARGEST_FILE = 32 * 2**20  # bytes of a parameter's file
 LONGEST_LINE = 500  # characters of an error
+TOO_MUCH = (f"to read it takes more than {LONGEST:g} s or 1 GiB; look at its $(eval …), and how "
+            "many files it reads")
+REPEATED = 20  # a file this often in the stack of includes includes itself
+NOT_UTF8 = re.compile(r"'utf-8' codec can't decode .*?: "
+                      "(?:invalid (?:start|continuation) byte|unexpected end of data)")
+TOO_DEEP = re.compile(r"maximum recursion depth exceeded(?: (?:while|in) [a-z ]*Python object)?")
+ON_THE_WAY = re.compile(r"^(while processing \S+: )+(?=while processing )")
 
 
 @dataclass(frozen=True)
@@ -48,31 +64,61 @@ class Launch:
 def read_launch(path: Path, arguments: list[str]) -> Launch:
     """As roslaunch reads it; SimulationError says in one line why it cannot.
 
-    In a process of its own: `$(eval …)` may want any time or memory.
+    In a process of its own: `$(eval …)` may want any time or memory, and commands may wait.
     """
     receiver, sender = multiprocessing.Pipe(duplex=False)
     reader = multiprocessing.get_context("fork").Process(
         target=_read, args=(path, arguments, sender), daemon=False)
     reader.start()
     sender.close()
+    running = ""
     try:
-        result = receiver.recv()
+        while isinstance(result := receiver.recv(), _Running):
+            running = result.command
+        reader.join()
     except EOFError:
-        result = f"to read it takes more than {LONGEST} s or 1 GiB; look at its $(eval …)"
-    reader.join()
+        reader.join()
+        result = _why_ended(reader.exitcode, running)
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(reader.pid, signal.SIGKILL)  # a command that waits
     if isinstance(result, str):
         raise SimulationError(result)
     return result
 
 
+@dataclass(frozen=True)
+class _Running:
+    """What the reader sends before and after a command."""
+
+    command: str  # empty: none
+
+
+def _why_ended(exit_code: int | None, command: str) -> str:
+    if exit_code == -signal.SIGALRM and command:
+        return (f"its command has not ended after {LONGEST_WAIT} s: {command[:LONGEST_LINE]}; "
+                "does it wait for input?")
+    if exit_code == -signal.SIGALRM:
+        return f"to read it takes more than {LONGEST_WAIT} s; does one of its files not end?"
+    return TOO_MUCH
+
+
 def _read(path: Path, arguments: list[str], sender: Connection) -> None:
-    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST + 1))
+    os.setpgrp()  # so that its commands can be ended with it
+    # Timers and not RLIMIT_CPU, which each command would inherit.
+    for number in (signal.SIGPROF, signal.SIGALRM):
+        signal.signal(number, signal.SIG_DFL)  # which ends the process, whatever the parent does
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
+    signal.alarm(LONGEST_WAIT)
     resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
+    loader = roslaunch.loader.Loader
+    loader.param_value = _remembered(loader.param_value, sender)
+    _watch_includes(roslaunch.xmlloader.XmlLoader)
     try:
         config = roslaunch.config.load_config_default(
             [(str(path), arguments)], None, verbose=False, assign_machines=False)
     except ERRORS as error:
-        sender.send(" ".join(str(error).split())[:LONGEST_LINE] or type(error).__name__)
+        sender.send(_said(error))
         return
     sender.send(Launch(
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
@@ -80,11 +126,64 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         {name: parameter.value for name, parameter in config.params.items()}))
 
 
+def _said(error: Exception) -> str:
+    """roslaunch's words as one line, without the files on the way to the one that is wrong."""
+    if isinstance(error, MemoryError):
+        return TOO_MUCH
+    text = " ".join(str(error).split()) or type(error).__name__
+    text = ON_THE_WAY.sub("", text)
+    text = NOT_UTF8.sub("it is not UTF-8; save it as UTF-8", text)
+    text = TOO_DEEP.sub("elements are nested too deep", text)
+    return text if len(text) <= LONGEST_LINE else f"{text[:LONGEST_LINE]} …"
+
+
+def _watch_includes(loader: type) -> None:
+    """Has roslaunch's reader end where files include each other without end."""
+    parse_launch, include_tag = loader._parse_launch, loader._include_tag
+    files: list[str] = []
+
+    def parse_and_count(self, filename, verbose):
+        files.append(filename)
+        if files.count(filename) > REPEATED:
+            way = f" by way of {files[-2]}" if files[-2] != filename else ""
+            raise SimulationError(f"{filename} includes itself{way} without end; take the "
+                                  "<include> out or give it an if")
+        return parse_launch(self, filename, verbose)
+
+    def include(*arguments, **named):
+        depth = len(files)
+        try:
+            return include_tag(*arguments, **named)
+        finally:
+            del files[depth:]
+
+    loader._parse_launch, loader._include_tag = parse_and_count, include
+
+
+def _remembered(param_value: Callable, sender: Connection) -> Callable:
+    """roslaunch's, which runs each command and reads each file once, however many ask for it."""
+    values: dict[tuple, object] = {}
+
+    def remembered(loader, verbose, name, ptype, value, textfile, binfile, command):
+        what = (ptype, textfile, binfile, command)
+        if value is not None:
+            return param_value(loader, verbose, name, ptype, value, None, None, None)
+        if what not in values:
+            if file := textfile or binfile:
+                check_file(file, LARGEST_FILE)
+            sender.send(_Running(command or ""))
+            values[what] = param_value(loader, verbose, name, ptype, None, *what[1:])
+            sender.send(_Running(""))
+        return values[what]
+
+    return remembered
+
+
 def missing_arguments(path: Path, given: Collection[str]) -> list[str]:
     """The names of those `<arg>` that have no value; `given` are words NAME:=VALUE."""
     try:
         root = parse(path).getroot()
-    except (ParseError, OSError):
+    except (ParseError, OSError, LookupError, ValueError):  # of files and of their encodings
         return []  # roslaunch says why
     names = {word.split(":=", 1)[0] for word in given}
     return [arg.get("name", "") for arg in root.findall("arg")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ import rospkg
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources
+from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim_ros.check.controllers import controller_findings
 from bullet_sim_ros.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem
 from bullet_sim_ros.check.launch_files import (
@@ -27,6 +29,9 @@ if TYPE_CHECKING:
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")
+
+
+_find_node = cache(roslib.packages.find_node)  # which looks through a whole package
 
 
 class LaunchChecker:
@@ -61,7 +66,7 @@ class LaunchChecker:
     def _node(self, node: LaunchedNode, launch: Launch, where: str) -> Iterator[Finding]:
         name = f"node {node.package}/{node.type}"
         try:
-            if not roslib.packages.find_node(node.package, node.type):
+            if not _find_node(node.package, node.type):
                 yield Finding(where, name, ABSENT, f"package {node.package} has no executable "
                               f"{node.type} here")
                 return
@@ -93,8 +98,8 @@ class LaunchChecker:
         if "-file" in options:
             path = Path(options["-file"])
             try:
-                text = path.read_text(encoding="utf-8-sig")
-            except (OSError, UnicodeDecodeError) as error:
+                text = decoded(read_bytes(path))
+            except SimulationError as error:
                 return [problem(str(path), "robot", error)]
             return self._texts.model_text(text, str(path), launch.parameters, namespace)
         if "-database" in options:

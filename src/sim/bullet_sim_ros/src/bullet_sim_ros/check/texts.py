@@ -11,6 +11,7 @@ from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
 from bullet_sim.formats.xacro_files import expand_file
 from bullet_sim.formats.xacro_limits import run_bounded
+from bullet_sim.formats.xml_text import read_bytes
 from bullet_sim_ros.check.dry_run import Said, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
 from bullet_sim_ros.check.findings import Finding, problem
@@ -36,8 +37,8 @@ class TextChecker:
         where = str(path)
         try:
             text = (self._expanded(path, arguments) if path.suffix == ".xacro"
-                    else path.read_text(encoding="utf-8-sig"))
-        except (SimulationError, OSError, UnicodeDecodeError) as error:
+                    else _utf8(path))
+        except SimulationError as error:
             return [problem(where, "robot", error)]
         found = self.model_text(text, where)
         if shown_only and is_for_show(text) and found[0].how.endswith(NEEDS_MASS):
@@ -80,7 +81,8 @@ class TextChecker:
             parameters = {"/robot_description": text}
         with listening() as heard:
             try:
-                light = load_light(text, self._resources) is not None
+                # Looked for first, as to parse a large robot takes its time.
+                light = "<light" in text and load_light(text, self._resources) is not None
                 if not light:
                     description = load_model(text, self._resources, None)
                     try_model(description, parameters, namespace)
@@ -117,6 +119,17 @@ class TextChecker:
         for uri, inner in included(root, folder, self._resources, set()):
             found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
         return found
+
+
+def _utf8(path: Path) -> str:
+    """The text, read as roslaunch reads it, which knows no other encoding."""
+    content = read_bytes(path)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise FormatError(f"{path}, line {line}: this is not UTF-8, which roslaunch needs; save "
+                          "the file as UTF-8") from None
 
 
 def _told(heard: list[Said], where: str) -> list[Finding]:

@@ -50,7 +50,7 @@ class MobileBaseController(Controller):
         """`give(message)` makes a command for the loop of a message; refused while stopped."""
         def take(message) -> Callable[[], None] | None:
             if not self._running:
-                self._complain(f"can't accept commands on {topic}: it is not running")
+                self._complain(f"{topic}: Can't accept new commands. Controller is not running.")
                 return None
             return give(message)
 

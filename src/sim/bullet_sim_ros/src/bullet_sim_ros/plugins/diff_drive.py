@@ -9,7 +9,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
-from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters, turns_backwards
 from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry
@@ -36,8 +36,9 @@ class DiffDrivePlugin:
             p.number("wheelSeparation", 0.34), p.number("wheelDiameter", 0.15),
             p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0),
         )
-        self._drive = DiffDrive(*self._joints, geometry)
-        self._odometry_source = OdometrySource(host, p, self._joints, WheelOdometry(
+        driven = self._as_driven(p.label)
+        self._drive = DiffDrive(*driven, geometry)
+        self._odometry_source = OdometrySource(host, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
         self._updated = host.world.time
         self._publish_tf = p.flag("publishTf", True)
@@ -57,6 +58,22 @@ class DiffDrivePlugin:
 
     def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
         return self._host.model.joint(left), self._host.model.joint(right)
+
+    def _as_driven(self, label: str) -> tuple[Joint, Joint]:
+        """The wheels as left and right of the law: swapped for files from before Melodic.
+
+        Indigo to Lunar swapped them unless <legacyMode> was false, so files of that time call the
+        right wheel left. Noetic, which does not read the tag, turns such robots the wrong way.
+        """
+        left, right = self._joints
+        links = self._host.model.links
+        if not self._host.parameters.flag("legacyMode", True) or not turns_backwards(
+                *((joint, links[joint.description.child].pose) for joint in self._joints)):
+            return left, right
+        log.warning("%s: <leftJoint> %s is the right wheel: taken as written for Indigo to Lunar, "
+                    "whose <legacyMode> swapped the two; to turn as told by Melodic and Noetic say "
+                    "<legacyMode>false</legacyMode>", label, left.name)
+        return right, left
 
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
         host = self._host

@@ -40,6 +40,11 @@ class Host(Place):
         self._duty: Duty | None = None  # the last that `every` was asked for
 
     @property
+    def closed(self) -> bool:
+        """Whether the plugin has ended. For any thread."""
+        return self._closed
+
+    @property
     def updates(self) -> int:
         """How often the plugin has done what it does at a rate."""
         return self._duty.count if self._duty else 0
@@ -188,6 +193,9 @@ class Host(Place):
             self._drawn.exception()  # waits: its topics are still needed
         while self._closers:
             self._closers.pop()()
+        # What it calls leads back to it: the plugin's arrays would wait for the collector.
+        self._duty, self._drawn = None, None
+        self._resets.clear()
 
 
 def _legal(name: str) -> str:

@@ -27,6 +27,8 @@ def offer_world_services(simulation) -> None:
           lambda request, response: get_model_properties(world, request.model_name, response))
     offer(simulation.mailbox, names.PAUSE_PHYSICS, Empty, pause)
     offer(simulation.mailbox, names.UNPAUSE_PHYSICS, Empty, unpause)
+    offer(simulation.mailbox, names.STEP_PHYSICS, Empty,
+          lambda _request, _response: simulation.step())
     offer(simulation.mailbox, names.RESET_WORLD, Empty,
           lambda _request, _response: world.reset_models())
     offer(simulation.mailbox, names.RESET_SIMULATION, Empty,

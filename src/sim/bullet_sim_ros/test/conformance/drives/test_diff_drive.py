@@ -33,15 +33,14 @@ def transforms(messages) -> dict:
 
 def test_it_drives_as_told_for_ever_and_tells_where_the_model_is(bench, robot, command):
     # conforms: libgazebo_ros_diff_drive.so, libgazebo_ros_diff_drive.so/robotNamespace
-    # conforms: libgazebo_ros_diff_drive.so/wheelSeparation, libgazebo_ros_diff_drive.so/leftJoint
-    # conforms: libgazebo_ros_diff_drive.so/wheelDiameter, libgazebo_ros_diff_drive.so/rightJoint
+    # conforms: libgazebo_ros_diff_drive.so/wheelSeparation
+    # conforms: libgazebo_ros_diff_drive.so/wheelDiameter
     car = bench.spawn(robot())
     odometry = bench.listen("/odom")
     bench.send("/cmd_vel", command(0.3, 0.5))
     bench.run(2.0)  # no time-out
     twist, pose = odometry[-1].twist.twist, odometry[-1].pose.pose
-    # In a bend a wheel stands on one of its edges, 2 cm beside the middle that the plugin knows of.
-    assert twist.linear.x == pytest.approx(0.3, abs=0.5 * 0.02)
+    assert twist.linear.x == pytest.approx(0.3, rel=0.02)
     assert twist.angular.z == pytest.approx(0.5, rel=0.03)
     assert pose.position.x == pytest.approx(car.pose.position[0], abs=1e-3)
     assert pose.position.y == pytest.approx(car.pose.position[1], abs=1e-3)
@@ -190,6 +189,37 @@ def test_reset_ends_command_and_encoders(bench, robot, command):
     assert abs(car.pose.position[0]) < 4e-3
 
 
+@pytest.mark.parametrize("tags, turn", [
+    ({}, 1), ({"legacyMode": "true"}, 1), ({"legacyMode": "false"}, -1)])
+@pytest.mark.parametrize("source", ["world", "encoder"])
+def test_a_left_wheel_on_the_right_is_one_from_before_melodic(bench, robot, command, caplog, tags,
+                                                              turn, source):
+    # conforms: libgazebo_ros_diff_drive.so/legacyMode
+    car = bench.spawn(robot(leftJoint="right_joint", rightJoint="left_joint",
+                            odometrySource=source, publishWheelJointState="true", **tags))
+    odometry, states = bench.listen("/odom"), bench.listen("/joint_states")
+    bench.send("/cmd_vel", command(0.2, 0.5))
+    bench.run(1.0)
+    assert odometry[-1].twist.twist.linear.x == pytest.approx(0.2, abs=0.02)
+    # Encoders know nothing of where the wheels are: they agree with the command in any case.
+    seen = turn if source == "world" else 1
+    assert odometry[-1].twist.twist.angular.z == pytest.approx(0.5 * seen, rel=0.1)
+    faster = car.joints["right_joint" if turn > 0 else "left_joint"].velocity
+    assert faster == pytest.approx((0.2 + 0.5 * 0.2) / 0.1, rel=0.05)
+    assert states[-1].name == ["right_joint", "left_joint"]
+    assert caplog.text.count("is the right wheel") == (1 if turn > 0 else 0)
+
+
+@pytest.mark.parametrize("tags", [{}, {"legacyMode": "true"}, {"legacyMode": "false"}])
+def test_a_left_wheel_on_the_left_turns_as_in_noetic(bench, robot, command, caplog, tags):
+    # conforms: libgazebo_ros_diff_drive.so/legacyMode
+    car = bench.spawn(robot(**tags))
+    bench.send("/cmd_vel", command(0.2, 0.5))
+    bench.run(1.0)
+    assert car.joints["right_joint"].velocity == pytest.approx(3.0, rel=0.05)
+    assert "is the right wheel" not in caplog.text
+
+
 def test_what_is_wrong_is_said_and_what_can_go_on_goes_on(bench, robot, caplog):
     # conforms: libgazebo_ros_diff_drive.so/leftJoint, libgazebo_ros_diff_drive.so/rightJoint
     # conforms: libgazebo_ros_diff_drive.so/odometrySource
@@ -197,12 +227,16 @@ def test_what_is_wrong_is_said_and_what_can_go_on_goes_on(bench, robot, caplog):
         bench.spawn(robot(odometrySource="moon"))
     assert "<odometrySource> is 'moon'; there are world and encoder; world is used" in caplog.text
     assert "Starting plugin DiffDrive(ns = /)" in caplog.text
-    assert "DiffDrive(ns = /): Subscribe to cmd_vel" in caplog.text
+    for line in ("Try to subscribe to cmd_vel", "Subscribe to cmd_vel", "Advertise odom on odom"):
+        assert f"DiffDrive(ns = /): {line}" in caplog.text
     caplog.clear()
     bench.spawn(robot("other", leftJoint="nope", robotNamespace=None))
     assert "is not loaded: no joint of model other named 'nope'" in caplog.text
     assert "DiffDrive missing <robotNamespace>, defaults is other" in caplog.text
     assert "/other/cmd_vel" not in bench.subscribed()
+    caplog.clear()
+    bench.spawn(robot("lame", rightJoint="none"))
+    assert "is not loaded: no joint of model lame named 'none'" in caplog.text
     caplog.clear()
     bench.spawn(robot("third", publishTf=None))
     assert "DiffDrive(ns = /): missing <publishTf> default is true" in caplog.text

@@ -6,9 +6,12 @@ import pytest
 
 from bullet_sim.pose import Pose
 
-MIMIC = "libroboticsgroup_gazebo_mimic_joint_plugin.so"
+MIMICS = ("libroboticsgroup_gazebo_mimic_joint_plugin.so",
+          "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
+          "libgazebo_mimic_joint_plugin.so")
 DISABLE = "libroboticsgroup_gazebo_disable_link_plugin.so"
 GRASP = "libgazebo_grasp_fix.so"
+GRASPS = (GRASP, "libgazebo_grasp_plugin.so")
 VACUUM = "libgazebo_ros_vacuum_gripper.so"
 FINGER_LIMITS = "<limit><lower>-0.1</lower><upper>0.1</upper></limit>"
 
@@ -28,11 +31,11 @@ def gripper(robots):
     return make
 
 
-@pytest.fixture
-def mimic(robots, gripper):
-    """`mimic(tag=value)`: the right finger follows the left one."""
-    def make(filename: str = MIMIC, **tags) -> str:
-        return gripper(robots.plugin(filename, **{
+@pytest.fixture(params=MIMICS)
+def mimic(request, robots, gripper):
+    """`mimic(tag=value)`: the right finger follows the left one, by each name of the plugin."""
+    def make(**tags) -> str:
+        return gripper(robots.plugin(request.param, **{
             "joint": "left_slide", "mimicJoint": "right_slide", **tags}))
     return make
 
@@ -41,29 +44,17 @@ def slides(hand) -> tuple[float, float]:
     return hand.joints["left_slide"].position, hand.joints["right_slide"].position
 
 
-@pytest.mark.parametrize("filename", [
-    MIMIC, "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
-    "libgazebo_mimic_joint_plugin.so"])
-def test_a_joint_mimics_another_one(bench, mimic, filename):
+def test_a_joint_mimics_another_one(bench, mimic):
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so
     # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so
     # conforms: libgazebo_mimic_joint_plugin.so
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/joint
-    # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/mimicJoint
     # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/joint
+    # conforms: libgazebo_mimic_joint_plugin.so/joint
+    # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/mimicJoint
     # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/mimicJoint
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/multiplier
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/offset
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/sensitiveness
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/hasPID
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/maxEffort
-    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/robotNamespace
-    # conforms: libgazebo_mimic_joint_plugin.so/joint, libgazebo_mimic_joint_plugin.so/mimicJoint
-    # conforms: libgazebo_mimic_joint_plugin.so/multiplier, libgazebo_mimic_joint_plugin.so/offset
-    # conforms: libgazebo_mimic_joint_plugin.so/sensitiveness
-    # conforms: libgazebo_mimic_joint_plugin.so/hasPID, libgazebo_mimic_joint_plugin.so/maxEffort
-    # conforms: libgazebo_mimic_joint_plugin.so/robotNamespace
-    hand = bench.spawn(mimic(filename))
+    # conforms: libgazebo_mimic_joint_plugin.so/mimicJoint
+    hand = bench.spawn(mimic())
     hand.joints["left_slide"].drive_velocity(0.1, 10.0)
     bench.run(0.5)
     left, right = slides(hand)
@@ -73,7 +64,11 @@ def test_a_joint_mimics_another_one(bench, mimic, filename):
 
 def test_multiplier_and_offset(bench, mimic):
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/multiplier
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/multiplier
+    # conforms: libgazebo_mimic_joint_plugin.so/multiplier
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/offset
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/offset
+    # conforms: libgazebo_mimic_joint_plugin.so/offset
     hand = bench.spawn(mimic(multiplier=-0.5, offset=0.03))
     hand.joints["left_slide"].reset(0.04)
     hand.joints["left_slide"].drive_velocity(0.0, 100.0)
@@ -83,6 +78,8 @@ def test_multiplier_and_offset(bench, mimic):
 
 def test_small_gaps_are_left_alone(bench, mimic):
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/sensitiveness
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/sensitiveness
+    # conforms: libgazebo_mimic_joint_plugin.so/sensitiveness
     hand = bench.spawn(mimic(sensitiveness=0.05))
     left = hand.joints["left_slide"]
     left.reset(0.04)
@@ -99,8 +96,14 @@ def test_small_gaps_are_left_alone(bench, mimic):
     ("<hasPID>false</hasPID>", 1.0, True)])
 def test_with_a_pid_the_effort_is_bounded(bench, mimic, tag, effort, pushed):
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/hasPID
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/hasPID
+    # conforms: libgazebo_mimic_joint_plugin.so/hasPID
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/maxEffort
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/maxEffort
+    # conforms: libgazebo_mimic_joint_plugin.so/maxEffort
     # conforms: libroboticsgroup_gazebo_mimic_joint_plugin.so/robotNamespace
+    # conforms: libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so/robotNamespace
+    # conforms: libgazebo_mimic_joint_plugin.so/robotNamespace
     for gain, value in (("p", 50.0), ("i", 0.0), ("d", 5.0)):
         bench.graph.parameters[f"/arm/gazebo_ros_control/pid_gains/right_slide/{gain}"] = value
     hand = bench.spawn(mimic(maxEffort=effort, robotNamespace="/arm").replace(
@@ -175,7 +178,7 @@ def fall(bench, cube) -> float:
     return height - cube.pose.position[2]
 
 
-@pytest.mark.parametrize("filename", [GRASP, "libgazebo_grasp_plugin.so"])
+@pytest.mark.parametrize("filename", GRASPS)
 @pytest.mark.parametrize("inner", [
     GRASP_TAGS, f"<arm><arm_name>arm</arm_name>{GRASP_TAGS}</arm>"])
 def test_what_two_fingers_press_is_held_and_let_go(bench, grasp, filename, inner):
@@ -184,11 +187,6 @@ def test_what_two_fingers_press_is_held_and_let_go(bench, grasp, filename, inner
     # conforms: libgazebo_grasp_fix.so/gripper_link, libgazebo_grasp_fix.so/release_tolerance
     # conforms: libgazebo_grasp_plugin.so/arm, libgazebo_grasp_plugin.so/palm_link
     # conforms: libgazebo_grasp_plugin.so/gripper_link
-    # conforms: libgazebo_grasp_plugin.so/forces_angle_tolerance
-    # conforms: libgazebo_grasp_plugin.so/update_rate
-    # conforms: libgazebo_grasp_plugin.so/grip_count_threshold
-    # conforms: libgazebo_grasp_plugin.so/max_grip_count
-    # conforms: libgazebo_grasp_plugin.so/release_tolerance
     hand, cube = grasp(f"{inner}<update_rate>50</update_rate>", 0.6, filename)
     for joint in hand.joints.values():  # hardly any pressing, so that only the weld can hold it
         joint.drive_velocity(0.0, 100.0)
@@ -198,26 +196,34 @@ def test_what_two_fingers_press_is_held_and_let_go(bench, grasp, filename, inner
     assert cube.pose.position[2] < 0.6
 
 
+@pytest.mark.parametrize("filename", GRASPS)
 @pytest.mark.parametrize("inner, held", [
     ("<update_rate>50</update_rate>", True),
     ("<update_rate>2</update_rate>", False),  # six updates take three seconds
-    ("<update_rate>50</update_rate><grip_count_threshold>60</grip_count_threshold>"
-     "<max_grip_count>100</max_grip_count>", False),
+    ("<update_rate>100</update_rate><grip_count_threshold>90</grip_count_threshold>"
+     "<max_grip_count>91</max_grip_count>", False),  # a threshold of half would be reached
     ("<update_rate>10</update_rate><max_grip_count>2</max_grip_count>", True),
+    ("<update_rate>10</update_rate><max_grip_count>40</max_grip_count>", False),  # half: 2 s
     ("<update_rate>50</update_rate><forces_angle_tolerance>181</forces_angle_tolerance>", False),
 ])
-def test_how_long_and_from_where_it_has_to_be_pressed(grasp, inner, held):
+def test_how_long_and_from_where_it_has_to_be_pressed(grasp, inner, held, filename):
     # conforms: libgazebo_grasp_fix.so/update_rate, libgazebo_grasp_fix.so/grip_count_threshold
     # conforms: libgazebo_grasp_fix.so/max_grip_count
     # conforms: libgazebo_grasp_fix.so/forces_angle_tolerance
-    _, cube = grasp(GRASP_TAGS + inner, 1.0)
+    # conforms: libgazebo_grasp_plugin.so/update_rate
+    # conforms: libgazebo_grasp_plugin.so/grip_count_threshold
+    # conforms: libgazebo_grasp_plugin.so/max_grip_count
+    # conforms: libgazebo_grasp_plugin.so/forces_angle_tolerance
+    _, cube = grasp(GRASP_TAGS + inner, 1.0, filename)
     assert bool(cube.bodies[0].on_unload) == held
 
 
-def test_a_tolerance_keeps_it_held_while_the_fingers_open_a_bit(bench, grasp):
+@pytest.mark.parametrize("filename", GRASPS)
+def test_a_tolerance_keeps_it_held_while_the_fingers_open_a_bit(bench, grasp, filename):
     # conforms: libgazebo_grasp_fix.so/release_tolerance
+    # conforms: libgazebo_grasp_plugin.so/release_tolerance
     tags = GRASP_TAGS + "<update_rate>50</update_rate><release_tolerance>0.05</release_tolerance>"
-    hand, cube = grasp(tags, 0.6)
+    hand, cube = grasp(tags, 0.6, filename)
     press(hand, 3.0, -0.1)
     bench.run(0.3)  # 3 cm
     assert cube.bodies[0].on_unload

@@ -142,7 +142,6 @@ def angles(car) -> tuple[float, float]:
 
 def test_joints_are_put_where_the_points_say_one_after_the_other(bench, arm):
     # conforms: libgazebo_ros_joint_pose_trajectory.so
-    # conforms: libgazebo_ros_joint_pose_trajectory.so/topicName
     car = arm()
     bench.send("/set_joint_trajectory", trajectory(([0.5, -0.5], 0.2), ([1.0, 2.0], 0.2)))
     bench.run(0.1)
@@ -156,6 +155,7 @@ def test_joints_are_put_where_the_points_say_one_after_the_other(bench, arm):
 def test_a_trajectory_begins_at_its_stamp(bench, arm):
     # conforms: libgazebo_ros_joint_pose_trajectory.so
     # conforms: libgazebo_ros_joint_pose_trajectory.so/robotNamespace
+    # conforms: libgazebo_ros_joint_pose_trajectory.so/topicName
     car = arm(topicName="show", robotNamespace="/arm")
     bench.send("/arm/show", trajectory(([1.0, 1.0], 0.1), start=0.3))
     bench.run(0.25)

@@ -1,0 +1,75 @@
+"""xacro's work on its document, in time that grows with the size and not with its square."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from types import CodeType
+from typing import Any
+from xml.dom import minidom
+
+import xacro
+
+NEAR = 50  # children
+
+
+class Siblings(minidom.NodeList):
+    """Children of a node, looked for first near the last one: xacro goes along them in order."""
+
+    __slots__ = ("_near",)
+
+    def index(self, node: minidom.Node) -> int:
+        """As a list's."""
+        near = getattr(self, "_near", 0)
+        try:
+            found = super().index(node, max(0, near - NEAR), near + NEAR)
+        except ValueError:
+            found = super().index(node)
+        self._near = found
+        return found
+
+    def remove(self, node: minidom.Node) -> None:
+        """As a list's."""
+        del self[self.index(node)]
+
+
+def replace_node(
+    node: minidom.Node, by: minidom.Node | list[minidom.Node] | None, content_only: bool = False
+) -> None:
+    """Stands for xacro's: puts `by`, or what is in it, in the place of a node.
+
+    xacro moves the new nodes one by one, and each is looked for among all that are there.
+    """
+    parent, new = node.parentNode, []
+    for one in by if isinstance(by, list) else [by] if by is not None else []:
+        if content_only:
+            new += one.childNodes
+            one.childNodes = minidom.NodeList()
+        else:
+            new.append(one)
+    siblings = parent.childNodes
+    place = siblings.index(node)
+    siblings[place:place + 1] = new
+    chain = [node.previousSibling, *new, node.nextSibling]
+    for left, right in itertools.pairwise(chain):
+        if left is not None:
+            left.nextSibling = right
+        if right is not None:
+            right.previousSibling = left
+    for one in new:
+        one.parentNode = parent
+    node.parentNode = node.previousSibling = node.nextSibling = None
+
+
+@functools.lru_cache(maxsize=1024)
+def _compiled(expression: str) -> CodeType:
+    return compile(expression.strip(), "<expression>", "eval")
+
+
+def safe_eval(expression: str, symbols: dict, local: dict | None = None) -> Any:
+    """Stands for xacro's: a macro's expressions are compiled once and not for each call."""
+    code = _compiled(expression)
+    if invalid := [name for name in code.co_names if name.startswith("__")]:
+        raise xacro.XacroException("Use of invalid name(s): ", ", ".join(invalid))
+    symbols.update(__builtins__={})
+    return eval(code, symbols, local)

@@ -1,0 +1,83 @@
+"""Reads image files that a model names, after a look at how large they are once unpacked."""
+
+from __future__ import annotations
+
+import logging
+import os
+import struct
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from bullet_sim.errors import FormatError
+from bullet_sim.files import check_file
+
+log = logging.getLogger(__name__)
+
+LARGEST_FILE = 100 * 10**6  # bytes
+MOST_PIXELS = 100 * 10**6  # 10 000 x 10 000: 300 MB while it is read
+HEADER_BYTES = 2**16  # JPEG's size may stand behind a preview
+PNG = b"\x89PNG\r\n\x1a\n"
+JPEG = b"\xff\xd8"
+JPEG_SIZES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # markers of a frame's header
+
+
+def check_image(path: Path | str) -> os.stat_result:
+    """The file's status; FormatError, of one line that begins with the path, if it is too large."""
+    status = check_file(path, LARGEST_FILE, "make it smaller")
+    try:
+        with open(path, "rb") as file:
+            size = _size_px(file.read(HEADER_BYTES))
+    except OSError as error:
+        raise FormatError(f"{path} cannot be read: {error.strerror}") from None
+    if size and 0 in size:
+        raise FormatError(f"{path} cannot be read: it has no pixels")
+    if size and size[0] * size[1] > MOST_PIXELS:
+        raise FormatError(f"{path} cannot be read: {size[0]} x {size[1]} pixels, more than "
+                          f"{MOST_PIXELS // 10**6} million; make it smaller")
+    return status
+
+
+def warn_if_unreadable(path: str) -> None:
+    """One line for a texture that will not be seen; its pixels are not unpacked for that."""
+    try:
+        check_image(path)
+        if not cv2.haveImageReader(path):
+            raise FormatError(f"{path} cannot be read: it is no image; give a PNG or JPEG")
+    except FormatError as error:
+        log.warning("texture %s; left out", error)
+
+
+def read_image(path: Path | str, flags: int, advice: str = "give a PNG or JPEG") -> np.ndarray:
+    """(height, width[, 3]) by OpenCV's `flags`; FormatError as of `check_image`, with `advice`."""
+    check_image(path)
+    try:
+        image = cv2.imread(str(path), flags)
+    except cv2.error:  # a side that OpenCV finds too long, in a kind whose header is not known here
+        image = None
+    if image is None:
+        raise FormatError(f"{path} cannot be read; {advice}")
+    return image
+
+
+def shrunk(image: np.ndarray, factor: float) -> np.ndarray:
+    """The image with its sides times `factor` below 1, and at least one pixel of each."""
+    size = [max(1, round(side * factor)) for side in image.shape[1::-1]]
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+
+
+def _size_px(header: bytes) -> tuple[int, int] | None:
+    """Width and height that a PNG or JPEG says; None where it says none."""
+    if header.startswith(PNG) and len(header) >= 24:
+        return struct.unpack(">II", header[16:24])
+    if not header.startswith(JPEG):
+        return None
+    place = 2
+    while place + 9 <= len(header) and header[place] == 0xFF:
+        marker, length = header[place + 1], int.from_bytes(header[place + 2:place + 4], "big")
+        if marker in JPEG_SIZES:
+            height, width = struct.unpack(">HH", header[place + 5:place + 9])
+            return width, height
+        place += 2 + length
+    return None

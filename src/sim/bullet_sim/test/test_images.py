@@ -1,0 +1,100 @@
+"""Images that say a size nobody can unpack, or an odd one: one line, and no crash."""
+
+import struct
+import zlib
+
+import cv2
+import numpy as np
+import pytest
+
+from bullet_sim.description import Heightmap, ImageExtrusion
+from bullet_sim.errors import FormatError
+from bullet_sim.generated import generated_parts
+from bullet_sim.images import check_image, read_image, shrunk, warn_if_unreadable
+from bullet_sim.rendering.textures import load_image
+
+
+@pytest.fixture
+def said(tmp_path):
+    """A PNG or JPEG that says a size, and has no pixels."""
+    def write(kind: str, width: int, height: int) -> str:
+        path = tmp_path / f"said.{kind}"
+        header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+        chunk = struct.pack(">I", 13) + b"IHDR" + header
+        png = b"\x89PNG\r\n\x1a\n" + chunk + struct.pack(">I", zlib.crc32(chunk[4:]))
+        preview = b"\xff\xe0" + struct.pack(">H", 502) + bytes(500)
+        frame = b"\xff\xc0\x00\x0b\x08" + struct.pack(">HH", height % 65536, width % 65536)
+        path.write_bytes(png if kind == "png" else b"\xff\xd8" + preview + frame + bytes(20))
+        return str(path)
+    return write
+
+
+@pytest.mark.parametrize("kind", ["png", "jpg"])
+def test_a_size_beyond_what_memory_holds_is_seen_before_unpacking(said, kind):
+    path = said(kind, 30_000, 20_000)
+    words = f"{path} cannot be read: 30000 x 20000 pixels, more than 100 million; make it smaller"
+    with pytest.raises(FormatError) as caught:
+        check_image(path)
+    assert str(caught.value) == words
+    check_image(said(kind, 10_000, 10_000))
+    with pytest.raises(FormatError, match="it has no pixels"):
+        check_image(said(kind, 0, 9))
+
+
+@pytest.mark.parametrize("shape", [
+    lambda path: Heightmap(path, (9.0, 9.0, 1.0)),
+    lambda path: ImageExtrusion(path, 1.0, 100, 1.0)])
+def test_ground_and_blocks_refuse_it(said, shape):
+    with pytest.raises(FormatError, match="30000 x 20000 pixels"):
+        generated_parts(shape(said("png", 30_000, 20_000)))
+
+
+@pytest.fixture
+def line(tmp_path):
+    """Far longer than wide: shrunk to fit, its short side would be no pixel at all."""
+    image = np.zeros((2, 100_000), np.uint8)
+    image[:, 50_000:] = 255
+    cv2.imwrite(str(tmp_path / "line.png"), image)
+    return str(tmp_path / "line.png")
+
+
+def test_a_line_of_pixels_is_ground_blocks_and_a_texture(line):
+    ground = generated_parts(Heightmap(line, (9.0, 9.0, 1.0)))
+    assert max(part.vertices[:, 2].max() for part in ground) == pytest.approx(1.0)
+    blocks = generated_parts(ImageExtrusion(line, 1.0, 100, 1.0))
+    assert blocks[0].vertices[:, 0].max() == pytest.approx(0.0, abs=100)
+    assert load_image(line, 4096).shape == (1, 4096, 4)
+    assert shrunk(np.zeros((1, 1)), 0.5).shape == (1, 1)
+
+
+def test_ground_between_its_pixels_keeps_sixteen_bits(tmp_path):
+    slope = np.linspace(0, 65535, 1001).astype(np.uint16)
+    cv2.imwrite(str(tmp_path / "slope.png"), np.tile(slope, (1001, 1)))
+    (part,) = generated_parts(Heightmap(str(tmp_path / "slope.png"), (10.0, 10.0, 2.0)))
+    x, z = part.vertices[:, 0], part.vertices[:, 2]
+    assert z == pytest.approx((x + 5) / 10 * 2, abs=1e-4)
+
+
+def test_what_opencv_refuses_is_one_line(tmp_path, monkeypatch):
+    path = tmp_path / "a.bmp"
+    path.write_bytes(b"BM" + bytes(100))
+
+    def refuse(*_):
+        raise cv2.error("OpenCV: assertion failed")
+
+    monkeypatch.setattr(cv2, "imread", refuse)
+    with pytest.raises(FormatError) as caught:
+        read_image(path, cv2.IMREAD_COLOR)
+    assert str(caught.value) == f"{path} cannot be read; give a PNG or JPEG"
+
+
+def test_a_texture_that_will_not_be_seen_is_one_warning(tmp_path, caplog):
+    path = tmp_path / "a.png"
+    path.write_text("no image")
+    warn_if_unreadable(str(path))
+    assert [record.getMessage() for record in caplog.records] == [
+        f"texture {path} cannot be read: it is no image; give a PNG or JPEG; left out"]
+    cv2.imwrite(str(path), np.zeros((4, 4), np.uint8))
+    caplog.clear()
+    warn_if_unreadable(str(path))
+    assert not caplog.records

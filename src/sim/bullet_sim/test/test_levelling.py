@@ -1,0 +1,129 @@
+"""Which casters are put up to the wheels' ground, and how wheels are shaped for the engine."""
+
+import math
+
+import pytest
+
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Cylinder,
+    Inertial,
+    JointDescription,
+    LinkDescription,
+    ModelDescription,
+    Sphere,
+    Surface,
+)
+from bullet_sim.physics.assembly import assemble
+from bullet_sim.physics.levelling import CLEARANCE, levelled
+from bullet_sim.physics.tyres import CROWN, TREAD, engine_shapes
+from bullet_sim.pose import Pose
+
+LAYER = 1e-3  # m
+LIGHT = Inertial(1.0, inertia=(0.01, 0, 0, 0.01, 0, 0.01))
+BALL = Sphere(0.02)  # m; it stands on the wheels' ground at that height
+AXLE, TRAVEL = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+SWIVEL = (0.0, 0.0, 1.0)
+
+
+def caster(name: str, x: float, low: float, shape=BALL, mu: float = 1.0, turn: float = 0.0):
+    """Its bottom is `low` (m) below the wheels'."""
+    pose = Pose.from_xyz_rpy((x, 0.0, 0.02 - low), (0.0, 0.0, turn))
+    return LinkDescription(name, pose=pose, inertial=LIGHT,
+                           collisions=(Collision("c", shape, surface=Surface(mu=mu, mu2=mu)),))
+
+
+def tree_of(*casters: LinkDescription, wheel_type="continuous", axis=AXLE, caster_type="fixed",
+            caster_axis=AXLE):
+    """A base of some height, two wheels, and the casters on joints of that type."""
+    tyre = Collision("c", Cylinder(0.05, 0.03), Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, 0)),
+                     Surface(mu=1.0, mu2=1.0))
+    wheels = [LinkDescription(name, pose=Pose((0.0, y, 0.05)), inertial=LIGHT, collisions=(tyre,))
+              for name, y in (("left", 0.1), ("right", -0.1))]
+    joints = [JointDescription(w.name, wheel_type, "base", w.name, axis=axis) for w in wheels]
+    joints += [JointDescription(c.name, caster_type, "base", c.name, axis=caster_axis)
+               for c in casters]
+    (tree,) = assemble(ModelDescription(
+        "m", links=(LinkDescription("base", inertial=LIGHT), *wheels, *casters),
+        joints=tuple(joints)))
+    return tree
+
+
+def raised(tree, layer=LAYER) -> dict[str, float]:
+    """How far each changed collision's frame went up, m, after the link that it belongs to."""
+    changes = {}
+    for before, after in zip(tree.links, levelled(tree, layer).links, strict=True):
+        for old, new in zip(before.collisions, after.collisions, strict=True):
+            if old != new:
+                changes[before.name] = new.pose.position[2] - old.pose.position[2]
+    return changes
+
+
+def test_casters_before_and_behind_come_up_to_the_wheels():
+    tree = tree_of(caster("front", 0.1, 1e-3), caster("back", -0.1, 3e-4, turn=1.0))
+    assert raised(tree) == {"front": pytest.approx(1e-3 + CLEARANCE),
+                            "back": pytest.approx(3e-4 + CLEARANCE)}
+
+
+def test_the_bottom_of_each_shape_is_known():
+    lying = Cylinder(0.02, 0.1)
+    tree = tree_of(caster("front", 0.1, 0.0, Box((0.02, 0.02, 0.04))),
+                   caster("back", -0.1, 0.0, Cylinder(0.01, 0.04)))
+    assert raised(tree) == {"front": pytest.approx(CLEARANCE), "back": pytest.approx(CLEARANCE)}
+    lain = caster("front", 0.1, 0.0, lying)
+    rolled = LinkDescription("front", pose=Pose.from_xyz_rpy((0.1, 0, 0.02), (math.pi / 2, 0, 0)),
+                             inertial=LIGHT, collisions=lain.collisions)
+    changed = levelled(tree_of(rolled, caster("back", -0.1, 0.0)), LAYER).links[3].collisions[0]
+    assert changed.pose.position == pytest.approx((0.0, CLEARANCE, 0.0))  # its y points up
+
+
+@pytest.mark.parametrize("casters", [
+    [caster("back", -0.1, 3e-4), caster("other", -0.15, 3e-4)],  # three support it anyhow
+    [caster("front", 0.1, 3e-4), caster("back", -0.1, 1.2e-3)],  # deeper than the layer
+    [caster("front", 0.1, 3e-4), caster("back", -0.1, -1e-3)],  # well above
+])
+def test_robots_whose_wheels_carry_stay_as_described(casters):
+    assert raised(tree_of(*casters)) == {}
+
+
+def test_the_layer_decides_and_is_no_thicker_than_a_millimetre():
+    pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
+    assert set(raised(tree_of(*pair), 3e-4)) == {"front", "back"}
+    assert raised(tree_of(*pair), 2e-4) == {}
+    assert raised(tree_of(caster("front", 0.1, 2e-3), caster("back", -0.1, 2e-3)), 0.01) == {}
+
+
+def test_without_wheels_on_level_axles_nothing_is_levelled():
+    pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
+    assert raised(tree_of(*pair, axis=SWIVEL)) == {}
+    assert raised(tree_of(*pair, wheel_type="prismatic", axis=TRAVEL)) == {}
+    assert raised(tree_of(*pair, wheel_type="fixed")) == {}
+
+
+def test_slippery_balls_on_axles_are_casters_and_get_smaller():
+    pair = [caster("front", 0.1, 3e-4, mu=0.0), caster("back", -0.1, 3e-4, mu=0.0)]
+    after = levelled(tree_of(*pair, caster_type="continuous"), LAYER).links[3].collisions[0]
+    assert after.geometry.radius == pytest.approx(BALL.radius - 3e-4 - CLEARANCE)
+    assert after.pose == Pose()
+    gripping = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
+    assert raised(tree_of(*gripping, caster_type="continuous")) == {}  # wheels, too
+
+
+def test_balls_that_turn_any_way_come_up_as_they_are():
+    pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
+    assert set(raised(tree_of(*pair, caster_type="ball"))) == {"front", "back"}
+
+
+def test_a_wheel_has_a_tread_in_its_middle():
+    wheel = tree_of().links[1]
+    tread, shoulders = (collision.geometry for collision in engine_shapes(wheel))
+    assert tread == Cylinder(0.05, TREAD)
+    assert shoulders == Cylinder(0.05 - CROWN, 0.03)
+
+
+@pytest.mark.parametrize("tree", [
+    tree_of(axis=SWIVEL), tree_of(axis=(0.0, 1.0, 0.1)), tree_of(wheel_type="fixed")])
+def test_other_cylinders_are_left_alone(tree):
+    for link in tree.links:
+        assert list(engine_shapes(link)) == link.collisions
