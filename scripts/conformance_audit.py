@@ -3,8 +3,9 @@
     python3 scripts/conformance_audit.py [PART-OF-A-NAME]    every row and tag whose name has it
 
 A tag of a plugin is hidden from the plugin; an element of URDF or SDF is taken out of the texts
-before they are read; a service or topic is not offered. A test that still passes proves nothing:
-it is listed, and the exit code is 1. Takes minutes; not part of `make test`.
+before they are read; a service or topic is not offered, or goes without a field. A test that still
+passes proves nothing: it is listed, and the exit code is 1. Takes half an hour; not part of
+`make test`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,11 @@ from bullet_sim_ros.interface import APPROXIMATED, WORKS, read_interface
 
 ROOT = Path(__file__).resolve().parent.parent
 LIMIT = 120.0  # s, for the tests of one tag
-AUDITED = re.compile(r"lib\S+\.so|/gazebo/\w+$|sdf |urdf ")  # what hide.py knows how to take away
+# what upstream always leaves as an empty message has it: hiding it changes nothing
+EMPTY = {"/gazebo/get_model_properties/canonical_body_name", "/gazebo/get_joint_properties/type",
+         "/gazebo/get_joint_properties/damping"}
+# what can be taken away
+AUDITED = re.compile(r"lib\S+\.so|/gazebo/\w+(/(?!light$)[\w.]+( \.\. \w+)?)?$|(sdf|urdf) [^(]+$")
 
 
 def files_of_functions() -> dict[str, set[str]]:
@@ -65,7 +70,7 @@ def main() -> int:
         for row in section.rows:
             for name, entry in row.names():
                 if (wanted not in name or entry.status not in (WORKS, APPROXIMATED)
-                        or not tests.get(name) or not AUDITED.match(name)):
+                        or not tests.get(name) or not AUDITED.match(name) or name in EMPTY):
                     continue
                 tried += 1
                 line = survives(name, tests[name], files)

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
+from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
+from gazebo_msgs.msg import LinkStates, ModelStates, PerformanceMetrics
+
 import bullet_sim.formats  # its modules have to be there to be changed
+from bullet_sim.errors import SimulationError
 from bullet_sim_ros import names
 from bullet_sim_ros.plugins import registry
 from bullet_sim_ros.plugins.parameters import PluginParameters
+from bullet_sim_ros.services import answers
+
+TOPICS = {"model_states": ModelStates, "link_states": LinkStates,
+          "performance_metrics": PerformanceMetrics}
 
 
 def pytest_configure() -> None:
@@ -18,6 +27,8 @@ def pytest_configure() -> None:
     row, _, tag = name.rpartition("/")
     if ".so" in name:
         _hide_plugin(row or name, tag if row else "")
+    elif name.count("/") > 2 and name.startswith("/gazebo/"):
+        _hide_field(row.removeprefix("/gazebo/"), tag)
     elif name.startswith("/gazebo/"):
         _hide_topic(name)
     else:
@@ -48,26 +59,80 @@ def _hide_topic(name: str) -> None:
             setattr(names, constant, f"{value}_hidden")
 
 
-def _hide_element(name: str) -> None:
-    """`sdf a/b/c`, `urdf gazebo@link/mu1`: elements at the end of such a path are taken out."""
-    path = [part.split("@")[0] for part in name.split(" ", 1)[1].split("/")]
+def _hide_field(name: str, field: str) -> None:
+    """Messages go, requests come without `a`, `a.b` or all from `a .. c`."""
+    if name in TOPICS:
+        kind = TOPICS[name]
+        send = kind.serialize
+        kind.serialize = lambda self, buffer: (_reset(self, field), send(self, buffer))
+        return
+    original, service = answers.offer, f"~{name}"
 
-    def strip(element: Element, above: tuple[str, ...]) -> None:
-        here = (*above, element.tag)
+    def offer(mailbox, name, kind, handler):
+        def without(request, response):
+            _reset(request, field)
+            try:
+                handler(request, response)
+            except SimulationError as error:
+                raise answers.ServiceError("" if field == "status_message" else error) from None
+            _reset(response, field)
+
+        original(mailbox, name, kind, without if name == service else handler)
+
+    _put_in_place_of(original, offer)
+
+
+def _reset(message, field: str) -> None:
+    """What the field says becomes what an empty message says, however deep in it the field is."""
+    *path, last = field.split(".") if ".." not in field else [field]
+    for part in path:
+        message = getattr(message, part, None)
+    first, _, last = last.partition(" .. ")
+    slots = getattr(message, "__slots__", ())
+    if first not in slots:
+        for part in slots:
+            _reset(getattr(message, part), field)
+        return
+    for name in slots[slots.index(first):slots.index(last or first) + 1]:
+        setattr(message, name, getattr(type(message)(), name))
+
+
+def _put_in_place_of(original: Callable, other: Callable) -> None:
+    """In every module that has it by this name."""
+    for module in list(sys.modules.values()):
+        if getattr(module, original.__name__, None) is original:
+            setattr(module, original.__name__, other)
+
+
+def _hide_element(name: str) -> None:
+    """Elements at the end of such a path are taken out: `sdf a/b/c`, `urdf gazebo@link/mu1`.
+
+    Of `sdf a/b@c` only the attribute c goes, of `sdf a/b@c/d` those b whose c is d.
+    """
+    language, _, written = name.partition(" ")
+    above, _, attribute = written.partition("@") if language == "sdf" else (written, "", "")
+    attribute, _, value = attribute.partition("/")
+    path = [part.split("@")[0] for part in above.split("/")]
+
+    def strip(element: Element, parents: tuple[str, ...]) -> None:
+        here = (*parents, element.tag)
         for child in list(element):
-            if list((*here, child.tag)[-len(path):]) == path:
+            meant = list((*here, child.tag)[-len(path):]) == path
+            if meant and attribute and not value:
+                child.attrib.pop(attribute, None)
+            elif meant and (not attribute or child.get(attribute) == value):
                 element.remove(child)
-            else:
-                strip(child, here)
+                continue
+            strip(child, here)
 
     for function in ("parse_xml", "read_xml_file"):
         original = getattr(bullet_sim.formats.xml_values, function)
 
+        @functools.wraps(original)
         def stripped(*args, _original=original, **options):
             root = _original(*args, **options)
+            root.tag = "hidden" if [root.tag] == path else root.tag
             strip(root, ())
             return root
 
-        for module in list(sys.modules.values()):
-            if getattr(module, function, None) is original:
-                setattr(module, function, stripped)
+        _put_in_place_of(original, stripped)

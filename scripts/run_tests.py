@@ -1,8 +1,9 @@
 """Runs ruff, pytest and every rostest file, and ends with one line: N passed, M failed.
 
-First what is quick, then what starts processes and mostly waits for them: rostest files, and the
-pytest files marked `processes`, a few at a time. Each of these gets a session of its own, a free
-port for its master and a time limit. What it leaves running is killed and counts as a failure.
+What needs no processes is one pytest run. Beside it, a few at a time, runs what starts processes
+and mostly waits for them: rostest files, and the pytest files marked `processes`. Each of these
+gets a session of its own, a free port for its master and a time limit. What it leaves running is
+killed and counts as a failure.
 Files that say `runs alone` measure time: they come last, one after the other.
 """
 
@@ -14,7 +15,9 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
 
 import run_tests_processes as processes
@@ -26,19 +29,26 @@ PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
 ALONE = re.compile(r"\bruns alone\b")
 
 
-def run_apart(files: list[Path], jobs: int, limit: float) -> list[Result]:
-    """Files that start processes, so many at a time."""
+def run_beside(files: list[Path], jobs: int, limit: float,
+               whole: Callable[[], list[Result]] | None = None) -> list[Result]:
+    """Files that start processes, so many at a time; `whole`, a run of its own, is one of them."""
     results: list[Result] = []
     with ThreadPoolExecutor(jobs) as pool:
-        waiting = [pool.submit(run_rostest if file.suffix == ".test" else run_pytest_file,
-                               file, limit) for file in files]
+        waiting = [pool.submit(whole)] if whole else []
+        waiting += [pool.submit(run_file, file, limit) for file in files]
         for done in as_completed(waiting):
             if processes.stopping:
                 pool.shutdown(cancel_futures=True)
                 break
-            results.append(done.result())
-            print(results[-1].line(), flush=True)
+            results += done.result()
     return results
+
+
+def run_file(file: Path, limit: float) -> list[Result]:
+    """One file that starts processes, and its line as soon as it is done."""
+    result = (run_rostest if file.suffix == ".test" else run_pytest_file)(file, limit)
+    print(result.line(), flush=True)
+    return [result]
 
 
 def files_that_say(pattern: re.Pattern, glob: str) -> list[Path]:
@@ -70,10 +80,9 @@ def main() -> int:
     slow = files_that_say(PROCESSES, "test_*.py")  # first: the longest of them take minutes
     rostests = files_that_say(re.compile(""), "*.test")
     alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
-    results += run_pytest(args.pytest_limit, slow)
-    results += run_apart([path for path in [*slow, *rostests] if path not in alone],
-                         args.jobs, args.limit)
-    results += run_apart(alone, 1, args.limit)
+    results += run_beside([path for path in [*slow, *rostests] if path not in alone],
+                          args.jobs, args.limit, partial(run_pytest, args.pytest_limit, slow))
+    results += run_beside(alone, 1, args.limit)
     if processes.stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130
