@@ -5,6 +5,7 @@ and mostly waits for them: rostest files, and the pytest files marked `processes
 gets a session of its own, a free port for its master and a time limit. What it leaves running is
 killed and counts as a failure.
 Files that say `runs alone` measure time: they come last, one after the other.
+A few failed files run once more, alone: a busy machine starves processes. Both are reported.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ from pathlib import Path
 import run_tests_processes as processes
 from run_tests_kinds import OUT, run_pytest, run_pytest_file, run_rostest, run_ruff
 from run_tests_processes import ROOT
-from run_tests_results import Result, show_failures, show_totals
+from run_tests_results import Result, show_failed, show_outputs, show_second, show_totals
 
 PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
 ALONE = re.compile(r"\bruns alone\b")
+MOST_SECOND = 6  # more failed files than this are no accident
 
 
 def run_beside(files: list[Path], jobs: int, limit: float,
@@ -49,6 +51,27 @@ def run_file(file: Path, limit: float) -> list[Result]:
     result = (run_rostest if file.suffix == ".test" else run_pytest_file)(file, limit)
     print(result.line(), flush=True)
     return [result]
+
+
+def run_failed_again(results: list[Result], limit: float) -> list[Result]:
+    """The results, those of failed files replaced by those of a second run alone; not if many."""
+    failed = [result for result in results if result.failures]
+    if len(failed) > MOST_SECOND:
+        return results
+    return [second_run(result, limit) if result in failed else result for result in results]
+
+
+def second_run(first: Result, limit: float) -> Result:
+    """What the file came to when run again; it keeps what the first run failed and printed."""
+    file = ROOT / first.name
+    if processes.stopping or not file.is_file():
+        return first
+    folder = OUT / first.name.replace("/", ".")
+    if folder.exists():
+        folder.rename(folder.with_name(f"{folder.name}.first"))
+    second = run_file(file, limit)[0]
+    second.first_failures, second.first_output = first.failures, first.output
+    return second
 
 
 def files_that_say(pattern: re.Pattern, glob: str) -> list[Path]:
@@ -86,8 +109,11 @@ def main() -> int:
     if processes.stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130
-    show_failures(results)
+    results = run_failed_again(results, args.limit)
+    show_outputs(results)
     show_conformance()
+    show_second(results)
+    show_failed(results)
     return 0 if show_totals(results) else 1
 
 

@@ -17,6 +17,8 @@ class Result:
     skipped: int = 0
     failures: list[str] = field(default_factory=list)
     output: str = ""
+    first_failures: list[str] = field(default_factory=list)  # of a run before this one
+    first_output: str = ""
 
     def add_case(self, case: ET.Element) -> None:
         """Count a test case of a report, and its time."""
@@ -59,12 +61,27 @@ def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
             for case in ET.parse(path).iter("testcase")]
 
 
-def show_failures(results: list[Result]) -> None:
-    """What the failed ones printed, then a line for each failure."""
+def show_outputs(results: list[Result]) -> None:
+    """What the failed ones printed, in the first run and in the last."""
     for result in results:
-        if result.output:
-            print(f"\n==== {result.name}")
-            print("\n".join(f"  | {line}" for line in result.output.splitlines()))
+        for title, output in ((f"{result.name}, first run", result.first_output),
+                              (result.name, result.output)):
+            if output:
+                print(f"\n==== {title}")
+                print("\n".join(f"  | {line}" for line in output.splitlines()))
+
+
+def show_second(results: list[Result]) -> None:
+    """A line for each test that failed at first and passed when its file ran again, alone."""
+    unsteady = [failure for result in results if not result.failures
+                for failure in result.first_failures]
+    if unsteady:
+        print("\nFailed beside others, passed alone:")
+        print("\n".join(f"  {failure}" for failure in unsteady))
+
+
+def show_failed(results: list[Result]) -> None:
+    """A line for each failure."""
     failures = [failure for result in results for failure in result.failures]
     if failures:
         print("\nFailed:")
