@@ -3,16 +3,18 @@
 
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 import unittest.mock
+from pathlib import Path
 
 import rospy
 import rostest
 from controller_manager_msgs.srv import SwitchControllerResponse
 from fake_manager import TYPE, FakeManager
 from std_msgs.msg import Bool
-from tool_process import Tool, run, until
+from tool_process import LIMIT, Tool, run, until
 
 LAUNCHED = {"/rrbot": ("joint_state_controller", "joint1_position_controller"),
             "/racecar": ("joint_state_controller",)}
@@ -170,6 +172,15 @@ class SpawnerStory(unittest.TestCase):
             self.assertEqual(spawner.end(signal.SIGINT), 0)
         self.assertIn("Could not stop c1, c3: the world is ending", spawner.said)
         self.assertNotIn("[WARN]", spawner.said)
+
+    def test_a_signal_counts_although_its_interruption_was_swallowed(self):
+        node = subprocess.Popen([sys.executable, str(Path(__file__).with_name("swallower.py"))],
+                                stdout=subprocess.PIPE, text=True)
+        self.addCleanup(node.kill)
+        self.assertEqual(node.stdout.readline(), "at work\n")
+        node.send_signal(signal.SIGINT)
+        said, _ = node.communicate(timeout=LIMIT)
+        self.assertEqual((said, node.returncode), ("swallowed\nundone\n", 0))
 
     def test_before_the_clock(self):
         rospy.set_param("/use_sim_time", True)

@@ -4,6 +4,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from types import FrameType
 
 import rospy
 
@@ -30,17 +31,24 @@ def live(name: str, work: Callable[[], int | None], undo: Callable[[], None]) ->
     `work` returns None to stay until then, or the exit code to end with, without `undo`. A signal
     interrupts a call that waits for its answer (a switch in a paused world never comes to one);
     rospy's handler would not, and would call services on top of the line it interrupted.
+    A library may swallow the interruption (rospy's logging does): then the signal still counts.
     """
+    told = threading.Event()
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        told.set()
+        raise KeyboardInterrupt
+
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
     for number in (signal.SIGINT, signal.SIGTERM):  # a shell's background job ignores the first
-        signal.signal(number, signal.default_int_handler)
+        signal.signal(number, end)
     try:
         rospy.init_node(name, anonymous=True, disable_signals=True)
         rospy.on_shutdown(lambda: bounded(undo))
         code = work()
         if code is not None:
             return code
-        while not rospy.is_shutdown():
+        while not rospy.is_shutdown() and not told.is_set():
             rospy.rostime.wallsleep(POLL_PERIOD)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         pass

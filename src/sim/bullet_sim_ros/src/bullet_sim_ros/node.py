@@ -138,11 +138,11 @@ def main() -> int:
                        rospy.resolve_name(names.LOCKSTEP), parameters.lockstep)
         return 1
     simulation = Simulation(world, parameters)
+    for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
+        signal.signal(number, lambda _number, _frame: simulation.stop())
     open_network(simulation, resources, parameters.enable_ros_network)
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda _number, _frame: simulation.stop())
     try:
         simulation.run(options.iters)
     finally:
