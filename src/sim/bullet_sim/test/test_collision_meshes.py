@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 import trimesh
 
-from bullet_sim.description import Collision, Inertial, LinkDescription, Mesh, ModelDescription
+from bullet_sim.description import (
+    Box,
+    Collision,
+    Inertial,
+    LinkDescription,
+    Mesh,
+    ModelDescription,
+    Plane,
+)
 from bullet_sim.physics import urdf_text
 from bullet_sim.physics.urdf_text import MeshFiles
 from bullet_sim.pose import Pose
@@ -35,7 +43,27 @@ def test_of_a_hull_each_corner_is_read_once(ball, tmp_path):
     files = MeshFiles(tmp_path)
     whole, hull = read(files(ball, hull=False)), read(files(ball, hull=True))
     assert (len(whole), len(hull)) == (320, 54)
-    assert first_appearances(hull) == first_appearances(whole)
+    inner = 0.5 / (0.5 - urdf_text.HULL_MARGIN)  # the engine adds its margin
+    assert np.allclose(np.array(first_appearances(hull)) * inner, first_appearances(whole))
+
+
+@pytest.mark.parametrize("size", [(0.2, 0.2, 0.2), (0.3, 0.1, 0.004), (0.2, 0.2, 0.0015)])
+def test_a_box_of_triangles_is_as_high_as_a_box(tmp_path, size):
+    trimesh.creation.box(size).export(tmp_path / "box.stl")
+    solids = {"mesh": Mesh(str(tmp_path / "box.stl")), "box": Box(size)}
+    world, heights = World(), {}
+    world.spawn(ModelDescription("floor", static=True, links=(LinkDescription(
+        "link", collisions=(Collision("c", Plane((0.0, 0.0, 1.0), (9.0, 9.0))),)),)))
+    for x, (name, solid) in enumerate(solids.items()):
+        link = LinkDescription("link", collisions=(Collision("c", solid),), inertial=Inertial(
+            1.0, inertia=(0.01, 0.0, 0.0, 0.01, 0.0, 0.01)))
+        heights[name] = world.spawn(ModelDescription(name, links=(link,)),
+                                    Pose((x, 0.0, size[2] / 2)))
+    world.step(500)
+    thickest = max(0.0, urdf_text.HULL_MARGIN - size[2] / 2)  # no hull is thinner than its margin
+    assert heights["mesh"].pose.position[2] == pytest.approx(
+        heights["box"].pose.position[2] + thickest, abs=5e-5)
+    world.close()
 
 
 @pytest.mark.parametrize("corners, padded", [

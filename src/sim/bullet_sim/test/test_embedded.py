@@ -11,6 +11,7 @@ from bullet_sim.description import (
     LinkDescription,
     ModelDescription,
     Plane,
+    Surface,
     WorldDescription,
 )
 from bullet_sim.physics import embedded
@@ -18,16 +19,23 @@ from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
 HALF = 0.1  # m, of the cube's height
-FLOOR = ModelDescription("floor", static=True, links=(LinkDescription(
-    "link", collisions=(Collision("plane", Plane((0.0, 0.0, 1.0), (10.0, 10.0))),)),))
+HARD, SOFT = Surface(), Surface(kp=1e5, kd=1.0)
+SPRINGY = Surface(restitution=0.9)
 
 
-def cube(mass: float) -> ModelDescription:
+def floor(surface: Surface = HARD) -> ModelDescription:
+    """Level ground."""
+    plane = Collision("plane", Plane((0.0, 0.0, 1.0), (10.0, 10.0)), surface=surface)
+    return ModelDescription("floor", static=True, links=(
+        LinkDescription("link", collisions=(plane,)),))
+
+
+def cube(mass: float, surface: Surface = HARD) -> ModelDescription:
     """A cube of that mass, kg."""
     moment = 0.01 * mass
     return ModelDescription("cube", links=(LinkDescription(
         "link", inertial=Inertial(mass, inertia=(moment, 0, 0, moment, 0, moment)),
-        collisions=(Collision("c", Box((2 * HALF,) * 3)),)),))
+        collisions=(Collision("c", Box((2 * HALF,) * 3), surface=surface),)),))
 
 
 CUBE = cube(1.0)
@@ -35,7 +43,7 @@ CUBE = cube(1.0)
 
 @pytest.fixture
 def world():
-    made = World(WorldDescription(models=(FLOOR,)))
+    made = World(WorldDescription(models=(floor(),)))
     yield made
     made.close()
 
@@ -62,6 +70,17 @@ def test_light_things_leave_no_faster(world, mass):
     rising = heights(world, world.spawn(cube(mass), Pose((0, 0, HALF - 0.06))), 2.0)
     assert max(rising) < HALF + 0.002
     assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * embedded.FASTEST
+
+
+@pytest.mark.parametrize("ground, thing", [
+    (HARD, SOFT), (SOFT, HARD), (SOFT, SOFT), (HARD, SPRINGY), (SPRINGY, SPRINGY)])
+def test_whatever_the_surfaces_are_like(ground, thing):
+    world = World(WorldDescription(models=(floor(ground),)))
+    rising = heights(world, world.spawn(cube(1.0, thing), Pose((0, 0, HALF - 0.06))), 3.0)
+    assert max(rising) < HALF + 0.005
+    assert rising[-1] == pytest.approx(HALF, abs=0.001)
+    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * embedded.FASTEST
+    world.close()
 
 
 def test_a_moved_body_does_so_too(world):

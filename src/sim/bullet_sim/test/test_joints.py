@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
@@ -142,6 +143,20 @@ def test_an_effort_drives_no_faster_than_the_limit(world):
         model.joint("j").drive_effort(4.0)
         world.step()
     assert model.joint("j").velocity == pytest.approx(0.5, abs=3e-3)
+
+
+def test_a_motor_of_negative_effort_is_none(world):
+    model = world.spawn(read(link("arm") + joint("j", "revolute", "world", "arm", axis("0 0 1"))))
+    model.joint("j").drive_velocity(3.0, -5.0)
+    run(world, 0.5)
+    assert model.joint("j").velocity == 0.0
+
+
+def test_a_joint_of_a_static_model_says_why_it_does_not_move(world):
+    model = world.spawn(read("<static>true</static>" + link("base") + link("arm")
+                             + joint("j", "revolute", "base", "arm", axis("0 0 1"))))
+    with pytest.raises(SimulationError, match="joint 'j' does not move, as model m is static"):
+        model.joint("j")
 
 
 def test_a_fixed_joint_by_two_stops_does_not_give_way(world):

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+import trimesh
 
 from bullet_sim.description import (
     Box,
@@ -11,6 +12,7 @@ from bullet_sim.description import (
     Inertial,
     JointDescription,
     LinkDescription,
+    Mesh,
     ModelDescription,
     Sphere,
     Surface,
@@ -35,15 +37,16 @@ def caster(name: str, x: float, low: float, shape=BALL, mu: float = 1.0, turn: f
 
 
 def tree_of(*casters: LinkDescription, wheel_type="continuous", axis=AXLE, caster_type="fixed",
-            caster_axis=AXLE):
-    """A base of some height, two wheels, and the casters on joints of that type."""
+            caster_axis=AXLE, more=()):
+    """A base of some height, two wheels, and the casters on joints of that type, or of `more`."""
     tyre = Collision("c", Cylinder(0.05, 0.03), Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, 0)),
                      Surface(mu=1.0, mu2=1.0))
     wheels = [LinkDescription(name, pose=Pose((0.0, y, 0.05)), inertial=LIGHT, collisions=(tyre,))
               for name, y in (("left", 0.1), ("right", -0.1))]
     joints = [JointDescription(w.name, wheel_type, "base", w.name, axis=axis) for w in wheels]
     joints += [JointDescription(c.name, caster_type, "base", c.name, axis=caster_axis)
-               for c in casters]
+               for c in casters if c.name not in [joint.child for joint in more]]
+    joints += more
     (tree,) = assemble(ModelDescription(
         "m", links=(LinkDescription("base", inertial=LIGHT), *wheels, *casters),
         joints=tuple(joints)))
@@ -110,9 +113,78 @@ def test_slippery_balls_on_axles_are_casters_and_get_smaller():
     assert raised(tree_of(*gripping, caster_type="continuous")) == {}  # wheels, too
 
 
-def test_balls_that_turn_any_way_come_up_as_they_are():
-    pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
-    assert set(raised(tree_of(*pair, caster_type="ball"))) == {"front", "back"}
+@pytest.mark.parametrize("mu", [0.0, 1.0])
+def test_balls_that_turn_any_way_stay_centred_and_get_smaller(mu):
+    pair = [caster("front", 0.1, 3e-4, mu=mu), caster("back", -0.1, 3e-4, mu=mu)]
+    after = levelled(tree_of(*pair, caster_type="ball"), LAYER).links[3:]
+    for link in after:
+        (ball,) = link.collisions
+        assert ball.geometry.radius == pytest.approx(BALL.radius - 3e-4 - CLEARANCE)
+        assert ball.pose == Pose()
+
+
+def test_boxes_that_turn_any_way_come_up_as_they_are():
+    pair = [caster(name, x, 3e-4, Box((0.04, 0.04, 0.04))) for name, x in (("a", 0.1), ("b", -0.1))]
+    assert set(raised(tree_of(*pair, caster_type="ball"))) == {"a", "b"}
+
+
+def swivelling(trail: float):
+    """A fork before and one behind, whose wheels, 0.3 mm too low, run so far behind it (m)."""
+    tyre = Collision("c", Cylinder(0.02, 0.01), Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, 0)),
+                     Surface(mu=1.0, mu2=1.0))
+    links, joints = [], []
+    for name, x in (("front", 0.1), ("back", -0.1)):
+        fork = f"{name} fork"
+        links += [LinkDescription(fork, pose=Pose((x, 0, 0.05)), inertial=LIGHT),
+                  LinkDescription(name, pose=Pose((x - trail, 0, 0.02 - 3e-4)), inertial=LIGHT,
+                                  collisions=(tyre,))]
+        joints += [JointDescription(fork, "continuous", "base", fork, axis=SWIVEL),
+                   JointDescription(name, "continuous", fork, name, axis=AXLE)]
+    return tree_of(*links, more=joints)
+
+
+def test_wheels_behind_swivels_are_casters_and_get_smaller():
+    tree = swivelling(0.01)
+    after = {link.name: link for link in levelled(tree, LAYER).links}
+    for name in ("front", "back"):
+        (tyre,) = after[name].collisions
+        assert tyre.geometry.radius == pytest.approx(0.02 - 3e-4 - CLEARANCE)
+        assert tyre.pose.position == (0.0, 0.0, 0.0)
+    assert after["left"].collisions == tree.links[1].collisions
+
+
+def test_steered_wheels_stay_as_described():
+    assert raised(swivelling(0.0)) == {}
+
+
+def plate(tmp_path, *feet: float):
+    """A mesh: balls at these x (m) in one, whose origin is between the wheels."""
+    balls = []
+    for x in feet:
+        balls.append(trimesh.creation.icosphere(subdivisions=1, radius=0.02))
+        balls[-1].apply_translation((x, 0.0, 0.0))
+    path = tmp_path / "plate.stl"
+    trimesh.util.concatenate(balls).export(path)
+    return Mesh(str(path))
+
+
+@pytest.mark.parametrize("feet, up", [((0.1, -0.1), True), ((0.1,), False)])
+def test_a_mesh_stands_on_its_lowest_corners(tmp_path, feet, up):
+    tree = tree_of(caster("plate", 0.0, 3e-4, plate(tmp_path, *feet)))
+    assert raised(tree) == ({"plate": pytest.approx(3e-4 + CLEARANCE, abs=1e-6)} if up else {})
+
+
+def test_a_box_from_front_to_back_comes_up():
+    assert set(raised(tree_of(caster("plate", 0.0, 3e-4, Box((0.3, 0.05, 0.04)))))) == {"plate"}
+    assert raised(tree_of(caster("plate", 0.1, 3e-4, Box((0.1, 0.05, 0.04))))) == {}
+
+
+def test_slippery_meshes_on_axles_get_smaller(tmp_path):
+    pair = [caster(name, x, 3e-4, plate(tmp_path, 0.0), mu=0.0)
+            for name, x in (("front", 0.1), ("back", -0.1))]
+    after = levelled(tree_of(*pair, caster_type="continuous"), LAYER).links[3].collisions[0]
+    part = 1.0 - (3e-4 + CLEARANCE) / 0.02
+    assert after.geometry.scale == pytest.approx([part] * 3, rel=1e-3)
 
 
 def test_a_wheel_has_a_tread_in_its_middle():

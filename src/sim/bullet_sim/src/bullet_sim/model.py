@@ -195,6 +195,9 @@ class Model:
         if found is not None:
             return found
         held = [joint for joint in self.description.joints if joint.name == name]
+        if held and self.static:
+            raise SimulationError(f"joint {name!r} does not move, as model {self.name} is static; "
+                                  "take <static> out of it")
         if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
                                   f"{held[0].type}, of which there is nothing to read or drive")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from bullet_sim.errors import SimulationError
@@ -13,7 +14,10 @@ SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
 
 @dataclass(frozen=True)
 class DiffDriveParameters:
-    """Geometry and motors; defaults are those of gazebo_ros_diff_drive."""
+    """Geometry and motors; defaults are those of gazebo_ros_diff_drive.
+
+    As there, a negative separation reverses turns, and a negative diameter reverses all.
+    """
 
     wheel_separation: float = 0.34  # m
     wheel_diameter: float = 0.15  # m
@@ -25,10 +29,10 @@ class DiffDrive:
     """Turns (forward, yaw rate) into motor targets; call `update` at the drive's own rate."""
 
     def __init__(self, left: Joint, right: Joint, parameters: DiffDriveParameters):
-        if parameters.wheel_diameter <= 0 or parameters.wheel_separation <= 0:
+        if not parameters.wheel_diameter or not parameters.wheel_separation:
             raise SimulationError(
                 f"wheel diameter {parameters.wheel_diameter} and separation "
-                f"{parameters.wheel_separation} must both be more than 0 m")
+                f"{parameters.wheel_separation} must not be 0 m")
         self._left, self._right = left, right
         self._parameters = parameters
         self.stop()
@@ -52,15 +56,17 @@ class DiffDrive:
             joint.drive_velocity(speed / radius, p.wheel_torque)
 
 
-def turns_backwards(left: tuple[Joint, Pose], right: tuple[Joint, Pose]) -> bool:
+def turns_backwards(left: tuple[Joint, Pose], right: tuple[Joint, Pose],
+                    parameters: DiffDriveParameters) -> bool:
     """Whether a positive rate of yaw would turn to the right: "left" is the right wheel.
 
     Each joint comes with the pose of its child link. A wheel that turns about an axis drives to
     where that axis points to the left, so the left wheel lies further along it.
     """
     across = [a - b for a, b in zip(left[1].position, right[1].position, strict=True)]
+    sense = math.copysign(1.0, parameters.wheel_separation * parameters.wheel_diameter)
     return all(
-        sum(a * b for a, b in zip(_axis(*wheel), across, strict=True)) < 0
+        sense * sum(a * b for a, b in zip(_axis(*wheel), across, strict=True)) < 0
         for wheel in (left, right))
 
 

@@ -13,10 +13,13 @@ class SkidSteer:
 
     def __init__(self, left: Sequence[Joint], right: Sequence[Joint], wheel_separation: float,
                  wheel_diameter: float, torque: float):
-        """Separation and diameter in m, torque in N m for each wheel."""
-        if wheel_diameter <= 0 or wheel_separation <= 0:
+        """Separation and diameter in m, torque in N m for each wheel.
+
+        As upstream, a negative separation reverses turns, and a negative diameter reverses all.
+        """
+        if not wheel_diameter or not wheel_separation:
             raise SimulationError(f"wheel diameter {wheel_diameter} and separation "
-                                  f"{wheel_separation} must both be more than 0 m")
+                                  f"{wheel_separation} must not be 0 m")
         self._sides = (tuple(left), tuple(right))
         self._separation = wheel_separation
         self._radius = wheel_diameter / 2

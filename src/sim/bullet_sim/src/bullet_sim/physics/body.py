@@ -15,13 +15,7 @@ from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.joint_side import JointSide
 from bullet_sim.physics.link_side import BASE, LinkSide
 from bullet_sim.physics.quiet import EngineError, pybullet
-from bullet_sim.physics.surfaces import (
-    coming_out,
-    contact_values,
-    corrected_part,
-    gives_way,
-    giving_way,
-)
+from bullet_sim.physics.surfaces import coming_out, contact_values, corrected_part, hardness
 from bullet_sim.pose import Pose
 
 NOWHERE = -1  # the number of what the engine does not have
@@ -150,11 +144,14 @@ class Body(LinkSide, JointSide):
 
     def come_out(self, part: float | None, timestep: float) -> None:
         """Have contacts correct no more of their depth in each step (s); None: as usual."""
-        values = giving_way(self._mass())
-        if part is not None and part < corrected_part(values, timestep):
-            values = coming_out(part, timestep)
+        mass = self._mass()
         for link in self.tree.links:
-            if link.collisions and gives_way(link.collisions[0], self.tree.fixed):
+            if not link.collisions:
+                continue
+            values = hardness(link.collisions[0].surface, self.tree.fixed, mass)
+            if values and part is not None and part < corrected_part(values, timestep):
+                values = coming_out(part, timestep)
+            if values:
                 self._read(pybullet.changeDynamics, self._index[link.name], **values)
 
     def _mass(self) -> float:

@@ -117,8 +117,11 @@ class JointSide(EngineHandle):
         self._call(pybullet.resetJointState, self._joint_index[joint], position, velocity)
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
-        """Motor that holds a rate with at most `effort` (N m or N), until told otherwise."""
-        effort = min(effort, STRONGEST)
+        """Motor that holds a rate with at most `effort` (N m or N), until told otherwise.
+
+        Below zero there is none, as in ODE.
+        """
+        effort = min(max(effort, 0.0), STRONGEST)
         if self._motors.get(joint) == (velocity, effort):
             return
         if not self._is_number("joint drive", velocity, effort):

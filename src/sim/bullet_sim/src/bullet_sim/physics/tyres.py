@@ -3,17 +3,22 @@
 The engine finds one point of a cylinder on a plane, on one of its edges, and keeps those that it
 found before: robots turned on the outer edges of their wheels, 10 % too slowly where these are as
 wide as an eighth of the track, and points behind an axle set wheels without motors rolling.
+So they did on meshes: one that is about round rolls as the circle around it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from bullet_sim.description import Collision, Cylinder
+import numpy as np
+
+from bullet_sim.description import Collision, Cylinder, Mesh
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
-from bullet_sim.pose import rotate
+from bullet_sim.pose import Pose, Quaternion, Vector3, rotate, rotation_matrix
 
 ROLLING = ("revolute", "continuous")
 # Twice the margin that the engine rounds edges with: the tread has one lowest point, and what is
@@ -23,35 +28,105 @@ CROWN = 1e-4  # m, by which the shoulders' radius is less; the tread sinks in by
 THINNEST = 0.005  # m, radius
 ALONG = 0.999  # cosine: the cylinder lies along the joint's axis
 CENTRED = 1e-3  # m, that its middle may be off that axis
+ROUND = 0.95  # a mesh's least radius in parts of its greatest; ten corners are about round
+RIM = 0.99  # part of the greatest radius: the tread is in the middle of what reaches it
+DIRECTIONS = 100  # in which a mesh's radius is measured
+
+
+@dataclass(frozen=True)
+class Tyre:
+    """How a collision rolls."""
+
+    radius: float  # m
+    width: float  # m
+    middle: Pose  # of the tread, in the link's frame; its z is the axis
 
 
 def engine_shapes(link: PhysicsLink) -> Iterable[Collision]:
     """The link's collisions; wheels come as a narrow tread and the shoulders beside it."""
     for collision in link.collisions:
-        if not _is_wheel(link, collision):
+        tyre = find_tyre(link, collision)
+        if tyre is None or tyre.radius < THINNEST or tyre.width <= TREAD:
             yield collision
             continue
-        radius, width = collision.geometry.radius, collision.geometry.length
-        yield replace(collision, geometry=Cylinder(radius, TREAD))
-        yield replace(collision, geometry=Cylinder(radius - CROWN, width))
+        yield replace(collision, geometry=Cylinder(tyre.radius, TREAD), pose=tyre.middle)
+        yield resized(collision, CROWN, tyre.radius, tyre.middle.position)
+
+
+def resized(collision: Collision, less: float, radius: float, centre: Vector3) -> Collision:
+    """What rolls about `centre`, its radius so much less (m); a mesh gets smaller as a whole."""
+    shape = collision.geometry
+    if not isinstance(shape, Mesh):
+        return replace(collision, geometry=replace(shape, radius=shape.radius - less))
+    part = 1.0 - less / radius
+    place = tuple(c + part * (p - c)
+                  for p, c in zip(collision.pose.position, centre, strict=True))
+    return replace(collision, pose=Pose(place, collision.pose.orientation),
+                   geometry=replace(shape, scale=tuple(part * each for each in shape.scale)))
+
+
+def find_tyre(link: PhysicsLink, collision: Collision) -> Tyre | None:
+    """Of a cylinder that turns about its own axis, or of a mesh that is round about the link's."""
+    shape = collision.geometry
+    if isinstance(shape, Mesh):
+        return _of_mesh(link, collision) if _turns(link) else None
+    if not isinstance(shape, Cylinder) or not _turns(link) or not _is_centred(link, collision):
+        return None
+    own = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
+    if abs(_unit_axis(link) @ own) <= ALONG:
+        return None
+    return Tyre(shape.radius, shape.length, collision.pose)
 
 
 def rolls(link: PhysicsLink, collision: Collision) -> bool:
     """Whether the link turns about an axis through the middle of the collision."""
-    if link.joint is None or link.joint.type not in ROLLING:
-        return False
-    axis, centre = link.joint.axis, collision.pose.position
-    along = sum(a * b for a, b in zip(centre, axis, strict=True)) / math.hypot(*axis)
-    return math.hypot(*centre) ** 2 - along ** 2 < CENTRED ** 2
+    return _turns(link) and (
+        _is_centred(link, collision) or find_tyre(link, collision) is not None)
 
 
-def _is_wheel(link: PhysicsLink, collision: Collision) -> bool:
-    """Whether it is a cylinder that turns about its own axis."""
-    shape = collision.geometry
-    if not isinstance(shape, Cylinder) or not rolls(link, collision):
-        return False
-    if shape.radius < THINNEST or shape.length <= TREAD:
-        return False
-    axis = link.joint.axis
-    own = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
-    return abs(sum(a * b for a, b in zip(own, axis, strict=True))) > ALONG * math.hypot(*axis)
+def _is_centred(link: PhysicsLink, collision: Collision) -> bool:
+    axis, centre = _unit_axis(link), np.array(collision.pose.position)
+    return float(np.linalg.norm(centre - (centre @ axis) * axis)) < CENTRED
+
+
+def _turns(link: PhysicsLink) -> bool:
+    return link.joint is not None and link.joint.type in ROLLING
+
+
+def _unit_axis(link: PhysicsLink) -> np.ndarray:
+    return np.array(link.joint.axis) / np.linalg.norm(link.joint.axis)
+
+
+def _of_mesh(link: PhysicsLink, collision: Collision) -> Tyre | None:
+    try:
+        vertices, _ = collision_mesh(collision.geometry)
+    except FormatError:  # told where the shape is made
+        return None
+    axis = _unit_axis(link)
+    points = vertices @ rotation_matrix(collision.pose.orientation).T + collision.pose.position
+    along, across = points @ axis, points @ _perpendicular(axis).T
+    distance = np.linalg.norm(across, axis=1)
+    radius = float(distance.max())
+    angles = np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False)
+    outline = (across @ np.stack((np.cos(angles), np.sin(angles)))).max(axis=0)
+    if radius == 0.0 or outline.min() < ROUND * radius:
+        return None
+    rim = along[distance > RIM * radius]
+    middle = tuple(float(part) for part in 0.5 * (rim.min() + rim.max()) * axis)
+    return Tyre(radius, float(np.ptp(along)), Pose(middle, _turned_to(axis)))
+
+
+def _perpendicular(axis: np.ndarray) -> np.ndarray:
+    """Two unit vectors across an axis and each other, (2, 3)."""
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    return np.stack((first, np.cross(axis, first)))
+
+
+def _turned_to(axis: np.ndarray) -> Quaternion:
+    """The rotation of z to a unit vector."""
+    x, y, z = (float(part) for part in axis)
+    if z < 0.0:  # a tread has no sides: the shorter way
+        x, y, z = -x, -y, -z
+    length = math.sqrt(2.0 * (1.0 + z))
+    return (-y / length, x / length, 0.0, length / 2.0)

@@ -34,6 +34,7 @@ log = logging.getLogger(__name__)
 Triangles = Mesh | Generated
 MeshPath = Callable[[Triangles, bool], str]  # of a mesh, or of its hull, to a file
 NO_LIMIT = 1e15  # limits at or beyond this mean none
+HULL_MARGIN = 1e-3  # m, by which the engine's hulls are larger than their corners (measured)
 
 
 class MeshFiles:
@@ -44,20 +45,29 @@ class MeshFiles:
         self._written = 0
 
     def __call__(self, mesh: Triangles, hull: bool) -> str:
-        """The file's path; with `hull` only the corners of the triangles count.
+        """The file's path; with `hull` only the corners of the triangles count, a margin inwards.
 
         The engine keeps every corner that it reads until the world ends, also of bodies that have
         gone; of a closed surface each comes six times.
         """
         vertices, faces = collision_mesh(mesh)
         if hull:
-            faces = _each_once(faces)
+            vertices, faces = _inset(vertices), _each_once(faces)
         lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in faces + 1]
         path = self._folder / f"mesh_{self._written}.obj"
         path.write_text("\n".join(lines) + "\n", encoding="ascii")
         self._written += 1
         return str(path)
+
+
+def _inset(vertices: np.ndarray) -> np.ndarray:
+    """Vertices (n, 3) of a hull that is, with the engine's margin around it, as large as this."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    part = np.divide(np.maximum(half - HULL_MARGIN, 0.0), half,
+                     out=np.zeros(3), where=half > 0.0)
+    return middle + part * (vertices - middle)
 
 
 def _each_once(faces: np.ndarray) -> np.ndarray:

@@ -36,7 +36,7 @@ class DiffDrivePlugin:
             p.number("wheelSeparation", 0.34), p.number("wheelDiameter", 0.15),
             p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0),
         )
-        driven = self._as_driven(p.label)
+        driven = self._as_driven(p.label, geometry)
         self._drive = DiffDrive(*driven, geometry)
         self._odometry_source = OdometrySource(host, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
@@ -59,7 +59,7 @@ class DiffDrivePlugin:
     def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
         return self._host.model.joint(left), self._host.model.joint(right)
 
-    def _as_driven(self, label: str) -> tuple[Joint, Joint]:
+    def _as_driven(self, label: str, geometry: DiffDriveParameters) -> tuple[Joint, Joint]:
         """The wheels as left and right of the law: swapped for files from before Melodic.
 
         Indigo to Lunar swapped them unless <legacyMode> was false, so files of that time call the
@@ -68,11 +68,13 @@ class DiffDrivePlugin:
         left, right = self._joints
         links = self._host.model.links
         if not self._host.parameters.flag("legacyMode", True) or not turns_backwards(
-                *((joint, links[joint.description.child].pose) for joint in self._joints)):
+                *((joint, links[joint.description.child].pose) for joint in self._joints),
+                geometry):
             return left, right
-        log.warning("%s: <leftJoint> %s is the right wheel: taken as written for Indigo to Lunar, "
-                    "whose <legacyMode> swapped the two; to turn as told by Melodic and Noetic say "
-                    "<legacyMode>false</legacyMode>", label, left.name)
+        log.warning("%s: <leftJoint> %s is the right wheel, seen where it drives to: taken as "
+                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; to turn as "
+                    "told by Melodic and Noetic say <legacyMode>false</legacyMode>",
+                    label, left.name)
         return right, left
 
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:

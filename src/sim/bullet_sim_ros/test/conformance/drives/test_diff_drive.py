@@ -210,6 +210,41 @@ def test_a_left_wheel_on_the_right_is_one_from_before_melodic(bench, robot, comm
     assert caplog.text.count("is the right wheel") == (1 if turn > 0 else 0)
 
 
+@pytest.mark.parametrize("tags, forward, turn", [
+    ({"wheelDiameter": -0.2}, -1, -1), ({"wheelSeparation": -0.4}, 1, -1)])
+@pytest.mark.parametrize("legacy", ["true", "false"])
+def test_negative_sizes_reverse_as_upstream(bench, robot, command, tags, forward, turn, legacy):
+    # conforms: libgazebo_ros_diff_drive.so/wheelSeparation
+    # conforms: libgazebo_ros_diff_drive.so/wheelDiameter
+    # conforms: libgazebo_ros_diff_drive.so/legacyMode
+    car = bench.spawn(robot(legacyMode=legacy, **tags))
+    bench.send("/cmd_vel", command(0.0, 0.5))
+    bench.run(1.0)
+    # Unless told otherwise, files that turn the wrong way are from before Melodic.
+    assert car.twist.angular[2] == pytest.approx(0.5 * (turn if legacy == "false" else 1), rel=0.05)
+    start = car.pose
+    bench.send("/cmd_vel", command(0.2))
+    bench.run(0.5)
+    assert (start.inverse() * car.pose).position[0] * forward == pytest.approx(0.1, rel=0.1)
+
+
+@pytest.mark.parametrize("tags", [{"wheelDiameter": 0}, {"wheelSeparation": 0}])
+def test_wheels_without_size_are_an_error(bench, robot, caplog, tags):
+    # conforms: libgazebo_ros_diff_drive.so/wheelSeparation
+    # conforms: libgazebo_ros_diff_drive.so/wheelDiameter
+    bench.spawn(robot(**tags))
+    assert "is not loaded: wheel diameter 0" in caplog.text
+    assert "must not be 0 m" in caplog.text
+
+
+def test_a_motor_of_negative_torque_is_none(bench, robot, command):
+    # conforms: libgazebo_ros_diff_drive.so/wheelTorque
+    car = bench.spawn(robot(wheelTorque=-5))
+    bench.send("/cmd_vel", command(0.3))
+    bench.run(0.5)
+    assert car.twist.linear == pytest.approx((0, 0, 0), abs=1e-3)
+
+
 @pytest.mark.parametrize("tags", [{}, {"legacyMode": "true"}, {"legacyMode": "false"}])
 def test_a_left_wheel_on_the_left_turns_as_in_noetic(bench, robot, command, caplog, tags):
     # conforms: libgazebo_ros_diff_drive.so/legacyMode

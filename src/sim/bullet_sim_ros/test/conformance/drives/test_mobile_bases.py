@@ -118,6 +118,16 @@ def test_skid_steering_torque_is_the_most_a_wheel_can_do(bench, skid, robots):
     assert 0.0 < car.twist.linear[0] < 0.04
 
 
+def test_skid_steering_with_negative_sizes_reverses_as_upstream(bench, skid, robots):
+    # conforms: libgazebo_ros_skid_steer_drive.so/wheelSeparation
+    # conforms: libgazebo_ros_skid_steer_drive.so/wheelDiameter
+    car = bench.spawn(skid(wheelDiameter=-0.2, wheelSeparation=-0.4, torque=20))
+    bench.send("/cmd_vel", robots.command(0.3, turn=0.5))
+    bench.run(0.5)
+    assert car.joints["left_front_joint"].velocity == pytest.approx(-4.0, rel=0.05)
+    assert car.joints["right_rear_joint"].velocity == pytest.approx(-2.0, rel=0.05)
+
+
 def test_skid_steering_stops_at_a_reset(bench, skid, robots):
     # conforms: libgazebo_ros_skid_steer_drive.so
     car = bench.spawn(skid())
