@@ -111,21 +111,53 @@ class Driving(unittest.TestCase):
         self.page.key(" ", False)
         self.page.key("w", False)
 
+    def press_finger(self, *path):
+        """Down, along the path, until it drives; again where a busy browser drew too slowly."""
+        def drives():
+            nonlocal path
+            start, *rest = path
+            path = path[-1:]  # where a finger drives at once, without a frame between
+            self.page.touch("touchStart", start)
+            for point in rest:
+                self.page.touch("touchMove", point)
+            try:
+                return wait_until(self.wheel.moving, "a finger that drives", 1.0)
+            except AssertionError:
+                self.page.touch("touchEnd")
+                return False
+        wait_until(drives, "a finger that drives")
+
     def test_a_finger_on_the_joystick_drives(self):
         box = self.page.evaluate("(({x, y, width}) => [x, y, width])("
                                  "document.querySelector('#joystick').getBoundingClientRect())")
         middle, top = (box[0] + box[2] / 2, box[1] + box[2] / 2), (box[0] + box[2] / 2, box[1] + 4)
-        self.page.touch("touchStart", middle)
-        self.page.touch("touchMove", top)
+        self.press_finger(middle, top)
         self.assert_stops(lambda: self.page.touch("touchEnd"), "the finger comes up")
         self.assertAlmostEqual(self.wheel.heard[-2][1], 0.2, delta=0.02)
-        self.page.touch("touchStart", top)
+        self.press_finger(top)
         self.assert_stops(lambda: self.page.touch("touchCancel"), "the touch is cancelled")
+        self.press_finger(top)
+        self.assert_stops(lambda: self.page.key(" ", True), "the space bar beside a finger")
+        self.page.key(" ", False)
+        self.page.touch("touchMove", middle)
+        self.page.touch("touchMove", top)
+        self.assertEqual("stopped", self.page.evaluate(
+            "document.querySelector('#drive-state').dataset.state"), "a finger that was stopped")
+        self.page.touch("touchEnd")
+
+    def test_space_presses_no_button_that_was_clicked_before(self):
+        self.page.evaluate("(() => { const button = document.querySelector('#reset');"
+                           "button.focus(); button.onclick = () => { window.pressed = true; };"
+                           "})()")
+        self.page.key(" ", True)
+        self.page.key(" ", False)
+        self.assertFalse(self.page.evaluate("Boolean(window.pressed)"))
+        self.page.evaluate("document.activeElement.blur()")
 
     def test_a_browser_that_draws_too_slowly_for_the_joystick_stops(self):
         x, y = self.page.evaluate("(({x, y, height}) => [x + 20, y + height / 2])("
                                   "document.querySelector('#joystick').getBoundingClientRect())")
-        self.page.touch("touchStart", (x, y))
+        self.press_finger((x, y))
         no_frames = "window.kept = requestAnimationFrame; window.requestAnimationFrame = () => 0"
         self.assert_stops(lambda: self.page.evaluate(no_frames), "no frames come")
         self.page.evaluate("window.requestAnimationFrame = window.kept")

@@ -159,7 +159,7 @@ def test_without_a_master_every_question_says_so(visit):
         async with http.ws_connect("/ws") as link:
             for op, args in (("drive_topics", {}), ("parameters", {}), ("services", {}),
                              ("image_topics", {}), ("drive_open", {}), ("pause", {}),
-                             ("watch", {"what": "bags"})):
+                             ("watch", {"what": "echo", "args": {"topic": "/scan"}})):
                 answer = await ask(link, op, **args)
                 assert "the ROS master does not answer" in answer["error"], op
     visit(story, control=True)

@@ -9,6 +9,7 @@ import { t } from "./language.js";
 export const title = t("Drive", "驾驶");
 
 const VIEWS = { "./scene.js": t("3D view", "三维视图"), "./images.js": t("camera", "相机") };
+const LOOK_AGAIN_MS = 2000; // for robots that come later
 const CAR = "ackermann_msgs/AckermannDriveStamped";
 const SPEED = { start: 0.2, most: 2 }; // m/s
 const TURN = { start: 1, most: 3 }; // rad/s
@@ -60,22 +61,31 @@ function viewChoice(place, link) {
   return select;
 }
 
-/** A select of the topics that robots listen to; `open(topic)` is called for the one chosen. */
+/** A select of the topics that robots listen to; `open(topic, type)` for the one that is chosen. */
 function topicChoice(link, open) {
-  const select = element("select", { id: "drive-topic", onchange: () => open(select.value) });
+  const types = new Map();
+  const choose = () => open(select.value, types.get(select.value));
+  const select = element("select", { id: "drive-topic", onchange: choose });
+  let shown = "";
   const fill = async () => {
-    const topics = await link.call("drive_topics");
-    const chosen = select.value || "/cmd_vel";
-    select.replaceChildren(...topics.map(({ topic }) =>
+    if (document.hidden) return;
+    const found = await link.call("drive_topics");
+    found.forEach(({ topic, type }) => types.set(topic, type));
+    const before = select.value;
+    // A robot that is gone for a moment is not exchanged for another under somebody's fingers.
+    const gone = before && !found.some(({ topic }) => topic === before);
+    const topics = [...(gone ? [before] : []), ...found.map(({ topic }) => topic)];
+    if (String(topics) === shown) return;
+    shown = String(topics);
+    const chosen = before || "/cmd_vel";
+    select.replaceChildren(...topics.map((topic) =>
       element("option", { value: topic, text: topic, selected: topic === chosen })));
-    if (select.value) open(select.value);
-    return topics.length;
+    if (select.value !== before) choose();
   };
-  const retry = setInterval(async () => { // until there is a robot
-    if (await fill().catch(() => 0)) clearInterval(retry);
-  }, 2000);
-  endings.push(() => clearInterval(retry));
-  fill().then((count) => count && clearInterval(retry), () => {});
+  const look = () => fill().catch(() => {}); // again, when the server is back
+  const timer = setInterval(look, LOOK_AGAIN_MS);
+  endings.push(() => clearInterval(timer));
+  look();
   return select;
 }
 
@@ -105,16 +115,16 @@ function controls(panel, link) {
         : t("Hold W A S D or the arrow keys, or the joystick. Space stops.",
           "按住 W A S D、方向键或摇杆行驶，空格键停止。");
   };
-  const open = async (name) => {
+  const open = async (name, type) => {
     handle.drop("closed");
+    topic = name; // at once: a key that is pressed now is meant for the robot that is shown
+    car = type === CAR;
+    turn.label.hidden = car;
+    steer.label.hidden = !car;
     try {
-      const opened = await link.call("drive_open", { topic: name });
-      topic = opened.topic;
-      car = opened.type === CAR;
-      turn.label.hidden = car;
-      steer.label.hidden = !car;
+      await link.call("drive_open", { topic });
     } catch (error) {
-      say("stopped", error.message);
+      if (topic === name) say("stopped", error.message);
     }
   };
   const handle = new Handle(link, (forward, side) => ({

@@ -15,7 +15,8 @@ export function connected() {
   return socket !== null && socket.readyState === WebSocket.OPEN;
 }
 
-/** Have `listener(connected)` called now and at each change. */
+/** Have `listener(connected, reason)` called now and at each change; the reason is the server's,
+ * if it refuses this page. */
 export function onConnection(listener) {
   listeners.add(listener);
   listener(connected());
@@ -108,9 +109,18 @@ function connect() {
     byNumber.clear();
     early.clear();
     watches.forEach((one) => (one.number = null));
-    listeners.forEach((listener) => listener(false));
+    tellLost();
     setTimeout(connect, RETRY_MS);
   };
+}
+
+/** A browser does not say why a connection was refused; the page itself would be told. */
+async function tellLost() {
+  listeners.forEach((listener) => listener(false, ""));
+  const answer = await fetch(location.href, { cache: "no-store" }).catch(() => null);
+  if (answer?.status !== 403 || connected()) return;
+  const reason = (await answer.text()).trim();
+  listeners.forEach((listener) => listener(false, reason));
 }
 
 connect();

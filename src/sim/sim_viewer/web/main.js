@@ -61,9 +61,14 @@ function wireFrame() {
 
 /** Resolves when the server has said whether this page may change anything. */
 function untilConnected() {
+  let known = false;
   return new Promise((resolve) => onConnection(async (there) => {
-    if (!there) return;
-    link.control = (await call("about")).control;
+    const about = there && await call("about").catch(() => null);
+    if (!about) return;
+    // Started anew, with control:=true now or without it: what is shown was made for the other.
+    if (known && about.control !== link.control) location.reload();
+    link.control = about.control;
+    known = true;
     resolve();
   }));
 }

@@ -5,9 +5,12 @@ import { t } from "./language.js";
 
 const FACTOR_DIGITS = 2;
 
-function clock(time) {
-  const minutes = Math.floor(time / 60);
-  return `${minutes}:${(time % 60).toFixed(1).padStart(4, "0")}`;
+/** `digits` behind the point: while time stands, a step of 1 ms is to be seen. */
+function clock(time, digits) {
+  const scale = 10 ** digits;
+  const whole = Math.round(time * scale) / scale; // or 59.96 s would be 0:60.0
+  const minutes = Math.floor(whole / 60);
+  return `${minutes}:${(whole - 60 * minutes).toFixed(digits).padStart(digits + 3, "0")}`;
 }
 
 /** Fill `bar`; it follows the watch `status` as long as the page is open. */
@@ -24,9 +27,9 @@ export function simulationBar(bar, link) {
   };
   const ask = (op, args) => link.call(op, args).then(() => say(""),
     (error) => say(t("failed", "失败"), error.message));
-  link.onConnection((there) => {
+  link.onConnection((there, reason) => {
     lost = false;
-    say(there ? "" : t("the server is gone", "服务器已断开"));
+    say(there ? "" : reason || t("the server is gone", "服务器已断开"));
   });
   const button = (id, text, title, onclick) => element("button", { id, text, title, onclick });
   const pause = button("pause", "❚❚", t("pause", "暂停"), () => ask("pause", { paused: !paused }));
@@ -39,7 +42,7 @@ export function simulationBar(bar, link) {
       lost = Boolean(status.error);
       say(lost ? t("no ROS master", "没有 ROS master") : "", status.error);
     }
-    time.textContent = status.time == null ? "" : clock(status.time);
+    time.textContent = status.time == null ? "" : clock(status.time, status.paused ? 3 : 1);
     factor.textContent = status.factor == null ? "" : `× ${status.factor.toFixed(FACTOR_DIGITS)}`;
     paused = Boolean(status.paused);
     pause.textContent = paused ? "▶" : "❚❚";

@@ -24,6 +24,7 @@ class Options:
     control: bool = False
     token: str = ""  # empty: nobody is asked for one
     hosts: tuple[str, ...] = ()  # further names by which browsers reach this machine
+    bags: str = ""  # folder of what is recorded; empty: ~/bags
     open: bool = False
 
     @property
@@ -46,6 +47,7 @@ def read_options() -> Options:
         token=str(rospy.get_param("~token", "")),
         hosts=tuple(name.strip().lower() for name in _read("hosts", str, "").split(",")
                     if name.strip()),
+        bags=str(rospy.get_param("~bags", "")).strip(),
         open=_read("open", bool, Options.open),
     )
     if options.port not in PORTS:

@@ -44,7 +44,8 @@ def restart(options: Options, port: int) -> None:
 def parameter_words(options: Options) -> list[str]:
     """The options as words of a command line, `_port:=8080`."""
     values = {"port": options.port, "address": options.address, "control": options.control,
-              "token": options.token, "hosts": ",".join(options.hosts), "open": options.open}
+              "token": options.token, "hosts": ",".join(options.hosts), "bags": options.bags,
+              "open": options.open}
     return [f"_{name}:={json.dumps(value)}" for name, value in values.items()]
 
 

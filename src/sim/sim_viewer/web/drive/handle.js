@@ -15,16 +15,22 @@ export class Handle {
     this.command = command;
     this.onState = onState; // (state, reason): "idle", "driving" or "stopped"
     this.held = new Map(); // what is held -> [forward, turn]
+    this.dropped = new Set(); // what is held still, but counts no more
     this.timer = null;
     this.unanswered = 0;
     this.lastFrame = 0;
     this.lastTick = 0;
   }
 
+  get holding() {
+    return this.timer !== null;
+  }
+
   /** Something is held: the keys, or the joystick. */
   hold(source, forward, turn) {
+    if (this.dropped.has(source)) return;
     this.held.set(source, [forward, turn]);
-    if (this.timer !== null) return;
+    if (this.holding) return;
     this.timer = setInterval(() => this.tick(), PERIOD_MS);
     this.lastTick = performance.now();
     this.watchFrames(this.lastTick);
@@ -34,13 +40,16 @@ export class Handle {
 
   /** It was let go. */
   letGo(source) {
+    this.dropped.delete(source);
     if (this.held.delete(source) && this.held.size === 0) this.stop("idle");
   }
 
-  /** Whatever is held does not count any more, until it is let go and held again. */
-  drop(reason) {
+  /** Whatever is held does not count any more, until it is let go and held again; with
+   * `untilNews` only until something is heard of it. */
+  drop(reason, untilNews = false) {
+    if (!untilNews) this.held.forEach((_, source) => this.dropped.add(source));
     this.held.clear();
-    if (this.timer !== null) this.stop("stopped", reason);
+    if (this.holding) this.stop("stopped", reason);
   }
 
   stop(state, reason) {
@@ -52,7 +61,7 @@ export class Handle {
 
   watchFrames(now) {
     this.lastFrame = now;
-    if (this.timer !== null) requestAnimationFrame((next) => this.watchFrames(next));
+    if (this.holding) requestAnimationFrame((next) => this.watchFrames(next));
   }
 
   tick() {
@@ -62,7 +71,7 @@ export class Handle {
     if (gap > HUNG_MS) {
       this.drop("hung"); // the key may be up since then
     } else if (this.held.has("joystick") && now - this.lastFrame > LATE_MS) {
-      this.drop("slow"); // the finger may be
+      this.drop("slow", true); // the finger may be; if it moves, it is not
     } else {
       this.send();
     }

@@ -22,11 +22,12 @@ export function listenToKeys(handle) {
   const drop = (reason) => {
     down.clear();
     handle.drop(reason);
+    handle.letGo("keys"); // those that are down send no more keydown that would count
   };
 
   listen(window, "keydown", (event) => {
-    if (event.code === "Space" && down.size > 0) {
-      event.preventDefault();
+    if (event.code === "Space" && (handle.holding || !isForm(event.target))) {
+      event.preventDefault(); // or it would press the button that was clicked last, such as reset
       return drop("space");
     }
     if (!(event.code in DIRECTIONS) || isForm(event.target)) return;

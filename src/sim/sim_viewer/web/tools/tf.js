@@ -10,7 +10,9 @@ export const title = t("TF", "坐标");
 const OLD = 1.0; // s; most frames come at least ten times a second
 let stop = null;
 
-const three = (values, digits) => values.map((value) => value.toFixed(digits)).join(", ");
+// What is no number comes as null.
+const three = (values, digits) =>
+  values.map((value) => value?.toFixed(digits) ?? "NaN").join(", ");
 
 function problemText(row) {
   if (row.problem === "loop") return t("a loop: no root above", "成环：上方没有根");

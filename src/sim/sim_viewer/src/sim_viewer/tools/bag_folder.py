@@ -8,20 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import rosbag
-import rospy
 
 from sim_viewer.registry import Refused
-from sim_viewer.tools import names
-from sim_viewer.tools.master import asked
 
 DEFAULT_FOLDER = "~/bags"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,79}")
 MOST_LISTED = 500
 
 
-def read_folder() -> Path:
-    """Where bags are, from the node's parameter; made when the first is recorded."""
-    wanted = str(asked(lambda: rospy.get_param(names.BAG_FOLDER, ""))).strip()
+def bag_folder(wanted: str) -> Path:
+    """Where bags are, by the option of that name; made when the first is recorded."""
     return Path(wanted or DEFAULT_FOLDER).expanduser().resolve()
 
 

@@ -15,7 +15,7 @@ import rosgraph
 from roslib.packages import find_node
 
 from sim_viewer.registry import Refused, operation, watchable
-from sim_viewer.tools.bag_folder import contents, existing_bag, listing, new_bag, read_folder
+from sim_viewer.tools.bag_folder import bag_folder, contents, existing_bag, listing, new_bag
 from sim_viewer.tools.paced import Changes, Paced
 
 LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
@@ -75,8 +75,8 @@ class Child:
 class Bags:
     """At most one recording and one playback, shared by all pages."""
 
-    def __init__(self, node: Any = None):
-        self.folder = read_folder()
+    def __init__(self, node: Any):
+        self.folder = bag_folder(node.options.bags)
         self._lock = threading.Lock()  # of the two below
         self._recording: Child | None = None
         self._playing: Child | None = None

@@ -15,5 +15,3 @@ RESET_WORLD = "/reset_world"
 RESET_SIMULATION = "/reset_simulation"
 PHYSICS = "/get_physics_properties"
 WORLD = "/get_world_properties"
-
-BAG_FOLDER = "~bags"
