@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import signal
 import sys
@@ -17,6 +18,9 @@ import rospy
 from geometry_msgs.msg import Twist, TwistStamped
 
 CTRL_C = "\x03"
+# One key: what function keys and arrows send (F1 is ESC O P, of which O alone would drive), or a
+# character.
+KEY = re.compile(r"\x1b[\[O]?[0-9;]*.?|.", re.DOTALL)
 LOOK_UP = 0.1  # s, how often the end of ROS is looked for while no key comes
 FLUSH_TIME = 0.2  # s, rospy sends from threads of its own that end with the process
 SPEED_KEYS_PER_HELP = 15
@@ -133,36 +137,46 @@ def single_keys(terminal: int):
             termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
-def read_key(terminal: int, wait: float) -> str:
-    """The next key, or "" when none came in time; a terminal that is gone counts as Ctrl-C."""
+def read_keys(terminal: int, wait: float) -> list[str]:
+    """What was typed, none when nothing came in time; a terminal that is gone counts as Ctrl-C."""
     if not select.select([terminal], [], [], wait)[0]:
-        return ""
+        return []
     try:
-        return os.read(terminal, 1).decode(errors="replace") or CTRL_C
+        typed = os.read(terminal, 1024).decode(errors="replace")
     except OSError:
-        return CTRL_C
+        typed = ""
+    return KEY.findall(typed) or [CTRL_C]
 
 
 def drive_by_keys(terminal: int, topic: CommandTopic, drive: Drive) -> None:
     """Until Ctrl-C or the end of ROS. A rate or timeout of 0 means none, as upstream's."""
-    repeat_rate = rospy.get_param("~repeat_rate", 0.0)  # Hz
-    key_timeout = rospy.get_param("~key_timeout", 0.0)  # s
-    period = 1.0 / repeat_rate if repeat_rate > 0 else float("inf")
+    repeat_rate, key_timeout = read_number("repeat_rate", 0.0), read_number("key_timeout", 0.0)
+    period = 1.0 / repeat_rate if repeat_rate > 0 else float("inf")  # s
     last_key = last_sent = time.monotonic()
     while not rospy.is_shutdown():
-        key = read_key(terminal, max(0.0, min(LOOK_UP, last_sent + period - time.monotonic())))
+        keys = read_keys(terminal, max(0.0, min(LOOK_UP, last_sent + period - time.monotonic())))
         now = time.monotonic()
-        if key == CTRL_C:
+        if CTRL_C in keys:
             return
         forgotten = key_timeout > 0 and now - last_key >= key_timeout and drive.move != STANDING
-        if key:
-            last_key = now
+        for key in keys:
             say(*drive.press(key))
-        elif forgotten:
+            topic.send(drive)
+            last_key = last_sent = now
+        if not keys and forgotten:
             drive.move = STANDING
-        if key or forgotten or now - last_sent >= period:
+        if not keys and (forgotten or now - last_sent >= period):
             topic.send(drive)
             last_sent = now
+
+
+def read_number(name: str, default: float) -> float:
+    """A private parameter, Hz, s, m/s or rad/s; ends the node with a line where it is none."""
+    value = rospy.get_param(f"~{name}", default)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        sys.exit(f"teleop_twist_keyboard: {name} is {value!r}, which is no number; "
+                 f"type _{name}:={default}")
+    return value
 
 
 def say(*lines: str) -> None:
@@ -181,8 +195,8 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, stop)
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
-    drive = Drive(rospy.get_param("~speed", 0.5), rospy.get_param("~turn", 1.0),
-                  rospy.get_param("~speed_limit", 1000.0), rospy.get_param("~turn_limit", 1000.0))
+    drive = Drive(read_number("speed", 0.5), read_number("turn", 1.0),
+                  read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))
     topic = CommandTopic()
     terminal = sys.stdin.fileno()
     try:

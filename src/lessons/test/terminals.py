@@ -10,12 +10,27 @@ import select
 import signal
 import socket
 import subprocess
+import sys
 import termios
 import time
 from pathlib import Path
 
 LIMIT = 40.0  # s, for whatever is waited for
 IMPATIENCE = 4.0  # s until Ctrl-C is typed again
+# A terminal's shell stays when a command has ended, and with it what the command has left behind:
+# without it Linux hangs up on that. `rosbag record` ends before its recorder has closed the bag.
+SHELL = """
+import ctypes, os, signal, subprocess, sys
+PR_SET_CHILD_SUBREAPER = 36
+ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # what is left behind is its child
+signal.signal(signal.SIGINT, lambda *_: None)
+code = subprocess.call(["bash", "-c", sys.argv[1]])
+try:
+    while True:
+        os.wait()
+except ChildProcessError:
+    sys.exit(code if code >= 0 else 128 - code)
+"""
 COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\]2;[^\x07]*\x07|\r")
 
 
@@ -36,9 +51,9 @@ class Terminal:
     def __init__(self, command: str, folder: Path, environment: dict[str, str]):
         self.command, self.shown = command, ""
         self._keyboard, screen = pty.openpty()
-        self._process = subprocess.Popen(["bash", "-c", command], cwd=folder, env=environment,
-                                         stdin=screen, stdout=screen, stderr=screen,
-                                         start_new_session=True, preexec_fn=_take_terminal)
+        self._process = subprocess.Popen(
+            [sys.executable, "-ISc", SHELL, command], cwd=folder, env=environment, stdin=screen,
+            stdout=screen, stderr=screen, start_new_session=True, preexec_fn=_take_terminal)
         os.close(screen)
 
     def type(self, keys: str) -> None:
@@ -79,7 +94,7 @@ class Terminal:
         return f"`{self.command}` ended with {self._process.poll()}:\n{self.shown[-3000:]}"
 
     def _lives(self) -> bool:
-        """The command, or what it has started: `rosbag record` ends before its recorder does."""
+        """The command, or what it has started."""
         self._process.poll()
         try:
             os.killpg(self._process.pid, 0)

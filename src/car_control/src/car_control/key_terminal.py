@@ -49,13 +49,14 @@ def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) ->
     with single_keys(terminal):
         while True:
             text = _typed(terminal)
-            for key in keys_in(text or ""):
+            typed = keys_in(text or "")
+            for key in typed:
                 if key in DRIVING_KEYS:
                     keys.press(key, time.monotonic())
                 elif key == STOP_KEY:
                     keys.release_all()
             status = turn(keys.held(time.monotonic()))
-            if status is None or text is None or QUIT_KEY in text.lower():
+            if status is None or text is None or QUIT_KEY in typed:
                 break
             if status != shown:
                 shown = status

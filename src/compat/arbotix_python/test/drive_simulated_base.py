@@ -77,8 +77,12 @@ class SimulatedBase(unittest.TestCase):
     def test_what_it_cannot_do_is_one_line(self):
         self.assertIn("set the node's parameter sim to true", self.refusal())
         self.assertIn("no controllers", self.refusal("_sim:=true"))
+        self.assertIn("no controllers", self.refusal("_sim:=true", "_controllers:=5"))
         wrong = "_controllers:={base: {type: omni_controller}}"
         self.assertIn("only diff_controller", self.refusal("_sim:=true", wrong))
+        right = "_controllers:={base: {type: diff_controller, base_width: 0.2, ticks_meter: 2000}}"
+        said = self.refusal("_sim:=true", right, "_read_rate:=0")
+        self.assertIn("read_rate is 0: it must be a number above 0", said)
 
 
 if __name__ == "__main__":

@@ -63,6 +63,11 @@ def test_what_cannot_be_is_named(change, said):
         read_settings("base_controller", {**TUTORIAL, **change})
 
 
+def test_a_controller_that_is_no_table_is_named():
+    with pytest.raises(SettingsError, match="controller base is 'diff': it must be a table"):
+        read_settings("base", "diff")
+
+
 def test_what_is_missing_is_named():
     with pytest.raises(SettingsError, match="base_controller has no base_width and no ticks_meter"):
         read_settings("base_controller", {"type": "diff_controller"})

@@ -97,6 +97,12 @@ class Keyboard(unittest.TestCase):
         }.items():
             x, y, z, turning = move
             self.press(key, 0.5 * x, 0.5 * y, 0.5 * z, 1.0 * turning)
+        # An arrow, F1, 5 of the keypad, F5, Alt and I.
+        for key in ("\x1b[A", "\x1bOP", "\x1bOu", "\x1b[15~", "\x1bi"):
+            self.press("i", 0.5, 0, 0, 0)
+            before = len(self.sent)
+            self.press(key, 0, 0, 0, 0)
+            self.assertEqual(len(self.sent), before + 1, f"one message for {key!r}")
         self.press("i", 0.5, 0, 0, 0)
         self.type("\x03")
         self.assert_ended_standing()
@@ -138,6 +144,15 @@ class Keyboard(unittest.TestCase):
         self.wait_until_shown("Waiting for subscriber to connect to /cmd_vel")
         self.type("\x03")
         self.assertEqual(self.node.wait(LIMIT), 0)
+
+    def test_a_speed_that_is_no_number_one_line(self):
+        self.subscriber = rospy.Subscriber("/elsewhere", Twist, self.keep)
+        self.node = subprocess.Popen((*NODE, "_speed:=fast"), stdin=self.terminal,
+                                     stdout=self.terminal, stderr=subprocess.PIPE, text=True,
+                                     start_new_session=True)
+        _, said = self.node.communicate(timeout=LIMIT)
+        self.assertEqual((self.node.returncode, len(said.splitlines())), (1, 1), said)
+        self.assertIn("_speed:=0.5", said)
 
     def test_without_terminal_one_line_and_exit_code_1(self):
         self.subscriber = rospy.Subscriber("/elsewhere", Twist, self.keep)

@@ -36,4 +36,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (rospy.ROSInitException, rospy.ROSInterruptException):
+        pass  # Ctrl-C while waiting, for a master too

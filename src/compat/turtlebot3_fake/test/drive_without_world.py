@@ -71,8 +71,9 @@ class DriveWithoutWorld(unittest.TestCase):
         self.drive(0.0, 1.0, lambda o: o.twist.twist.angular.z > 0.99, "motion")
         state = rospy.wait_for_message("/joint_states", JointState, LIMIT)
         self.assertEqual(state.name, ["wheel_left_joint", "wheel_right_joint"])
-        self.assertAlmostEqual(state.velocity[1], 0.080 / 0.033)  # a burger's: half of 0.160 m
-        self.assertAlmostEqual(state.velocity[0], -0.080 / 0.033)
+        # A waffle's, half of 0.287 m; without the parameter it would be a burger.
+        self.assertAlmostEqual(state.velocity[1], 0.1435 / 0.033)
+        self.assertAlmostEqual(state.velocity[0], -0.1435 / 0.033)
         buffer = tf2_ros.Buffer()
         listener = tf2_ros.TransformListener(buffer)
         found = buffer.lookup_transform("odom", "wheel_left_link", rospy.Time(0),

@@ -28,6 +28,9 @@ class BaseSettings:
 
 def read_settings(name: str, given: dict) -> BaseSettings:
     """From the parameters of controller `name`; SettingsError where they make no base."""
+    if not isinstance(given, dict):
+        raise SettingsError(f"controller {name} is {given!r:.40}: "
+                            f"it must be a table that begins with type: {CONTROLLER_TYPE}")
     if given.get("type") != CONTROLLER_TYPE:
         raise SettingsError(f"controller {name} is of type {given.get('type')}: "
                             f"only {CONTROLLER_TYPE} is simulated")
@@ -37,7 +40,7 @@ def read_settings(name: str, given: dict) -> BaseSettings:
     numbers = {}
     for key in ("rate", "timeout", "base_width", "wheel_radius"):
         if key in given:
-            numbers[key] = positive(name, key, given[key])
+            numbers[key] = positive(f"controller {name}: {key}", given[key])
     frames = {key: str(given[key]).lstrip("/") for key in ("base_frame_id", "odom_frame_id")
               if key in given}
     joints = given.get("joint_names", UPSTREAM_JOINTS)
@@ -47,13 +50,14 @@ def read_settings(name: str, given: dict) -> BaseSettings:
     return BaseSettings(**numbers, **frames, joint_names=tuple(map(str, joints)))
 
 
-def positive(name: str, key: str, value: object) -> float:
+def positive(what: str, value: object) -> float:
+    """`value` as a number; SettingsError says what is none."""
     try:
         number = float(value)
     except (TypeError, ValueError):
         number = math.nan
     if not (number > 0 and math.isfinite(number)):
-        raise SettingsError(f"controller {name}: {key} is {value}: it must be a number above 0")
+        raise SettingsError(f"{what} is {value}: it must be a number above 0")
     return number
 
 
