@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import functools
 import os
-import sys
-from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
+from conformance_hide_files import hide, put_in_place_of
 from gazebo_msgs.msg import LinkStates, ModelStates, PerformanceMetrics
 
 import bullet_sim.formats  # its modules have to be there to be changed
@@ -25,6 +24,8 @@ def pytest_configure() -> None:
     """Before any test is read."""
     name = os.environ["CONFORMANCE_HIDE"]
     row, _, tag = name.rpartition("/")
+    if hide(name):
+        return
     if ".so" in name:
         _hide_plugin(row or name, tag if row else "")
     elif name.count("/") > 2 and name.startswith("/gazebo/"):
@@ -79,7 +80,7 @@ def _hide_field(name: str, field: str) -> None:
 
         original(mailbox, name, kind, without if name == service else handler)
 
-    _put_in_place_of(original, offer)
+    put_in_place_of(original, offer)
 
 
 def _reset(message, field: str) -> None:
@@ -95,13 +96,6 @@ def _reset(message, field: str) -> None:
         return
     for name in slots[slots.index(first):slots.index(last or first) + 1]:
         setattr(message, name, getattr(type(message)(), name))
-
-
-def _put_in_place_of(original: Callable, other: Callable) -> None:
-    """In every module that has it by this name."""
-    for module in list(sys.modules.values()):
-        if getattr(module, original.__name__, None) is original:
-            setattr(module, original.__name__, other)
 
 
 def _hide_element(name: str) -> None:
@@ -135,4 +129,4 @@ def _hide_element(name: str) -> None:
             strip(root, ())
             return root
 
-        _put_in_place_of(original, stripped)
+        put_in_place_of(original, stripped)

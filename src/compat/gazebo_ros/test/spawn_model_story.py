@@ -84,6 +84,7 @@ class SpawnModelStory(unittest.TestCase):
     def test_sdf_from_stdin_and_from_the_model_path(self):
         # conforms: spawn_model/-sdf, spawn_model/-stdin, spawn_model/-database
         # conforms: spawn_model/-reference_frame, spawn_model/-robot_namespace
+        # conforms: spawn_model/log lines
         # conforms: gazebo_ros.gazebo_interface/spawn_sdf_model_client
         code, said = self.run_to_end("-sdf", "-stdin", "-model", "box", text="<sdf/>")
         self.assertEqual((code, self.gazebo.names()), (0, ["spawn_sdf_model"]))
@@ -137,7 +138,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((code, said), (1, "Error: -J wheel up: up is not a number\n"))
 
     def test_joints_then_unpause(self):
-        # conforms: spawn_model/-J, spawn_model/-unpause
+        # conforms: spawn_model/-J, spawn_model/-unpause, spawn_model/log lines
         # conforms: gazebo_ros.gazebo_interface/set_model_configuration_client
         code, said = self.run_to_end(*PLAIN, "-unpause", "-J", "left", "0.5", "-J", "right", "-1")
         self.assertEqual((code, self.gazebo.names()),
@@ -165,7 +166,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertIn("Unpause physics service call failed: ", said)
 
     def test_wait_for_another_model(self):
-        # conforms: spawn_model/-wait
+        # conforms: spawn_model/-wait, spawn_model/log lines
         process = self.start(*PLAIN, "-wait", "table")
         until(self.gazebo.states.get_num_connections, "the subscription to model_states")
         self.gazebo.states.publish(ModelStates(name=["ground_plane"]))
@@ -192,6 +193,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((process.returncode, late.names()), (0, ["spawn_urdf_model"]), said)
 
     def test_stopped_before_there_is_a_simulator(self):
+        # conforms: spawn_model/exit codes
         process = self.start_before_the_simulator("/never")
         process.send_signal(signal.SIGINT)
         said, _ = process.communicate(timeout=LIMIT)
@@ -207,7 +209,7 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((process.returncode, self.gazebo.names()), (0, []))
 
     def test_bond_deletes_at_the_end(self):
-        # conforms: spawn_model/-b
+        # conforms: spawn_model/-b, spawn_model/log lines
         process = self.start(*PLAIN, "-b")
         line = next(line for line in process.stdout if "Waiting for shutdown" in line)
         self.assertIn("Waiting for shutdown to delete model car", line)

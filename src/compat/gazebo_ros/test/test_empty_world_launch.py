@@ -67,6 +67,7 @@ def test_plain_start():
 def test_the_servers_command_line(arguments, words):
     # conforms: empty_world.launch/paused, empty_world.launch/verbose, empty_world.launch/physics
     # conforms: empty_world.launch/world_name, empty_world.launch/extra_gazebo_args
+    # conforms: empty_world.launch/real_time_factor, empty_world.launch/seed
     assert command(*arguments) == words
 
 

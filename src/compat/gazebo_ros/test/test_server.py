@@ -17,7 +17,8 @@ def stop(*_):
     os.write(1, b"stopped\\n")  # print may be at work below the handler
     os._exit(3)
 signal.signal(signal.SIGINT, stop)
-print(os.getpid(), sys.flags.dev_mode, sys.flags.safe_path, *sys.argv[1:], flush=True)
+profiled = sys.getprofile() is not None
+print(os.getpid(), sys.flags.dev_mode, profiled, sys.flags.safe_path, *sys.argv[1:], flush=True)
 time.sleep(60)
 """
 PLAIN = ["--world", "worlds/empty.world", "--physics", "ode"]
@@ -29,6 +30,7 @@ PLAIN = ["--world", "worlds/empty.world", "--physics", "ode"]
     (["-u", "-r", "--verbose", "-e", "ode"], [*PLAIN, "--paused", "--verbose"]),
     (["--seed", "-4", "--iters", "5", "--initial_sim_time", "2.5"],
      [*PLAIN, "--seed=-4", "--iters=5", "--initial-sim-time=2.5"]),
+    (["--real_time_factor", "0"], [*PLAIN, "--real-time-factor=0"]),
     (["__name:=gazebo", "x.world", "/scan:=/s"],
      ["--world", "x.world", "--physics", "ode", "__name:=gazebo", "/scan:=/s"]),
     (["-s", "libgazebo_ros_api_plugin.so", "-p", "log", "-o", "fast", "-g", "lib.so", "--lockstep",
@@ -39,7 +41,8 @@ PLAIN = ["--world", "worlds/empty.world", "--physics", "ode"]
 ])
 def test_gazebos_options_become_the_nodes(words, expected):
     # conforms: gzserver, gzserver/WORLD, gzserver/-u, gzserver/--verbose, gzserver/-e
-    # conforms: gzserver/remappings, gzserver/unknown options
+    # conforms: gzserver/remappings, gzserver/unknown options, gzserver/--seed, gzserver/--iters
+    # conforms: gzserver/--initial_sim_time, gzserver/--real_time_factor
     assert node_arguments("gzserver", words) == expected
 
 
@@ -67,14 +70,14 @@ def start(tmp_path):
         process.communicate()
 
 
-@pytest.mark.parametrize(("name", "dev"), [
-    ("gzserver", "False"), ("debug", "True"), ("perf", "False")])
-def test_the_script_becomes_the_node(start, name, dev):
-    # conforms: perf, debug
+@pytest.mark.parametrize(("name", "dev", "profiled"), [
+    ("gzserver", "False", "False"), ("debug", "True", "False"), ("perf", "False", "True")])
+def test_the_script_becomes_the_node(start, name, dev, profiled):
+    # conforms: gzserver, perf, debug
     process = start(name, "-u", "a.world", "__name:=gazebo")
     assert process.stdout.readline().split() == [
-        str(process.pid), dev, "True", "--world", "a.world", "--physics", "ode", "--paused",
-        "__name:=gazebo"]
+        str(process.pid), dev, profiled, "True", "--world", "a.world", "--physics", "ode",
+        "--paused", "__name:=gazebo"]
     process.send_signal(signal.SIGINT)
     assert process.stdout.readline() == "stopped\n" and process.wait(10) == 3
 

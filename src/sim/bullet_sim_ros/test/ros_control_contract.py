@@ -127,6 +127,7 @@ class RosControl(unittest.TestCase):
         self.assertEqual(self.manager.list(), [])
 
     def test_one_joint_is_claimed_by_one_controller(self):
+        # conforms: controller_manager services/reload_controller_libraries
         manager = self.manager
         self.start("left_velocity")
         manager.load("left_effort", "both_efforts")

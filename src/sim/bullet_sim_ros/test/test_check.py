@@ -263,6 +263,26 @@ def test_launch_files_that_need_arguments(package, capsys):
     assert main([f"{folder}/part.launch", "world:=w", "model:=m"]) == 0
 
 
+def test_an_argument_without_a_name_is_roslaunchs_to_complain_of(check):
+    code, said = check("a.launch", "<launch><arg/></launch>")
+    assert code == 1 and "PROBLEM       launch file: Invalid <arg> tag: 'name'" in said
+
+
+@pytest.mark.parametrize("name", ["/b.launch", "sub/a.launch", "*.launch"])
+def test_a_launch_file_that_a_package_does_not_have(package, capsys, name):
+    assert main([package(a__launch="<launch/>"), name]) == 1
+    assert "not there; there are: a.launch" in capsys.readouterr().out
+
+
+def test_arguments_in_quotation_marks(check, tmp_path):
+    (tmp_path / "my robot.urdf").write_text(ROBOT)
+    node = ('<launch><node pkg="gazebo_ros" type="spawn_model" name="s" '
+            'args="-urdf -file \'{}/my robot.urdf\' -model r{}"/></launch>')
+    code, said = check("a.launch", node.format(tmp_path, ""))
+    assert code == 0 and "my robot.urdf\n  works         model" in said
+    assert "works         node gazebo_ros/spawn_model" in check("a.launch", node.format("", "'"))[1]
+
+
 def test_commands_run_once_and_files_are_read_once(check, tmp_path):
     runs = tmp_path / "runs"
     again = f'<param name="{{}}" command="bash -c \'echo x >> {runs}; echo made\'"/>'

@@ -1,11 +1,18 @@
 """Contacts become balls and arrows, and go away again."""
 
+import runpy
+from pathlib import Path
+
 import pytest
+import rospy
 from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 from visualization_msgs.msg import Marker
 
+from bullet_sim_ros.check.stand_ins import without_master
 from bullet_sim_ros.contact_markers import LONGEST, to_markers
+
+PROGRAM = Path(__file__).resolve().parents[1] / "scripts/contact_markers"
 
 
 def contacts(*forces):
@@ -37,3 +44,18 @@ def test_ids_are_unique_and_no_contact_leaves_nothing():
     ids = [marker.id for marker in to_markers(contacts(1.0, 2.0), "b").markers]
     assert len(set(ids)) == 4
     assert to_markers(contacts(), "b").markers == []
+
+
+@pytest.mark.parametrize("words, topics", [([], ["/bumper_states"]), (["/a", "b"], ["/a", "/b"])])
+def test_the_program_listens_to_the_topics_it_is_told(monkeypatch, words, topics):
+    # conforms: contact_markers, contact_markers/TOPIC
+    monkeypatch.setattr("sys.argv", ["contact_markers", *words])
+    monkeypatch.setattr(rospy, "init_node", lambda _name, anonymous: None)
+    monkeypatch.setattr(rospy, "spin", lambda: None)
+    with without_master() as graph:
+        runpy.run_path(str(PROGRAM), run_name="__main__")
+        for topic in topics:
+            for subscriber in graph.topics[topic].subscribers:
+                subscriber.take(contacts(5.0))
+        shown = [message.markers[0].ns for message in graph.topics["/contact_markers"].messages]
+    assert shown == [topic.strip("/") for topic in topics]

@@ -7,7 +7,7 @@ import pytest
 import rosgraph
 import rospy
 
-from bullet_sim_ros import node
+from bullet_sim_ros import log_bridge, node
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 
@@ -24,7 +24,7 @@ def opened(*words):
     ((), 1000.0), (("--real-time-factor", "0"), 0.0), (("--real-time-factor=2",), 2000.0),
     (("--real-time-factor", "0.5"), 500.0)])
 def test_real_time_factor_becomes_the_update_rate(words, rate_hz):
-    # conforms: gzserver/--real_time_factor, empty_world.launch/real_time_factor
+    # conforms: gzserver/--real_time_factor
     assert opened(*words).description.physics.real_time_update_rate == pytest.approx(rate_hz)
 
 
@@ -40,10 +40,15 @@ def test_a_step_of_nothing_is_an_error_line_with_and_without_a_factor(tmp_path, 
 
 
 def test_seed_and_pause():
-    # conforms: gzserver/--seed, gzserver/-u, empty_world.launch/seed
+    # conforms: gzserver/--seed, gzserver/-u
     assert (opened().seed, opened().paused) == (0, False)
     world = opened("--seed", "12345678901", "--paused")
     assert (world.seed, world.paused) == (12345678901, True)
+
+
+def test_time_begins_where_it_is_told():
+    # conforms: gzserver/--initial_sim_time
+    assert (opened().time, opened("--initial-sim-time", "2.5").time) == (0.0, 2.5)
 
 
 @pytest.mark.parametrize("option, value, said", [
@@ -82,17 +87,36 @@ def test_without_a_ros_network_it_says_so(caplog):
     assert "ROS gazebo topics/services are disabled" in caplog.text
 
 
+@pytest.mark.parametrize("verbose, told", [(True, ["loading"]), (False, [])])
+def test_a_verbose_simulator_also_says_what_it_loads(monkeypatch, verbose, told):
+    # conforms: gzserver/--verbose
+    core, said = logging.getLogger("bullet_sim"), []
+    monkeypatch.setattr(core, "handlers", [])
+    monkeypatch.setattr(core, "propagate", True)
+    monkeypatch.setitem(log_bridge._SENDERS, logging.INFO, lambda _form, text: said.append(text))
+    before = core.level
+    try:
+        log_bridge.forward_core_log(verbose)
+        logging.getLogger("bullet_sim.formats").info("loading")
+    finally:
+        core.setLevel(before)
+    assert said == told
+
+
 def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch, caplog):
-    # conforms: gzserver/WORLD
-    monkeypatch.setattr("sys.argv", ["gzserver", "--world", "worlds/nowhere.world"])
+    # conforms: gzserver/WORLD, gzserver/--verbose, gzserver/-e
+    monkeypatch.setattr("sys.argv", ["gzserver", "--world", "worlds/nowhere.world", "--verbose",
+                                     "--physics", "newton"])
+    verbose = []
     monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
     monkeypatch.setattr(rospy, "init_node", lambda *_words, **_options: None)
     monkeypatch.setattr(rospy.rostime, "set_rostime_initialized", lambda _yes: None)
-    for name in ("send_promptly", "forward_core_log"):
-        monkeypatch.setattr(node, name, lambda *_words: None)
+    monkeypatch.setattr(node, "send_promptly", lambda: None)
+    monkeypatch.setattr(node, "forward_core_log", verbose.append)
     monkeypatch.setattr("sys.setswitchinterval", lambda _seconds: None)
     assert node.main() == 1
-    (record,) = caplog.records
+    engine, record = caplog.records
+    assert verbose == [True] and "no physics engine 'newton'" in engine.getMessage()
     assert record.levelno == logging.CRITICAL
     assert record.getMessage().startswith(
         "Could not open file worlds/nowhere.world: worlds/nowhere.world not found (searched: ")

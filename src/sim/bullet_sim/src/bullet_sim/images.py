@@ -17,6 +17,7 @@ log = logging.getLogger(__name__)
 
 LARGEST_FILE = 100 * 10**6  # bytes
 MOST_PIXELS = 100 * 10**6  # 10 000 x 10 000: 300 MB while it is read
+SILENT = 0  # OpenCV's log level: what it would say comes in our own line
 HEADER_BYTES = 2**16  # JPEG's size may stand behind a preview
 PNG = b"\x89PNG\r\n\x1a\n"
 JPEG = b"\xff\xd8"
@@ -52,12 +53,16 @@ def warn_if_unreadable(path: str) -> None:
 def read_image(path: Path | str, flags: int, advice: str = "give a PNG or JPEG") -> np.ndarray:
     """(height, width[, 3]) by OpenCV's `flags`; FormatError as of `check_image`, with `advice`."""
     check_image(path)
+    before, reason = cv2.setLogLevel(SILENT), "it is damaged, or no image"
     try:
         image = cv2.imread(str(path), flags)
-    except cv2.error:  # a side that OpenCV finds too long, in a kind whose header is not known here
-        image = None
+    except cv2.error:  # the size, in a kind not looked at here, is beyond what OpenCV may take
+        reason = f"it has more than {MOST_PIXELS // 10**6} million pixels, or a long side"
+        image, advice = None, "make it smaller"
+    finally:
+        cv2.setLogLevel(before)
     if image is None:
-        raise FormatError(f"{path} cannot be read; {advice}")
+        raise FormatError(f"{path} cannot be read: {reason}; {advice}")
     return image
 
 

@@ -17,9 +17,13 @@ from urllib.parse import unquote
 import numpy as np
 
 from bullet_sim.description import Material, Rgba
+from bullet_sim.errors import FormatError
 from bullet_sim.mesh_part import MeshPart, NamedPart, flat_shaded
 
 _log = logging.getLogger(__name__)
+
+MOST_NODES = 20_000  # counted as often as they are instanced: ten lines can ask for millions
+MOST_TRIANGLES = 4_000_000
 
 
 def read_collada(path: Path, split: bool) -> list[NamedPart]:
@@ -34,16 +38,29 @@ def read_collada(path: Path, split: bool) -> list[NamedPart]:
     root = np.diag([unit, unit, unit, 1.0])
     folder = path.parent
     parts: list[NamedPart] = []
+    left, triangles = iter(range(MOST_NODES)), 0
     for node in document.scene.nodes:
-        for name, instance, matrix in _instances(node, root, ""):
-            parts += [(name, part) for part in _parts(instance, matrix, folder)]
+        for name, instance, matrix in _instances(node, root, "", left):
+            for part in _parts(instance, matrix, folder):
+                parts.append((name, part))
+                triangles += len(part.faces)
+                if triangles > MOST_TRIANGLES:
+                    raise FormatError(f"it has more than {MOST_TRIANGLES} triangles; export it "
+                                      "with fewer")
     return parts
 
 
-def _instances(node: Any, matrix: np.ndarray, name: str) -> Iterator[tuple[str, Any, np.ndarray]]:
-    """Every geometry or controller of a tree, with its node's name and its matrix in the mesh."""
+def _instances(node: Any, matrix: np.ndarray, name: str, left: Iterator[int],
+               ) -> Iterator[tuple[str, Any, np.ndarray]]:
+    """Every geometry or controller of a tree, with its node's name and its matrix in the mesh.
+
+    `left` yields once for each node that may still come; FormatError when it ends.
+    """
     import collada.scene as tree
 
+    if next(left, None) is None:
+        raise FormatError(f"its scene has more than {MOST_NODES} nodes, each counted as often as "
+                          "it is instanced; export it as one mesh")
     if isinstance(node, tree.GeometryNode | tree.ControllerNode):
         yield name, node, matrix
         return
@@ -55,7 +72,7 @@ def _instances(node: Any, matrix: np.ndarray, name: str) -> Iterator[tuple[str, 
     else:
         return
     for child in children:
-        yield from _instances(child, matrix, name)
+        yield from _instances(child, matrix, name, left)
 
 
 def _parts(instance: Any, matrix: np.ndarray, folder: Path) -> Iterator[MeshPart]:

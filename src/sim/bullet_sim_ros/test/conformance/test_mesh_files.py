@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from bullet_sim import meshes
+from bullet_sim import mesh_collada, meshes
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model
@@ -54,6 +54,12 @@ def bounds(parts):
     return vertices.min(axis=0), vertices.max(axis=0)
 
 
+def volume(part):
+    """That of a closed surface; negative if its triangles face inwards."""
+    one, two, three = part.vertices[part.faces].astype(float).transpose(1, 0, 2)
+    return np.einsum("ij,ij", one, np.cross(two, three)) / 6
+
+
 @pytest.mark.parametrize("name", [
     "a.stl", "a.STL", "text.stl", "a.obj", "a.dae", "a.DAE", "a.ply", "a.off", "a.glb", "a.gltf"])
 def test_every_kind_has_its_size(tmp_path, box, name):
@@ -68,8 +74,10 @@ def test_every_kind_has_its_size(tmp_path, box, name):
             (tmp_path / (name if file.endswith(".gltf") else file)).write_bytes(content)
     else:
         path.write_bytes(exported.encode() if isinstance(exported, str) else exported)
-    low, high = bounds(load_mesh(Mesh(str(path), scale=(2.0, 1.0, -1.0))))
+    parts = load_mesh(Mesh(str(path), scale=(2.0, 1.0, -1.0)))
+    low, high = bounds(parts)
     np.testing.assert_allclose(high - low, (2, 2, 3), atol=1e-6)
+    assert sum(map(volume, parts)) == pytest.approx(12)  # mirrored, and still seen from outside
     vertices, faces = collision_mesh(Mesh(str(path)))
     assert (len(vertices), len(faces)) == (8, 12)
 
@@ -86,6 +94,26 @@ def test_collada(tmp_path, caplog):
     (tmp_path / "skin.png").touch()
     path.write_text(DAE + "\n")
     assert load_mesh(Mesh(str(path), (1, 1, 2)))[1].material.texture == str(tmp_path / "skin.png")
+
+
+@pytest.mark.parametrize("bound, least, said", [
+    ("MOST_NODES", 100, "its scene has more than 100 nodes, each counted as often as it is"),
+    ("MOST_TRIANGLES", 799, "it has more than 799 triangles; export it with fewer")])
+def test_nodes_that_come_again_and_again(tmp_path, monkeypatch, bound, least, said):
+    # conforms: mesh files/.dae instances, mesh files/huge files
+    twenty = "".join(f'<node id="n{level}">' + f'<instance_node url="#n{level - 1}"/>' * 20
+                     + "</node>" for level in (1, 2))
+    nodes = f'<library_nodes><node id="n0"><instance_geometry url="#g"/></node>{twenty}'
+    path = tmp_path / "a.dae"
+    scenes = "<library_visual_scenes>"
+    path.write_text(DAE.replace(scenes, f"{nodes}</library_nodes>{scenes}")
+                    .replace('<instance_geometry url="#g"><bind', '<instance_node url="#n2"/><bind')
+                    .replace("</bind_material></instance_geometry>", "</bind_material>"))
+    assert sum(len(part.faces) for part in load_mesh(Mesh(str(path)))) == 800
+    monkeypatch.setattr(mesh_collada, bound, least)
+    path.touch()
+    with pytest.raises(FormatError, match=said):
+        load_mesh(Mesh(str(path)))
 
 
 WAVEFRONT = """mtllib sub\\a.mtl

@@ -140,6 +140,7 @@ def test_moving_joints(kind, made):
     model = read(text)
     found = model.joints[0]
     assert (found.type, found.parent, found.child, found.axis) == (made, "a", "b", (0, 0, 1))
+    assert ((found.lower, found.upper) == (-1, 2)) == (kind != "continuous")
     assert model.links[1].pose.position == (0, 0, 1)
     assert model.links[1].pose.rpy() == pytest.approx((0, 0, 1))
 
@@ -170,7 +171,8 @@ def test_what_the_simulator_leaves_alone():
 
 def test_fixed_joints_are_lumped_with_their_shapes_masses_sensors():
     # conforms: URDF conversion/fixed joints, URDF joint types/fixed, URDF conversion/lumped names
-    sensor = '<sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose></sensor>'
+    sensor = """<sensor name="s" type="imu"><pose>0 0 1 0 0 0</pose></sensor>
+        <light name="l" type="spot"><pose>0 0 1 0 0 0</pose></light>"""
     origin = '<origin xyz="0 0 2"/>'
     model = read(link("a", SHAPES) + link("b", SHAPES) + joint("j", "a", "b", more=origin)
                  + gazebo(sensor, "b"))
@@ -181,7 +183,7 @@ def test_fixed_joints_are_lumped_with_their_shapes_masses_sensors():
     assert [part.name for part in found.visuals] == [
         "a_visual", "a_fixed_joint_lump__b_visual_1"]
     assert found.visuals[1].pose.position == (0, 0, 2)
-    assert found.sensors[0].pose.position == (0, 0, 3)
+    assert found.sensors[0].pose.position == found.lights[0].pose.position == (0, 0, 3)
 
 
 def test_a_link_named_world_is_the_world():
@@ -197,11 +199,15 @@ def test_plugins_and_joints_follow_lumping():
     plugin = """<plugin name="p" filename="x"><bodyName>b</bodyName><frameName>b</frameName>
         <xyzOffset>1 0 0</xyzOffset></plugin>"""
     weld = '<link name="c"/><joint name="w" type="fixed"><parent>b</parent><child>c</child></joint>'
-    model = read(link("a") + link("b") + joint("j", "a", "b", more='<origin xyz="0 0 2"/>')
+    origin = '<origin xyz="0 0 2" rpy="0 0 0.5"/>'
+    model = read(link("a") + link("b") + joint("j", "a", "b", more=origin)
                  + gazebo(plugin) + gazebo(weld))
     element = model.plugins[0].element
     assert element.findtext("bodyName") == element.findtext("frameName") == "a"
-    assert [float(word) for word in element.findtext("xyzOffset").split()] == [1, 0, 2]
+    xyz, rpy = ([float(word) for word in element.findtext(tag).split()]
+                for tag in ("xyzOffset", "rpyOffset"))
+    assert xyz == pytest.approx([math.cos(0.5), math.sin(0.5), 2])
+    assert rpy == pytest.approx([0, 0, 0.5])
     assert (model.joints[0].parent, model.joints[0].child) == ("a", "c")
 
 

@@ -17,6 +17,7 @@ import pytest
 import bullet_sim
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import xacro_limits, xacro_reading
+from bullet_sim.formats.xacro_attempt import Run, attempt
 from bullet_sim.formats.xacro_files import expand, expand_file
 from bullet_sim.formats.xacro_limits import run_bounded
 from bullet_sim.formats.xacro_nodes import Siblings, replace_node
@@ -54,6 +55,7 @@ ARGUMENT = '<xacro:arg name="n" default="3"/>'
     (one_link("$(arg n)", ARGUMENT), "3"),
     (one_link("$(eval n * 2)", ARGUMENT), "6"),
     (one_link("$(eval arg('n') + 1)", ARGUMENT), "4"),
+    (one_link("$(eval round(max(sin(pi / 2), abs(-n))))", ARGUMENT), "3"),
     (one_link("$(eval find('wheels') + env('SET'))"), "/packages/wheelsyes"),
     (one_link("$(env SET)"), "yes"),
     (one_link("$(optenv SET no)$(optenv UNSET two words)$(optenv UNSET)"), "yestwo words"),
@@ -116,6 +118,7 @@ SET = '<xacro:property name="p" value="9"/>'
 @pytest.mark.parametrize("inside, names", [
     (macro("a b", one_link("${a}${b}")) + '<xacro:m a="1" b="${1 + 1}"/>', ["12"]),
     (macro("a:=1 b=2", one_link("${a}${b}")) + '<xacro:m b="3"/>', ["13"]),
+    (macro("a b=2", one_link("${a}${b}")) + '<xacro:m a="1"/>', ["12"]),
     (macro("a:='x y' b:=''", one_link("${a},${b}")) + "<xacro:m/>", ["x y,"]),
     (SET + macro("p:=^", one_link("${p}")) + "<xacro:m/>", ["9"]),
     (SET + macro("p:=^|5 q:=^|6", one_link("${p}${q}")) + "<xacro:m/>", ["96"]),
@@ -168,7 +171,8 @@ def test_properties(write, inside, name):
 @pytest.mark.parametrize("inside, names", [
     ('<xacro:if value="true"><link name="a"/></xacro:if>'
      '<xacro:if value="0"><link name="b"/></xacro:if>', ["a"]),
-    ("<xacro:unless value=\"${'x' == 'y'}\"><link name=\"a\"/></xacro:unless>", ["a"]),
+    ("<xacro:unless value=\"${'x' == 'y'}\"><link name=\"a\"/></xacro:unless>"
+     '<xacro:unless value="1"><link name="b"/></xacro:unless>', ["a"]),
     ("<xacro:element xacro:name=\"${'li' + 'nk'}\" name=\"a\"/>", ["a"]),
     ('<link><xacro:attribute name="name" value="${1 + 1}"/></link>', ["2"]),
 ])
@@ -212,10 +216,14 @@ def test_old_files(write):
         <link name="${side}"><insert_block name="o"/></link></macro>
         <wheel side="left"><origin/></wheel><if value="1"><link name="b"/></if>"""
     assert links(expand(write(old))) == ["left", "b"]
+    called = macro("", one_link("c")) + '<xacro:call macro="xacro:m"/>'
+    assert links(expand(write(called))) == ["c"]
     forward = '<xacro:m/><xacro:property name="p" value="${q}"/>' + macro("", one_link("${p}")) \
         + '<xacro:property name="q" value="5"/>'
     assert links(expand(write(forward))) == ["5"]
     write("<link name='${q}'/>", "part.gazebo")
+    write(macro("", one_link("late")), "late.xacro")
+    assert links(expand(write('<xacro:m/><xacro:include filename="late.xacro"/>'))) == ["late"]
     earlier = '<xacro:include filename="part.gazebo"/><xacro:property name="q" value="6"/>'
     assert links(expand(write(earlier))) == ["6"]
 
@@ -251,6 +259,9 @@ def doubling(levels):
     ("<xacro:property name='p' value='${p}'/>" + one_link("${p}"), "circular variable definition"),
     ("<a>" * 3000 + "</a>" * 3000, "nested too deep"),
     (one_link("${().__class__}"), "invalid name"), (one_link("${open('x')}"), "'open' is not"),
+    (one_link("$(eval open('x', 'w'))"), "$(eval …): argument 'open' is not defined"),
+    (one_link("${xacro.arg('m')}"), "argument m has no value: pass m:=VALUE"),
+    (one_link("$(env MISSING)"), "'MISSING' is not set; type export MISSING=VALUE"),
     ("<foo:bar/>", 'declare it in the <robot> tag, such as xmlns:xacro="http'),
     ("<xacro:none/>", 'include the file with <xacro:macro name="none">'),
     (one_link("${p"), "invalid expression: ${p"), (one_link("${1 / 0}"), "division by zero"),
@@ -307,8 +318,10 @@ def test_the_time_grows_with_the_size_and_not_with_its_square():
     assert all(child.parentNode is document.documentElement for child in children)
 
 
-def test_siblings_are_found_as_in_a_list():
+def test_siblings_are_found_as_in_a_list(write):
     # conforms: xacro mistakes/size of the result
+    root = attempt(Run(str(write("<link/>")), {}, None), {}).document.documentElement
+    assert isinstance(root.childNodes, Siblings)
     plain = [object() for _ in range(1000)]
     near, random = Siblings(plain), Random(1)
     for _ in range(300):
@@ -380,6 +393,20 @@ def test_an_expression_is_blamed_only_for_its_own_time(write):
         run_bounded(work, str(path), 0.5)
 
 
+def test_a_process_that_fails_does_not_do_so_in_silence(capfd):
+    # conforms: xacro mistakes/size of the result
+    def work(error):
+        def fail():
+            raise error
+        return fail
+
+    with pytest.raises(FormatError, match=r"^a: the result needs more memory than there is; make"):
+        run_bounded(work(MemoryError()), "a")
+    assert run_bounded(work(KeyError("mistake of ours")), "a") == 1
+    assert "mistake of ours" in capfd.readouterr().err
+    assert run_bounded(work(BrokenPipeError()), "a") == 1 and not capfd.readouterr().err
+
+
 def run(folder, *words):
     environment = os.environ | {
         "PYTHONPATH": f"{CORE}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"}
@@ -389,7 +416,7 @@ def run(folder, *words):
 
 def test_the_command(write, tmp_path):
     # conforms: xacro command, xacro command/-o, xacro command/--deps, xacro command/--inorder
-    # conforms: xacro command/exit code 2
+    # conforms: xacro command/exit code 2, xacro command/NAME:=VALUE
     write(one_link("part"), "part.xacro")
     path = write('<xacro:include filename="part.xacro"/>' + one_link("$(arg n)", ARGUMENT)).name
     assert links(run(tmp_path, "--inorder", path, "n:=7").stdout) == ["part", "7"]

@@ -19,7 +19,13 @@ from bullet_sim.formats.xacro_errors import located, one_line, place, root_of
 from bullet_sim.formats.xacro_limits import Budget, TooLarge, noted_eval
 from bullet_sim.formats.xacro_nodes import Siblings, safe_eval
 from bullet_sim.formats.xacro_reading import load_yaml, parse
-from bullet_sim.formats.xacro_substitutions import LEXER, directory, resolver
+from bullet_sim.formats.xacro_substitutions import (
+    LEXER,
+    Arguments,
+    directory,
+    guarded_eval,
+    resolver,
+)
 from bullet_sim.formats.xacro_unanswered import unanswered_inside
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
@@ -91,7 +97,7 @@ def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
     replacements = {**replacements, "grab_macro": noted_grab}
     with _private_state(replacements, messages, run.find_package):
         try:
-            document = xacro.process_file(run.path, mappings=dict(run.mappings))
+            document = xacro.process_file(run.path, mappings=Arguments(run.mappings))
             _only_text(document)
         except Exception as error:  # expressions in the file may raise anything
             beyond = isinstance(root_of(error), TooLarge | RecursionError | MemoryError)
@@ -124,7 +130,7 @@ def _private_state(
         "load_yaml": load_yaml, **replacements,
     }
     commands = {"_eval_find": _finder(find_package), "_eval_dirname": directory,
-                "resolve_args": resolver(substitution_args.resolve_args)}
+                "resolve_args": resolver(substitution_args.resolve_args), "eval": guarded_eval}
     depth = sys.getrecursionlimit()
     sys.setrecursionlimit(max(depth, DEEPEST))
     try:
@@ -142,11 +148,13 @@ def _private_state(
 
 @contextmanager
 def _swapped(table: dict[str, Any], values: dict[str, Any]) -> Iterator[None]:
-    before = {name: table[name] for name in values}
+    before = {name: table[name] for name in values if name in table}
     table.update(values)
     try:
         yield
     finally:
+        for name in values:
+            del table[name]
         table.update(before)
 
 

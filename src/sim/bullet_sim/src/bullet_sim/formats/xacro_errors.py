@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from xml.parsers.expat import ExpatError
 
@@ -13,6 +14,7 @@ from bullet_sim.errors import FormatError
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LONGEST = 600  # letters of a line
+UNSET = re.compile(r"environment variable '(\w+)' is not set")
 
 
 def located(error: BaseException, path: str) -> str:
@@ -51,6 +53,8 @@ def _reason(error: BaseException) -> str:
         return one_line(error.args[0] or str(root))
     if isinstance(root, substitution_args.ArgException):
         return f"argument {root} has no value: pass {root}:=VALUE or give its xacro:arg a default"
+    if isinstance(root, substitution_args.SubstitutionException):
+        return f"{one_line(str(root))}{_variable_hint(str(root))}"
     if isinstance(root, ExpatError):
         return f"XML error: {root}{_xml_hint(root)}"
     text = one_line(str(error))
@@ -59,7 +63,10 @@ def _reason(error: BaseException) -> str:
     if text.startswith("unknown macro name: xacro:"):
         name = text.rpartition("xacro:")[2]
         return f'{text}; include the file with <xacro:macro name="{name}"> before it is called'
-    return text.replace("name '", "property '", 1) if isinstance(root, NameError) else text
+    if isinstance(root, NameError):
+        text = text.replace("NameError: name '", "$(eval …): argument '", 1)
+        return text.replace("name '", "property '", 1)
+    return text
 
 
 def includes_itself(files: list[str]) -> str:
@@ -68,6 +75,12 @@ def includes_itself(files: list[str]) -> str:
     if other == os.path.normpath(files[-1]):
         return "the file includes itself without end; put the <xacro:include> into an <xacro:if>"
     return f"this file and {other} include each other without end; take one include out"
+
+
+def _variable_hint(text: str) -> str:
+    """How to set an environment variable that is not set."""
+    named = UNSET.match(text)
+    return f"; type export {named[1]}=VALUE, or write $(optenv {named[1]} DEFAULT)" if named else ""
 
 
 def _xml_hint(error: ExpatError) -> str:

@@ -9,6 +9,7 @@ import resource
 import signal
 import sys
 import time
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -23,6 +24,7 @@ MOST_TEXTS = 150_000  # attributes and texts looked through; TurtleBot3 has 110 
 MOST_SECONDS = 3.5  # of processor time; large robots take 1
 LONG = 1.0  # s; an expression that took so long is what took the time
 MOST_BYTES = 2**30
+NO_MEMORY = 70  # exit code of the process that expands
 NOTE_BYTES = 1024
 
 _note = mmap.mmap(-1, NOTE_BYTES)  # what is being evaluated, and since when; shared with the child
@@ -86,11 +88,19 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
             resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
             code = work()
             sys.stdout.flush()
+        except MemoryError:
+            code = NO_MEMORY
+        except BrokenPipeError:  # nobody reads on
+            pass
+        except Exception:
+            traceback.print_exc()
         finally:
             os._exit(code)
     _, status = os.waitpid(child, 0)
-    if os.WIFEXITED(status):
+    if os.WIFEXITED(status) and os.WEXITSTATUS(status) != NO_MEMORY:
         return os.WEXITSTATUS(status)
+    if os.WIFEXITED(status):
+        raise TooLarge(f"{file}: the result needs more memory than there is; make it smaller")
     where = _what_took(min(LONG, seconds / 2), file)
     if os.WTERMSIG(status) == signal.SIGPROF:
         raise TooLarge(f"{where} takes longer than {seconds:g} s of processor time; simplify it")

@@ -28,6 +28,8 @@ class Melodic:
         for element in document.getElementsByTagName("*"):
             if element.tagName in KEYWORDS and not _is_sdf_include(element):
                 self._prefix(element)
+            elif element.tagName == "xacro:call":
+                self._strip(element)
         return document
 
     def call(self, node: minidom.Element, macros: xacro.Table, symbols: xacro.Table) -> bool:
@@ -41,6 +43,12 @@ class Melodic:
         everywhere = macros.top()
         self.used |= everywhere is not macros
         self._grab(element, everywhere)
+
+    def _strip(self, call: minidom.Element) -> None:
+        """The prefix from the name of a macro that is called by its name."""
+        name = call.getAttribute("macro")
+        self.used |= name.startswith("xacro:")
+        call.setAttribute("macro", name.removeprefix("xacro:"))
 
     def _prefix(self, element: minidom.Element) -> None:
         self.used = True

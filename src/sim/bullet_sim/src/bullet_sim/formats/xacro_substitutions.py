@@ -10,16 +10,38 @@ from collections.abc import Callable
 from typing import Any
 
 import xacro
+from xacro import substitution_args
 
 _COUNT = itertools.count()
 ANON = re.compile(r"\$\(anon\s+([^\s)]+)\s*\)")
-# As xacro's own, but $(eval …) may hold calls such as arg('x').
+# As xacro's own, but $(eval …) may hold calls such as arg('x'), one within another three deep.
 LEXER = xacro.QuickLexer(
     DOLLAR_DOLLAR_BRACE=r"^\$\$+(\{|\()",
     EXPR=r"^\$\{[^\}]*\}",
-    EXTENSION=r"^\$\(eval\s[^()]*(?:\([^()]*\)[^()]*)*\)|^\$\([^\)]*\)",
+    EXTENSION=r"^\$\(eval\s(?:[^()]|\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\))*\)|^\$\([^\)]*\)",
     TEXT=r"[^$]+|\$[^{($]+|\$$",
 )
+
+
+class NoSuchArgument(substitution_args.ArgException, KeyError):
+    """Where Python looks for a name it goes on looking; elsewhere it is xacro's own error."""
+
+    __str__ = Exception.__str__
+
+
+class Arguments(dict):
+    """Values by name; to ask for one that is missing is one error, by whatever way."""
+
+    def __missing__(self, name: str) -> str:
+        raise NoSuchArgument(name)
+
+
+def guarded_eval(expression: str, _symbols: dict, local: Any) -> Any:
+    """Python's `eval` for `$(eval …)`, with the builtins of xacro's own expressions alone.
+
+    PyPI's hands over all of them, and a file could open others and write them.
+    """
+    return eval(expression, {"__builtins__": dict(xacro._global_symbols["python"])}, local)
 
 
 def directory(_filename: str) -> str:

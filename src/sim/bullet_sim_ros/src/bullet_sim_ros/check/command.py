@@ -99,10 +99,12 @@ class Check:
         return self._texts.model_file(path, values, shown_only=not alone)
 
     def _one_launch(self, folder: Path, name: str) -> list[Finding]:
-        found = sorted(folder.rglob(name))
+        kind = Path(name).suffix or ".launch"
+        there = sorted(folder.rglob(f"*{kind}"))
+        found = [path for path in there if str(path).endswith(f"/{name}")]
         if not found:
-            there = ", ".join(sorted(path.name for path in folder.rglob("*.launch"))) or "none"
-            return [problem(str(folder), f"launch file {name}", f"not there; there are: {there}")]
+            names = ", ".join(sorted(path.name for path in folder.rglob("*.launch"))) or "none"
+            return [problem(str(folder), f"launch file {name}", f"not there; there are: {names}")]
         return self._file(found[0])
 
     def _package(self, folder: Path) -> list[Finding]:

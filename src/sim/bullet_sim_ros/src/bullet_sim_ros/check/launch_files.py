@@ -186,6 +186,6 @@ def missing_arguments(path: Path, given: Collection[str]) -> list[str]:
     except (ParseError, OSError, LookupError, ValueError):  # of files and of their encodings
         return []  # roslaunch says why
     names = {word.split(":=", 1)[0] for word in given}
-    return [arg.get("name", "") for arg in root.findall("arg")
-            if not {"default", "value", "if", "unless"}.intersection(arg.keys())
-            and arg.get("name") not in names]
+    return [name for arg in root.findall("arg") if (name := arg.get("name"))
+            and not {"default", "value", "if", "unless"}.intersection(arg.keys())
+            and name not in names]

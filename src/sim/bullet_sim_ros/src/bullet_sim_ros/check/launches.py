@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import shlex
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,6 +35,14 @@ SERVERS = ("gzserver", "gazebo", "debug")
 _find_node = cache(roslib.packages.find_node)  # which looks through a whole package
 
 
+def _words(node: LaunchedNode) -> list[str]:
+    """Its arguments as roslaunch takes them apart; an open quotation mark ends nowhere."""
+    try:
+        return shlex.split(node.args)
+    except ValueError:
+        return node.args.split()
+
+
 class LaunchChecker:
     """One launch file at a time."""
 
@@ -60,7 +69,7 @@ class LaunchChecker:
         for node in launch.nodes:
             found += self._node(node, launch, where)
         spawned = {word for node in launch.nodes if node.package == "controller_manager"
-                   for word in node.args.split()}
+                   for word in _words(node)}
         return [*found, *controller_findings(launch.parameters, spawned, self._rows, where)]
 
     def _node(self, node: LaunchedNode, launch: Launch, where: str) -> Iterator[Finding]:
@@ -75,7 +84,7 @@ class LaunchChecker:
                           "src/ if it is your own, else see the README's list")
             return
         yield Finding(where, name, WORKS)
-        words = node.args.split()
+        words = _words(node)
         if node.package == "gazebo_ros" and node.type in SERVERS:
             yield from self._world(words, launch, where)
         elif node.package == "gazebo_ros" and node.type in SPAWNERS:
