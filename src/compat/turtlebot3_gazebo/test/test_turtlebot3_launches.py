@@ -150,7 +150,7 @@ def test_slam_of_several_robots():
     assert (mission.package, mission.type) == ("turtlebot3_autorace_core", "core_node_mission")
 
 
-def test_remote_model_and_rviz():
+def test_remote_model_and_rviz(monkeypatch):
     # conforms: turtlebot3_remote.launch, turtlebot3_remote.launch/model
     # conforms: turtlebot3_remote.launch/multi_robot_name, turtlebot3_model.launch
     # conforms: turtlebot3_model.launch/model, turtlebot3_model.launch/multi_robot_name
@@ -163,6 +163,7 @@ def test_remote_model_and_rviz():
     model = load(launch("turtlebot3_model"))
     assert values(model)["/joint_state_publisher/use_gui"] is True
     assert values(model)["/joint_state_publisher/rate"] == 50.0
+    monkeypatch.setenv("DISPLAY", ":0")
     for name in ("turtlebot3_model", "turtlebot3_gazebo_rviz", "turtlebot3_fake"):
         found = nodes(load(launch(name)))
         assert found["/rviz"].args.startswith("-d /") and "/robot_state_publisher" in found
