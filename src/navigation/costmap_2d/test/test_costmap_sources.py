@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import rospy
-import tf2_ros
-from geometry_msgs.msg import Point32, TransformStamped
+from geometry_msgs.msg import Point32, Transform
 from sensor_msgs.msg import LaserScan, PointCloud
 
 from costmap_2d import sources
 from costmap_2d.settings import table
+from nav_nodes.complaints import Complaints
 
 
 class Frames:
@@ -17,13 +17,13 @@ class Frames:
     def __init__(self):
         self.until = 100.0
 
-    def lookup_transform(self, _parent, child, stamp, _timeout):
+    def find(self, _parent, child, stamp):
         if stamp.to_sec() > self.until:
-            raise tf2_ros.ExtrapolationException("in the future")
-        found = TransformStamped()
-        found.transform.translation.x = stamp.to_sec() + (child == "elsewhere") * 10
-        found.transform.translation.z = 0.3
-        found.transform.rotation.w = 1.0
+            return None
+        found = Transform()
+        found.translation.x = stamp.to_sec() + (child == "elsewhere") * 10
+        found.translation.z = 0.3
+        found.rotation.w = 1.0
         return found
 
 
@@ -36,7 +36,8 @@ def make(monkeypatch):
     def make_source(**settings):
         values = {entry.name: entry.default for entry in table("source")}
         frames = Frames()
-        source = sources.Source({**values, "topic": "scan", **settings}, "costmap", "map", frames)
+        source = sources.Source({**values, "topic": "scan", **settings}, "map", frames,
+                                Complaints())
         return source, frames
 
     make_source.at = at

@@ -109,7 +109,7 @@ class FakeLocalization(unittest.TestCase):
         lines = []
         log = rospy.Subscriber("/rosout", Log, lambda line: lines.append(line.msg))
         self.odometry_comes.clear()
-        self.wait_for(lambda: any("no transform from odom to base_footprint for" in line
+        self.wait_for(lambda: any("no new transform from odom to base_footprint for" in line
                                   for line in lines), "the line")
         log.unregister()
         before = rospy.Time.now()

@@ -35,22 +35,25 @@ def room() -> OccupancyGrid:
 
 
 class Robot:
-    """Publishes odom, scan, tf and map while `speaks` has them; keeps its last velocity."""
+    """Publishes odom, scan, tf and localisation while `speaks` has them; keeps its last velocity.
 
-    def __init__(self, pose: tuple[float, float, float]) -> None:
+    With localisation from the beginning it is its own map_server, too.
+    """
+
+    def __init__(self, pose: tuple[float, float, float], *speaks: str) -> None:
         self.pose, self.velocity = np.array(pose), np.zeros(3)
-        self.speaks = {"odom", "scan", "tf", "localisation"}
+        self.speaks = set(speaks)
         self.commands = 0
         grid = room()
         self._occupied = (grid.cells > 50).astype(np.uint8)
-        self._map = rospy.Publisher("map", OccupancyGridMessage, queue_size=1, latch=True)
-        self._map.publish(grid_message(grid, "map", rospy.Time.now()))
+        if "localisation" in speaks:
+            self._map = rospy.Publisher("map", OccupancyGridMessage, queue_size=1, latch=True)
+            self._map.publish(grid_message(grid, "map", rospy.Time.now()))
         self._odom = rospy.Publisher("odom", Odometry, queue_size=1)
         self._scan = rospy.Publisher("scan", LaserScan, queue_size=1)
         self._tf = tf2_ros.TransformBroadcaster()
         self._static = tf2_ros.StaticTransformBroadcaster()
-        self._static.sendTransform(transform_message(LASER, "base_footprint", "base_scan",
-                                                     rospy.Time.now()))
+        self._is_mounted = False
         rospy.Subscriber("cmd_vel", Twist, self._take, queue_size=1)
         threading.Thread(target=self._live, daemon=True).start()
 
@@ -73,6 +76,7 @@ class Robot:
     def _tell(self, now: rospy.Time, tick: int) -> None:
         transforms = []
         if "tf" in self.speaks:
+            self._tell_mount(now)
             transforms.append(transform_message(self.pose, "odom", "base_footprint", now))
         if "localisation" in self.speaks:
             transforms.append(transform_message(np.zeros(3), "map", "odom", now))
@@ -86,6 +90,12 @@ class Robot:
             self._odom.publish(odometry)
         if "scan" in self.speaks and tick % 6 == 0:
             self._scan.publish(self._sweep(now))
+
+    def _tell_mount(self, now: rospy.Time) -> None:
+        """Once: it is latched."""
+        if not self._is_mounted:
+            self._is_mounted = True
+            self._static.sendTransform(transform_message(LASER, "base_footprint", "base_scan", now))
 
     def _sweep(self, now: rospy.Time) -> LaserScan:
         laser = compose(self.pose, LASER)

@@ -114,17 +114,17 @@ def test_recoveries_can_be_switched_off(machine):
 def test_no_velocity_means_a_new_plan_until_patience_ends(machine):
     """controller_patience counts from the last velocity."""
     machine.planned(machine.goal, True, 101.0)
-    machine.controlled(True, 101.0)
-    machine.controlled(False, 116.0)
+    machine.controlled(True, True, 101.0)
+    machine.controlled(False, False, 116.0)
     assert machine.state is State.PLANNING and machine.wants_plan
     machine.planned(machine.goal, True, 116.05)
-    machine.controlled(False, 116.1)
+    machine.controlled(False, False, 116.1)
     assert machine.state is State.CLEARING and machine.trigger is Trigger.CONTROLLING
     for now in (116.2, 132.0):
         machine.recovered(now)
         machine.planned(machine.goal, True, now)
         machine.took_path()
-        machine.controlled(False, now + 16.0)
+        machine.controlled(False, False, now + 16.0)
     assert machine.failure() == (
         "Failed to find a valid control. Even after executing recovery behaviors.")
 
@@ -132,13 +132,13 @@ def test_no_velocity_means_a_new_plan_until_patience_ends(machine):
 def test_a_velocity_makes_all_recoveries_available_again(machine):
     """Those that were begun for want of a velocity."""
     machine.planned(machine.goal, True, 101.0)
-    machine.controlled(False, 116.0)
+    machine.controlled(False, False, 116.0)
     machine.recovered(117.0)
     assert machine.recovery == 1
     machine.planned(machine.goal, True, 118.0)
     machine.took_path()
     assert machine.recovery == 1
-    machine.controlled(True, 118.0)
+    machine.controlled(True, True, 118.0)
     assert machine.recovery == 0
 
 
@@ -191,5 +191,34 @@ def test_while_the_robot_cannot_see_patience_does_not_run_out(machine):
     assert machine.state is State.PLANNING
     machine.planned(machine.goal, True, 204.0)
     assert not machine.oscillates(209.0)
-    machine.controlled(False, 214.0)
+    machine.controlled(False, False, 214.0)
     assert machine.state is State.PLANNING
+
+
+def test_who_drives_but_gets_no_nearer_must_recover_and_then_give_up(machine):
+    """Also where oscillation_timeout is 0; a velocity alone makes no recovery available again."""
+    machine.planned(machine.goal, True, 100.0)
+    for nearer, now, state in ((True, 101.0, State.CONTROLLING), (False, 116.0, State.CONTROLLING),
+                               (False, 116.1, State.CLEARING)):
+        machine.controlled(True, nearer, now)
+        assert machine.state is state
+    for now in (120.0, 140.0):
+        assert machine.failure() is None
+        machine.recovered(now)
+        machine.planned(machine.goal, True, now)
+        machine.controlled(True, False, now + 1.0)
+        assert machine.state is State.CONTROLLING
+        machine.controlled(True, False, now + 15.1)
+        assert machine.state is State.CLEARING
+    assert machine.failure() == (
+        "Failed to find a valid control. Even after executing recovery behaviors.")
+
+
+def test_a_turn_takes_its_time_however_short_the_patience_is(machine):
+    """10 s are enough for half a turn."""
+    with_(machine, controller_patience=1.0)
+    machine.planned(machine.goal, True, 100.0)
+    machine.controlled(True, False, 110.0)
+    assert machine.state is State.CONTROLLING
+    machine.controlled(True, False, 110.1)
+    assert machine.state is State.CLEARING

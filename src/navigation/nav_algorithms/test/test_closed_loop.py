@@ -64,12 +64,13 @@ def drive(occupied, planner, global_plan, outline, replan, rate, acceleration, g
     coarse = occupied.reshape(160, 2, 108, 2).max(axis=(1, 3))
     padded = footprints.padded(outline, 0.01)
     local = Costmap(inflated(coarse, RESOLUTION, footprints.radii(padded)[0]), RESOLUTION, (0, 0))
-    pose, velocity, blocked = START.copy(), np.zeros(3), 0
+    pose, velocity, blocked, known = START.copy(), np.zeros(3), 0, False
     for period in range(int(limit * rate)):
         if period == 0 or (replan and period % replan == 0) or blocked == 5:
             path = global_plan(coarse, pose, goal)
             if path is not None:
-                planner.set_path(path)
+                planner.set_path(path, again=known)
+                known = True
         row, column = (int(n) for n in np.clip(local.cells_of(pose[:2]) - 30, 0, (100, 48)))
         near = Costmap(local.cells[row:row + 60, column:column + 60], RESOLUTION,
                        (column * RESOLUTION, row * RESOLUTION))

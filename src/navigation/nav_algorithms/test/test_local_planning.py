@@ -99,8 +99,27 @@ def test_oscillation_is_stopped_until_the_robot_has_moved():
     flags.took(np.array([-0.2, 0, 0]), ORIGIN, 0.1)
     both = np.array([[0.2, 0, 0], [-0.2, 0, 0]])
     assert flags.allowed(both).tolist() == [False, True]
-    flags.took(np.array([-0.2, 0, 0]), np.array([-0.2, 0, 0]), 0.1)
+    flags.at(np.array([-0.05, 0, 0]))
+    assert flags.allowed(both).tolist() == [False, True]
+    flags.at(np.array([-0.2, 0, 0]))
     assert flags.allowed(both).tolist() == [True, True]
+
+
+def test_who_only_turns_to_and_fro_must_turn_farther_each_time():
+    flags = Oscillation(0.1, 0.2)
+    pose, sign, ends = ORIGIN.copy(), 1.0, []
+    for _ in range(4):
+        flags.took(np.array([0, 0, sign]), pose, 0.1)
+        sign = -sign
+        flags.took(np.array([0, 0, sign]), pose, 0.1)
+        start = pose[2]
+        while not flags.allowed(np.array([[0, 0, -sign]]))[0]:
+            pose[2] += 0.05 * sign
+            flags.at(pose)
+        ends.append(abs(pose[2] - start))
+    assert ends == pytest.approx([0.25, 0.45, 0.85, 1.65], abs=0.051)
+    flags.at(pose + np.array([0.2, 0, 0]))
+    assert flags.angle == 0.2
 
 
 def test_turns_oscillate_only_where_the_robot_does_not_drive():
@@ -320,10 +339,10 @@ def test_pursuit_regulates_its_speed():
     fast = dict(desired_linear_vel=1.0, acc_lim_x=100.0, max_vel_theta=9.0)
     free = commanded(pursuit(**fast), straight(1.2))
     assert free.vx == pytest.approx(1.0)
-    curve = commanded(pursuit(**fast), straight(1.2, yaw=0.7))
+    curve = commanded(pursuit(**fast), straight(1.2, yaw=0.7), velocity=(0.3, 0, 0))
     assert 0.15 <= curve.vx < 0.8
     assert commanded(pursuit(**fast, use_regulated_linear_velocity_scaling=False),
-                     straight(1.2, yaw=0.7)).vx == pytest.approx(1.0)
+                     straight(1.2, yaw=0.7), velocity=(0.3, 0, 0)).vx == pytest.approx(1.0)
     costmap = window_around()
     costmap.cells[:25] = costmap.cells[35:] = LETHAL
     assert commanded(pursuit(**fast), straight(1.2), costmap).vx < 0.5
@@ -374,3 +393,23 @@ def test_a_command_takes_less_than_10_ms(planner):
         commanded(chosen, straight(), costmap, velocity=(0.2, 0, 0))
         times.append(time.process_time() - begin)
     assert min(times) < 0.01
+
+
+@pytest.mark.parametrize("planner", [dwa, rollout])
+def test_another_path_to_the_same_goal_forgets_nothing(planner):
+    chosen = planner()
+    chosen.set_path(straight())
+    chosen.oscillation.only[0], chosen.end.latched = 1.0, True
+    chosen.set_path(straight(), again=True)
+    assert chosen.oscillation.only[0] == 1.0 and chosen.end.latched
+    chosen.set_path(straight())
+    assert chosen.oscillation.only[0] == 0.0 and not chosen.end.latched
+
+
+def test_what_oscillation_forbids_is_allowed_where_nothing_else_is_free():
+    chosen = dwa(min_vel_x=0.0, max_vel_theta=0.0)  # forwards only
+    chosen.set_path(straight())
+    chosen.oscillation.only[0] = -1.0
+    commands = [chosen.command(window_around(), WAFFLE, ORIGIN, STILL) for _ in range(2)]
+    assert commands[0] is None
+    assert commands[1].vx > 0.0

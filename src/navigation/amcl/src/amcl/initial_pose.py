@@ -1,4 +1,8 @@
-"""The pose a robot starts at, kept on the parameter server, where the next start reads it."""
+"""The pose a robot starts at, kept on the parameter server, where the next start reads it.
+
+Upstream keeps no odometry with it: a node that is killed and started again while the robot drives
+is wrong by what was driven since the last time, and sure of it.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,11 @@ from typing import Any
 import numpy as np
 import rospy
 
-from nav_algorithms.estimates import Estimate
+from nav_algorithms import poses
+
+SAVED = "~saved_pose"  # beside upstream's: {pose: [x, y, yaw], odometry: [x, y, yaw], stamp: s}
+LATELY = 60.0          # s of ROS time; after longer the odometry may have begun anew
+DRIFT = 0.2            # of the way, and of the turn, by the odometry since then
 
 
 def initial_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
@@ -27,12 +35,38 @@ def initial_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return pose, np.diag(variances)
 
 
-def save_pose(estimate: Estimate) -> None:
-    """To where initial_pose reads it; a master that does not answer is passed over."""
+def save_pose(pose: np.ndarray, covariance: np.ndarray, odometry: np.ndarray) -> None:
+    """To where initial_pose reads it; a master that does not answer is passed over.
+
+    `odometry` (3,) is the robot's pose in the odometry's frame at that time.
+    """
     try:
-        for axis, value in zip("xya", estimate.pose, strict=True):
+        for axis, value in zip("xya", pose, strict=True):
             rospy.set_param(f"~initial_pose_{axis}", float(value))
-        for axes, value in zip(("xx", "yy", "aa"), np.diag(estimate.covariance), strict=True):
+        for axes, value in zip(("xx", "yy", "aa"), np.diag(covariance), strict=True):
             rospy.set_param(f"~initial_cov_{axes}", float(value))
+        rospy.set_param(SAVED, {"pose": pose.tolist(), "odometry": odometry.tolist(),
+                                "stamp": rospy.get_time()})
     except OSError:
         rospy.logdebug("the pose could not be saved: no master")
+
+
+def saved_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """(pose, covariance, odometry) as they were saved lately; None if the pose was set since."""
+    pose, covariance = initial_pose(values)
+    try:
+        saved = rospy.get_param(SAVED, {})
+        if saved["pose"] == pose.tolist() and 0 <= rospy.get_time() - saved["stamp"] < LATELY:
+            return pose, covariance, np.array(saved["odometry"], float).reshape(3)
+    except (KeyError, TypeError, ValueError):
+        pass  # nothing was saved, or not by us
+    return None
+
+
+def carried_on(pose: np.ndarray, covariance: np.ndarray, before: np.ndarray, now: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray]:
+    """A pose and its covariance after the odometry went from `before` to `now`."""
+    moved = poses.relative(before, now)
+    way, turn = float(np.hypot(*moved[:2])), abs(float(moved[2]))
+    spread = np.array([way, way, turn + way]) * DRIFT
+    return poses.compose(pose, moved), covariance + np.diag(spread**2)

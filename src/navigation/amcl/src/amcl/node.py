@@ -10,26 +10,27 @@ from typing import Any
 import numpy as np
 import rospkg
 import rospy
-import tf2_ros
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import SetMap, SetMapRequest, SetMapResponse
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from amcl.conversions import ParticleCloud, known_pose, pose_with_covariance, scan_of
-from amcl.diagnostics import deviations
-from amcl.initial_pose import initial_pose, save_pose
+from amcl.conversions import known_pose, scan_of
+from amcl.initial_pose import carried_on, initial_pose, save_pose, saved_pose
 from amcl.maps import MapSource
+from amcl.outputs import Outputs
 from amcl.robot_frames import RobotFrames
 from amcl.settings import localisation_settings, sensor_settings, with_order
 from nav_algorithms import poses
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
+from nav_nodes import clock
 from nav_nodes.complaints import Complaints
-from nav_nodes.messages import grid_of, transform_message
+from nav_nodes.messages import grid_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
+from nav_nodes.program import init_node, spin
+from nav_nodes.silence import Silence
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time that a scan waits for its odometry
@@ -48,18 +49,17 @@ class AmclNode:
         self._lock = threading.RLock()
         self._random = np.random.default_rng(values["seed"])
         self._complaints = Complaints()
+        clock.watch(self._complaints)
         self._frames = RobotFrames(self._values, self._complaints)
         self._grid: OccupancyGrid | None = None
         self._localisation: Localisation | None = None
         self._told: tuple[np.ndarray, np.ndarray] | None = None  # by initialpose, before the map
-        self._newest = self._last_cloud = rospy.Time(0)
-        self._last_scan = time.monotonic()
+        self._saved: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None  # with its odometry
+        self._odometry: np.ndarray | None = None
+        self._newest = rospy.Time(0)
+        self._silence = Silence(self._complaints, "laser scans", "scan")
         self._is_tracking = False  # the transform map to odom is known
-        self._pose_topic = rospy.Publisher("amcl_pose", PoseWithCovarianceStamped, queue_size=2,
-                                           latch=True)
-        self._cloud_topic = rospy.Publisher("particlecloud", PoseArray, queue_size=2)
-        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
-        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._outputs = Outputs()
         self._maps = MapSource(self._take_map, self._complaints)
         rospy.Service("global_localization", Empty, self._start_anywhere)
         rospy.Service("request_nomotion_update", Empty, self._weigh_next)
@@ -85,8 +85,10 @@ class AmclNode:
                       grid.resolution)
         with self._lock:
             self._grid = grid
-            self._begin(*(self._told or initial_pose(self._values)))
-            self._told = None
+            told, self._told = self._told, None
+            self._begin(*(told or initial_pose(self._values)))
+            if told is None:
+                self._saved = saved_pose(self._values)
 
     def _begin(self, pose: np.ndarray, covariance: np.ndarray) -> None:
         """New particles on the map with the present settings."""
@@ -94,6 +96,7 @@ class AmclNode:
                                           sensor_settings(self._values), self._random)
         self._localisation.start_at(pose, covariance)
         self._is_tracking = False
+        self._saved = self._odometry = None
 
     def _set_map(self, request: SetMapRequest) -> SetMapResponse:
         self._maps.set(request.map)
@@ -124,6 +127,7 @@ class AmclNode:
                 self._told = pose, covariance
                 return
             self._localisation.start_at(pose, covariance)
+            self._saved = self._odometry = None
             if self._values["force_update_after_initialpose"]:
                 self._localisation.weigh_next()
 
@@ -132,6 +136,7 @@ class AmclNode:
             if self._localisation is not None:
                 rospy.loginfo("Initializing with uniform distribution")
                 self._localisation.start_anywhere()
+                self._saved = self._odometry = None
         return EmptyResponse()
 
     def _weigh_next(self, _request: EmptyRequest) -> EmptyResponse:
@@ -159,10 +164,11 @@ class AmclNode:
     # Scans
 
     def _take_scan(self, message: LaserScan) -> None:
-        self._last_scan = time.monotonic()
-        self._complaints.present(self._scans_missing)
-        if self._localisation is None:
-            return
+        with self._silence.heard():
+            if self._localisation is not None:
+                self._use_scan(message)
+
+    def _use_scan(self, message: LaserScan) -> None:
         stamp = message.header.stamp
         if stamp < self._newest:
             self._restart(self._newest - stamp)
@@ -180,6 +186,9 @@ class AmclNode:
             return
         self._complaints.present(what)
         with self._lock:
+            if self._saved is not None:
+                self._localisation.start_at(*carried_on(*self._saved, odometry))
+            self._saved, self._odometry = None, odometry
             self._publish(self._localisation.add(odometry, scan, message.header.frame_id), stamp)
 
     def _restart(self, by: rospy.Duration) -> None:
@@ -188,32 +197,17 @@ class AmclNode:
         self._frames.clear()
         with self._lock:
             self._localisation.forget_odometry()
-            self._last_cloud = rospy.Time(0)
+        self._outputs.restart()
 
     def _publish(self, step: Step, stamp: rospy.Time) -> None:
-        frame = self._values["global_frame_id"].lstrip("/")
+        found, values = self._localisation, self._values
         if step.weighed:
-            self._publish_cloud(frame)
+            self._outputs.cloud(found.particles, values)
         if step.estimated:
-            message = pose_with_covariance(self._localisation.estimate)
-            message.header.frame_id, message.header.stamp = frame, stamp
-            self._pose_topic.publish(message)
+            self._outputs.pose(found.estimate, values, stamp)
             self._is_tracking = True
-        if self._is_tracking and self._values["tf_broadcast"]:
-            ahead = rospy.Duration.from_sec(self._values["transform_tolerance"])
-            self._broadcaster.sendTransform(transform_message(
-                self._localisation.map_to_odom, frame,
-                self._values["odom_frame_id"].lstrip("/"), stamp + ahead))
-
-    def _publish_cloud(self, frame: str) -> None:
-        now, rate = rospy.Time.now(), self._values["gui_publish_rate"]
-        if not self._cloud_topic.get_num_connections() or (
-                rate > 0 and (now - self._last_cloud).to_sec() < 1.0 / rate):
-            return
-        self._last_cloud = now
-        cloud = ParticleCloud(self._localisation.particles)
-        cloud.header.frame_id, cloud.header.stamp = frame, now
-        self._cloud_topic.publish(cloud)
+        if self._is_tracking and values["tf_broadcast"]:
+            self._outputs.transform(found.map_to_odom, values, stamp)
 
     # What does not wait for a scan
 
@@ -224,38 +218,27 @@ class AmclNode:
             time.sleep(WATCH)
             now, rate = time.monotonic(), self._values["save_pose_rate"]
             self._maps.complain()
-            if now - self._last_scan > 1.0:
-                self._complaints.missing(self._scans_missing, self._why_no_scans())
-            if not self._is_tracking:
-                continue
-            estimate = self._localisation.estimate
+            self._silence.look(self._scans)
+            with self._lock:
+                if not self._is_tracking or self._odometry is None:
+                    continue
+                covariance, odometry = self._localisation.estimate.covariance, self._odometry
+                pose = poses.compose(self._localisation.map_to_odom, odometry)
             if rate > 0 and now - saved >= 1.0 / rate:
                 saved = now
-                save_pose(estimate)
+                save_pose(pose, covariance, odometry)
             if now - told >= 1.0:
                 told = now
-                self._diagnostics.publish(deviations(estimate.covariance, self._values))
-
-    @property
-    def _scans_missing(self) -> str:
-        return f"laser scans on {self._scans.resolved_name}"
-
-    def _why_no_scans(self) -> str:
-        """What may be wrong, as far as this process can tell."""
-        if rospy.Time.now().is_zero():
-            return "the simulated clock /clock does not run, is the simulator started?"
-        if not self._scans.get_num_connections():
-            return "nobody publishes there sensor_msgs/LaserScan (rostopic info, scan:=TOPIC)"
-        return "its publisher is silent, is the simulation paused?"
+                self._outputs.diagnostics(covariance, self._values)
 
 
 def main() -> None:
     """Runs the node until it is told to end."""
-    rospy.init_node("amcl")
+    init_node("amcl")
     table = load_table(Path(rospkg.RosPack().get_path("amcl")) / TABLE)
     try:
         AmclNode(read_parameters(table), table)
     except ParameterError as error:
         rospy.logfatal("%s", error)
         raise SystemExit(1) from None
-    rospy.spin()
+    spin()

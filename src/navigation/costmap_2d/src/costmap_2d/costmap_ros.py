@@ -13,7 +13,6 @@ import rospy
 from costmap_2d.building import build_layer, change_layer
 from costmap_2d.map_input import MapInput
 from costmap_2d.publishing import CostmapPublisher
-from costmap_2d.robot import newest_pose
 from costmap_2d.sensors import Sensors
 from costmap_2d.settings import TABLES, footprint_of, geometry_of, read_settings, table
 from nav_algorithms.costmap.costs import Costmap
@@ -69,7 +68,7 @@ class CostmapROS:
         pairs = list(zip(settings.layers, layers, strict=True))
         self._maps = [MapInput(each.values, layer, self._layered, self._lock)
                       for each, layer in pairs if isinstance(layer, StaticLayer)]
-        self._sensors = Sensors(settings.layers, name, self.global_frame, transforms.buffer)
+        self._sensors = Sensors(settings.layers, self.global_frame, transforms, complaints)
         self._servers = [serve_changes(table("costmap"), self._values, self._change, f"~{name}")]
         for each, layer in pairs:
             self._servers.append(serve_changes(table(*TABLES[each.kind]), each.values, partial(
@@ -95,8 +94,8 @@ class CostmapROS:
 
     def robot_pose(self) -> np.ndarray | None:
         """(x, y, yaw) in the global frame; None if tf has none, or none within the tolerance."""
-        return newest_pose(self._transforms.buffer, self.global_frame, self.base_frame,
-                           self.transform_tolerance, self._complaints)
+        return self._transforms.newest_pose(self.global_frame, self.base_frame,
+                                            self.transform_tolerance)
 
     def is_ready(self) -> bool:
         """The map (if one is asked for) and the robot's pose have come, and an update was made."""
@@ -193,8 +192,6 @@ class CostmapROS:
 
     def _update_and_rest(self) -> None:
         frequency = self._values["update_frequency"]
-        if rospy.Time.now().is_zero():
-            self._complaints.missing("time on /clock", "is the simulator running?")
         if not frequency or self._paused or self._stopped or rospy.Time.now().is_zero():
             time.sleep(IDLE)
             return

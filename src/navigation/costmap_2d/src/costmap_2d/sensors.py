@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import tf2_ros
-
 from costmap_2d.settings import LayerSettings
 from costmap_2d.sources import Source
 from nav_algorithms.costmap.layer import Layer
 from nav_algorithms.costmap.obstacles import ObstacleLayer
+from nav_nodes.complaints import Complaints
+from nav_nodes.transforms import Transforms
 
 
 class Sensors:
     """The sources of every layer; as for a Source, only the costmap's thread observes."""
 
-    def __init__(self, layers: Sequence[LayerSettings], costmap: str, frame: str,
-                 buffer: tf2_ros.Buffer) -> None:
-        self._of_layers = {each.name: [Source(values, costmap, frame, buffer)
+    def __init__(self, layers: Sequence[LayerSettings], frame: str, transforms: Transforms,
+                 complaints: Complaints) -> None:
+        """`frame` is the costmap's."""
+        self._of_layers = {each.name: [Source(values, frame, transforms, complaints)
                                        for values in each.sources.values()] for each in layers}
         self._all = [source for sources in self._of_layers.values() for source in sources]
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import rospy
-import tf2_ros
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2
 
@@ -20,6 +19,8 @@ from costmap_2d.clouds import (
 )
 from nav_algorithms.costmap.obstacles import Observation
 from nav_nodes.complaints import Complaints
+from nav_nodes.silence import why_silent
+from nav_nodes.transforms import Transforms
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 WAITING = 10   # messages that wait for their transform; upstream's queue is 50
@@ -33,17 +34,13 @@ class Source:
     newest that could be placed counts until the next.
     """
 
-    def __init__(self, settings: dict[str, Any], costmap: str, frame: str,
-                 buffer: tf2_ros.Buffer) -> None:
+    def __init__(self, settings: dict[str, Any], frame: str, transforms: Transforms,
+                 complaints: Complaints) -> None:
         """`settings` by params/source.yaml; `frame` is the costmap's."""
         self.settings = settings
-        self._frame, self._buffer = frame, buffer
+        self._frame, self._transforms, self._complaints = frame, transforms, complaints
         self._sensor_frame = settings["sensor_frame"].lstrip("/")
         self._what = f"{settings['data_type']} on {rospy.resolve_name(settings['topic'])}"
-        self._who = f"{self._what} for {costmap}"
-        rate = settings["expected_update_rate"]
-        self._advice = f"expected every {rate:g} s" if rate else "is the sensor running?"
-        self._complaints = Complaints(patience=rate or SILENCE)
         self._lock = threading.Lock()
         self._waiting: deque = deque(maxlen=WAITING)
         self._heard = False
@@ -86,8 +83,8 @@ class Source:
         with self._lock:
             waiting, silent = list(self._waiting), not self._heard
             self._heard = False
-        if silent:
-            self._complaints.missing(self._who, self._advice)
+        if silent and self._subscriber is not None:
+            self._complain(self._subscriber)
         keep = self.settings["observation_persistence"]
         if keep:
             self._place_all(waiting, keep)
@@ -100,7 +97,13 @@ class Source:
             self._waiting.append(message)
             self._heard = True
         self._heard_at = rospy.Time.now()
-        self._complaints.present(self._who)
+        self._complaints.present(self._what)
+
+    def _complain(self, subscriber: rospy.Subscriber) -> None:
+        rate = self.settings["expected_update_rate"]
+        why = why_silent(subscriber, self.settings["topic"])
+        self._complaints.missing(self._what, f"expected every {rate:g} s; {why}" if rate else why,
+                                 patience=rate or SILENCE)
 
     def _place_newest(self, waiting: list) -> None:
         for n in range(len(waiting) - 1, -1, -1):
@@ -132,22 +135,17 @@ class Source:
     def _placed(self, message: Any) -> Observation | None:
         """The message in the costmap's frame; None while tf cannot say where that is."""
         stamp, frame = message.header.stamp, message.header.frame_id.lstrip("/")
-        wanted = f"transform for {self._who}"
         try:
             points, when = self._points(message)
-            start = self._transform(frame, stamp)
-            end = self._transform(frame, stamp + rospy.Duration(when[-1])) if when.any() else start
-            origin = self._transform(self._sensor_frame or frame, stamp)[1]
         except ValueError as error:
             rospy.logwarn_throttle(5.0, "%s: %s", self._what, error)
-            points, when, origin = np.zeros((0, 3)), np.zeros(0), np.zeros(3)
-            start = end = (np.eye(3), origin)
-        except (tf2_ros.LookupException, tf2_ros.ConnectivityException,
-                tf2_ros.ExtrapolationException, tf2_ros.InvalidArgumentException) as error:
-            self._complaints.missing(wanted, " ".join(str(error).split()))
+            points, when = np.zeros((0, 3)), np.zeros(0)
+        start = self._transform(frame, stamp)
+        end = self._transform(frame, stamp + rospy.Duration(when[-1])) if when.any() else start
+        sensor = self._transform(self._sensor_frame or frame, stamp)
+        if start is None or end is None or sensor is None:
             return None
-        self._complaints.present(wanted)
-        points = _moved(points, start, end, when)
+        origin, points = sensor[1], _moved(points, start, end, when)
         settings = self.settings
         high = (points[:, 2] >= settings["min_obstacle_height"]) \
             & (points[:, 2] <= settings["max_obstacle_height"])
@@ -162,9 +160,9 @@ class Source:
         points = points_of_cloud(message) if kind == "PointCloud" else points_of_cloud2(message)
         return points, np.zeros(len(points))
 
-    def _transform(self, frame: str, stamp: rospy.Time) -> tuple[np.ndarray, np.ndarray]:
-        found = self._buffer.lookup_transform(self._frame, frame, stamp, rospy.Duration(0))
-        return rotation_and_translation(found.transform)
+    def _transform(self, frame: str, stamp: rospy.Time) -> tuple[np.ndarray, np.ndarray] | None:
+        found = self._transforms.find(self._frame, frame, stamp)
+        return None if found is None else rotation_and_translation(found)
 
 
 def _moved(points: np.ndarray, start: tuple, end: tuple, when: np.ndarray) -> np.ndarray:

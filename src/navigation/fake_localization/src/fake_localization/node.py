@@ -22,9 +22,12 @@ from fake_localization.poses import (
     transform_matrix,
     transform_of,
 )
+from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
-from nav_nodes.transforms import Transforms
+from nav_nodes.program import init_node
+from nav_nodes.silence import is_published, why_silent
+from nav_nodes.transforms import NEWEST, Transforms
 
 WAITING = 100  # poses that wait for the odometry of their moment, at most; upstream's number
 POLL = 0.01    # s of wall time
@@ -46,7 +49,8 @@ class FakeLocalization:
         self._ahead = rospy.Duration.from_sec(values["transform_tolerance"])
         self._offset = offset(values["delta_x"], values["delta_y"], values["delta_yaw"])
         self._complaints = Complaints()
-        self._transforms = Transforms(self._complaints)
+        clock.watch(self._complaints)
+        self._transforms = Transforms(self._complaints, (self._odom, self._base))
         self._waiting: deque[Odometry] = deque(maxlen=WAITING)
         self._came = threading.Condition()
         self._newest, self._sent = rospy.Time(0), None
@@ -70,7 +74,7 @@ class FakeLocalization:
                 self._complaints.present(missing)
                 self._publish_what_is_ready()
             elif time.monotonic() - last > QUIET:
-                self._complaints.missing(missing, self._why_no_truth())
+                self._complaints.missing(missing, self._why_no_truth(), since=last)
 
     def _take_truth(self, truth: Odometry) -> None:
         with self._came:
@@ -85,19 +89,13 @@ class FakeLocalization:
 
     def _publish_what_is_ready(self) -> None:
         """All whose odometry has come, the oldest first; the others go on waiting."""
-        missing = f"transform from {self._odom} to {self._base}"
-        try:
-            latest = self._transforms.buffer.get_latest_common_time(self._odom, self._base)
-        except tf2_ros.TransformException as error:
-            self._complaints.missing(missing, " ".join(str(error).split()))
-            time.sleep(POLL)
-            return
-        while truth := self._next(latest):
-            self._complaints.present(missing)
-            self._publish(truth)
+        frames = self._odom, self._base
+        if self._transforms.buffer.can_transform(*frames, NEWEST):
+            latest = self._transforms.buffer.get_latest_common_time(*frames)
+            while truth := self._next(latest):
+                self._publish(truth)
         if self._waiting:
-            self._complaints.missing(missing, f"the newest is of {latest.to_sec():.1f} s, the true "
-                                              f"poses are of {self._newest.to_sec():.1f} s")
+            self._transforms.find(*frames, self._newest)  # says what is missing
             time.sleep(POLL)
 
     def _next(self, latest: rospy.Time) -> Odometry | None:
@@ -110,20 +108,19 @@ class FakeLocalization:
     def _publish(self, truth: Odometry) -> None:
         try:
             base = self._offset @ matrix_of(truth.pose.pose)
-            found = self._transforms.buffer.lookup_transform(self._odom, self._base,
-                                                             truth.header.stamp)
         except ValueError as error:
             self._complaints.missing("true pose that is one", str(error))
             return
-        except tf2_ros.TransformException:  # older than all odometry
-            return
         self._complaints.present("true pose that is one")
+        odometry = self._transforms.find(self._odom, self._base, truth.header.stamp)
+        if odometry is None:  # older than all odometry
+            return
         estimate = PoseWithCovarianceStamped(header=truth.header, pose=truth.pose)
         estimate.header.frame_id = self._map
         estimate.pose.pose = pose_of(base)
         self._pose_topic.publish(estimate)
         self._particle_topic.publish(PoseArray(estimate.header, [estimate.pose.pose]))
-        self._broadcast(map_to_odom(base, transform_matrix(found.transform)), truth.header.stamp)
+        self._broadcast(map_to_odom(base, transform_matrix(odometry)), truth.header.stamp)
 
     def _broadcast(self, matrix: np.ndarray, stamp: rospy.Time) -> None:
         if stamp == self._sent:  # the same stamp twice is a warning in every listener
@@ -151,24 +148,20 @@ class FakeLocalization:
 
     def _why_no_truth(self) -> str:
         """What may be wrong, as far as this process can tell."""
-        if not self._truth.get_num_connections():
-            return ("nobody publishes there nav_msgs/Odometry; has the robot the plugin "
-                    "libgazebo_ros_p3d.so with that <topicName>?")
-        return "its publisher is silent, is the simulation paused?"
+        if is_published(self._truth):
+            return why_silent(self._truth, "base_pose_ground_truth")
+        return ("nobody publishes there nav_msgs/Odometry; has the robot the plugin "
+                "libgazebo_ros_p3d.so with that <topicName>?")
 
 
 def main() -> int:
     """Runs the node until it is told to end; the exit status."""
-    rospy.init_node("fake_localization")
+    init_node("fake_localization")
     folder = Path(rospkg.RosPack().get_path("fake_localization"))
     try:
         values = read_parameters(load_table(folder / "params" / "fake_localization.yaml"))
     except ParameterError as error:
         rospy.logfatal("%s", error)
         return 1
-    try:
-        FakeLocalization(values).run()
-    except rospy.ROSException:  # topics are closed while the last pose is on its way
-        if not rospy.is_shutdown():
-            raise
+    FakeLocalization(values).run()
     return 0

@@ -16,14 +16,16 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
 from gmapping.mapper import TABLE, Mapper
+from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_message, transform_message
-from nav_nodes.mount import Mount
+from nav_nodes.mount import Mounts
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
+from nav_nodes.program import init_node, spin
+from nav_nodes.silence import Silence
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time that a scan waits for the odometry of its moment
-POLL = 0.01     # s of wall time
 
 
 class SlamNode:
@@ -39,61 +41,42 @@ class SlamNode:
                         for name in ("map_frame", "odom_frame", "base_frame")}
         self._mapper = Mapper(values)
         self._complaints = Complaints()
-        self._transforms = Transforms(self._complaints)
-        self._mounts: dict[str, Mount] = {}
+        clock.watch(self._complaints)
+        self._transforms = Transforms(self._complaints, (self._frames["odom_frame"],
+                                                         self._frames["base_frame"]))
+        self._mounts = Mounts(self._frames["base_frame"], self._transforms, self._complaints)
         self._map: OccupancyGrid | None = None
         self._map_to_odom = np.zeros(3)
         self._newest = rospy.Time(0)
-        self._last_scan = time.monotonic()
+        self._silence = Silence(self._complaints, "laser scans", "scan")
         self._map_topic = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._metadata_topic = rospy.Publisher("map_metadata", MapMetaData, queue_size=1,
                                                latch=True)
         self._entropy_topic = rospy.Publisher("~entropy", Float64, queue_size=1, latch=True)
         rospy.Service("dynamic_map", GetMap, self._answer_map)
-        threading.Thread(target=self._broadcast, daemon=True).start()
         self._scans = rospy.Subscriber("scan", LaserScan, self._take_scan, queue_size=5)
+        threading.Thread(target=self._broadcast, daemon=True).start()
 
     def _take_scan(self, scan: LaserScan) -> None:
-        self._last_scan = time.monotonic()
-        self._complaints.present(self._scans_missing)
-        if not self._mapper.is_wanted():
-            return
+        with self._silence.heard():
+            if self._mapper.is_wanted():
+                self._use_scan(scan)
+
+    def _use_scan(self, scan: LaserScan) -> None:
         if scan.header.stamp < self._newest:
             rospy.logwarn("the clock went back by %.1f s: mapping goes on from the odometry there",
                           (self._newest - scan.header.stamp).to_sec())
             self._transforms.buffer.clear()
         self._newest = scan.header.stamp
-        mount, odometry = self._mount(scan.header.frame_id), self._odometry(scan.header.stamp)
+        mount = self._mounts.of(scan.header.frame_id)
+        odometry = self._transforms.pose(self._frames["odom_frame"], self._frames["base_frame"],
+                                         scan.header.stamp, PATIENCE)
         if mount is None or odometry is None or not self._mapper.take(scan, odometry, mount):
             return
         self._map_to_odom = self._mapper.slam.map_to_odom
         age = None if self._map is None else (scan.header.stamp - self._map.header.stamp).to_sec()
         if age is None or not 0.0 <= age <= self._values["map_update_interval"]:
             self._publish_map(scan.header.stamp)
-
-    def _odometry(self, stamp: rospy.Time) -> np.ndarray | None:
-        """The robot's pose in the odometry's frame then, waited for by the wall's clock."""
-        frames = self._frames["odom_frame"], self._frames["base_frame"]
-        end = time.monotonic() + PATIENCE
-        while (not self._transforms.buffer.can_transform(*frames, stamp)
-               and time.monotonic() < end and not rospy.is_shutdown()):
-            time.sleep(POLL)
-        return self._transforms.pose(*frames, stamp)
-
-    def _mount(self, laser: str) -> Mount | None:
-        """Of a laser by its frame's name; looked up once, because it is screwed on."""
-        laser = laser.lstrip("/")
-        if laser not in self._mounts:
-            if self._transforms.pose(self._frames["base_frame"], laser) is None:
-                return None
-            found = self._transforms.buffer.lookup_transform(self._frames["base_frame"], laser,
-                                                             rospy.Time(0))
-            try:
-                self._mounts[laser] = Mount.of(found.transform)
-            except ValueError as error:
-                self._complaints.missing(f"level laser in frame {laser}", str(error))
-                return None
-        return self._mounts[laser]
 
     def _publish_map(self, stamp: rospy.Time) -> None:
         self._map = grid_message(self._mapper.slam.grid(), self._frames["map_frame"], stamp)
@@ -104,10 +87,6 @@ class SlamNode:
     def _answer_map(self, _request: GetMapRequest) -> GetMapResponse | None:
         """The newest map; the call fails while there is none, as upstream's."""
         return None if self._map is None else GetMapResponse(self._map)
-
-    @property
-    def _scans_missing(self) -> str:
-        return f"laser scans on {self._scans.resolved_name}"
 
     def _broadcast(self) -> None:
         """The transform, at the wall's pace, and a look at whether scans still come."""
@@ -121,26 +100,17 @@ class SlamNode:
                     self._map_to_odom, self._frames["map_frame"], self._frames["odom_frame"],
                     now + rospy.Duration.from_sec(delay)))
                 last = now
-            if time.monotonic() - self._last_scan > 1.0:
-                self._complaints.missing(self._scans_missing, self._why_no_scans())
+            self._silence.look(self._scans)
             time.sleep(min(period, 0.5) or 0.5)
-
-    def _why_no_scans(self) -> str:
-        """What may be wrong, as far as this process can tell."""
-        if rospy.Time.now().is_zero():
-            return "the simulated clock /clock does not run, is the simulator started?"
-        if not self._scans.get_num_connections():
-            return "nobody publishes there sensor_msgs/LaserScan (rostopic info, scan:=TOPIC)"
-        return "its publisher is silent, is the simulation paused?"
 
 
 def main() -> None:
     """Runs the node until it is told to end."""
-    rospy.init_node("slam_gmapping")
+    init_node("slam_gmapping")
     folder = Path(rospkg.RosPack().get_path("gmapping"))
     try:
         SlamNode(read_parameters(load_table(folder / TABLE)))
     except ParameterError as error:
         rospy.logfatal("%s", error)
         raise SystemExit(1) from None
-    rospy.spin()
+    spin()

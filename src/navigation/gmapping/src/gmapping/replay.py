@@ -113,7 +113,7 @@ def write_trajectory(path: Path, stamps: np.ndarray, poses: np.ndarray) -> None:
     path.write_text("".join(lines), encoding="utf-8")
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """The exit status: 0, or 1 with one line that says what is wrong."""
     options = _parser().parse_intermixed_args(arguments)
     try:

@@ -69,10 +69,13 @@ def _decode(path: Path, content: bytes) -> np.ndarray:
     """(rows, columns) or (rows, columns, 3 or 4)."""
     if content[:2] in (b"P1", b"P2", b"P3"):
         content += b"\n"  # without it OpenCV misses the last number
+    told = cv2.setLogLevel(0)  # else it says something, too
     try:
         pixels = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         pixels = None
+    finally:
+        cv2.setLogLevel(told)
     if pixels is None or not pixels.size:
         raise MapImageError(f"{path}: is no image, or a damaged one ({len(content)} bytes); a PGM "
                             f"or PNG file is wanted")

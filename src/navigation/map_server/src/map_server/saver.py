@@ -13,6 +13,8 @@ from nav_msgs.msg import OccupancyGrid
 from map_server.map_files import check_target, write_map
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_of, yaw_of
+from nav_nodes.program import init_node
+from nav_nodes.silence import is_published, why_silent
 
 POLL = 0.5  # s of wall time
 
@@ -40,9 +42,9 @@ class MapSaver:
             self._came.set()
 
     def _why(self) -> str:
-        if self._maps.get_num_connections():
+        if is_published(self._maps):
             return "its publisher has not sent one yet"
-        return "nobody publishes there nav_msgs/OccupancyGrid (rostopic info, map:=TOPIC)"
+        return why_silent(self._maps, "map")
 
 
 def main() -> int:
@@ -50,7 +52,7 @@ def main() -> int:
     options = _options(rospy.myargv()[1:])
     try:
         check_target(options.f)
-        rospy.init_node("map_saver")
+        init_node("map_saver")
         message = MapSaver().wait()
         if message is None:
             return 1

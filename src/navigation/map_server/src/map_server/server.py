@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from pathlib import Path
 
 import rospkg
@@ -21,9 +20,11 @@ from nav_msgs.srv import (
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
 from map_server.map_files import load_map, read_map
 from map_server.metadata import MapMetadata
+from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_message, quaternion_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
+from nav_nodes.program import init_node, spin
 
 USAGE = ("usage: map_server MAP.yaml (or, deprecated: map_server IMAGE RESOLUTION, with m a pixel "
          "above 0)")
@@ -31,8 +32,6 @@ FAILED = 255  # upstream's exit(-1)
 RESULTS = {MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,
            MapMetadataError: LoadMapResponse.RESULT_INVALID_MAP_METADATA,
            MapImageError: LoadMapResponse.RESULT_INVALID_MAP_DATA}
-CLOCK = "simulated clock /clock"
-POLL = 0.05  # s of wall time
 
 
 class MapServer:
@@ -83,32 +82,22 @@ def _in_a_response(message: OccupancyGrid) -> OccupancyGrid:
     return OccupancyGrid(message.header, message.info, message.data.tolist())
 
 
-def wait_for_clock() -> bool:
-    """Returns true when time runs: a map's stamp must not be 0; false on the way out."""
-    complaints = Complaints()
-    while rospy.Time.now().is_zero() and not rospy.is_shutdown():
-        complaints.missing(CLOCK, "the map waits for it because /use_sim_time is true; start the "
-                                  "simulator, or rosparam set use_sim_time false and start again")
-        time.sleep(POLL)
-    return not rospy.is_shutdown()
-
-
 def main() -> int:
     """Runs the node until it is told to end; the exit status."""
     arguments = rospy.myargv()[1:]
     if arguments and arguments[0] in ("-h", "--help"):
         print(USAGE)
         return 0
-    rospy.init_node("map_server")
+    init_node("map_server")
     try:
         values = _parameters()
         loaded = _load(arguments, values)
     except (MapFileError, ParameterError) as error:
         rospy.logerr("%s", error)
         return FAILED
-    if wait_for_clock():
+    if clock.wait_until_it_runs(Complaints()):  # a map's stamp must not be 0
         MapServer(loaded, values["frame_id"])
-        rospy.spin()
+        spin()
     return 0
 
 

@@ -33,9 +33,9 @@ def in_frame(goal: PoseStamped, frame: str, transforms: Transforms) -> np.ndarra
     own = goal.header.frame_id.lstrip("/")
     if own == frame:
         return pose_of(goal.pose)
-    origin = transforms.pose(frame, own) if own else None
-    if origin is None:
-        rospy.logwarn_throttle(5.0, "Failed to transform the goal pose from %s into the %s frame",
-                               goal.header.frame_id or "'' (its frame_id is empty)", frame)
+    if not own:
+        rospy.logwarn_throttle(5.0, "Failed to transform the goal pose into the %s frame: its "
+                                    "frame_id is empty; write for example map", frame)
         return None
-    return compose(origin, pose_of(goal.pose))
+    origin = transforms.pose(frame, own)
+    return None if origin is None else compose(origin, pose_of(goal.pose))

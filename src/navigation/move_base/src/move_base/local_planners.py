@@ -70,10 +70,13 @@ class LocalPlanner(Plugin):
         self._global_plan.unregister()
         self._local_plan.unregister()
 
-    def set_path(self, path: np.ndarray) -> None:
-        """Path (N, 3) to follow from now on. Raises ValueError for what is no path."""
+    def set_path(self, path: np.ndarray, again: bool) -> None:
+        """Path (N, 3) to follow from now on. Raises ValueError for what is no path.
+
+        `again`: on the way to the same goal as before.
+        """
         with self._lock:
-            self._planner.set_path(path)
+            self._planner.set_path(path, again)
             self._path = path
 
     def reached(self, situation: Situation) -> bool:

@@ -13,6 +13,7 @@ from costmap_2d import CostmapROS
 from move_base.base import Base
 from move_base.local_planners import LocalPlanner, Situation
 from move_base.planning import Planning
+from move_base.progress import Progress
 from move_base.recoveries import Recovery, Rig
 from move_base.state_machine import GOAL_REACHED, State, StateMachine
 from move_base.watch import Watch
@@ -41,12 +42,15 @@ class Navigator:
         self._watch, self._machine, self._planning = watch, machine, planning
         self.local_planner, self._recoveries = local_planner, recoveries
         self._recovering: Recovery | None = None
+        self._has_path = False  # to the present goal
+        self._progress = Progress()
         self._status = rospy.Publisher("~recovery_status", RecoveryStatus, queue_size=1)
 
     def begin(self, goal: PoseStamped) -> None:
         """A goal, maybe in place of another."""
         self._base.stop()
-        self._recovering = None
+        self._recovering, self._has_path = None, False
+        self._progress.begin()
         self._planning.begin(self._machine.begin(rospy.get_time()), goal)
 
     def end(self) -> None:
@@ -71,16 +75,18 @@ class Navigator:
         state = self._machine.state
         if state is State.CLEARING:
             return where, self._recover(where, frequency)
-        return where, self._control(now) if state is State.CONTROLLING else None
+        return where, self._control(now, pose) if state is State.CONTROLLING else None
 
-    def _control(self, now: float) -> Outcome | None:
+    def _control(self, now: float, pose: np.ndarray) -> Outcome | None:
         path = self._planning.take_path()
         if path is not None:
             try:
-                self.local_planner.set_path(path)
+                self.local_planner.set_path(path, self._has_path)
+                self._progress.take(path)
             except ValueError as error:
                 rospy.logerr("Failed to pass global plan to the controller, aborting: %s", error)
                 return Outcome(False, NOT_PASSED)
+            self._has_path = True
             self._machine.took_path()
         situation = self._situation()
         if situation is None:
@@ -92,8 +98,12 @@ class Navigator:
             self._base.stop()
             return None
         command = self.local_planner.command(situation)
-        self._base.drive(np.zeros(3) if command is None else command.velocity)
-        self._machine.controlled(command is not None, rospy.get_time())
+        if command is None:
+            self._base.stop()
+        else:
+            self._base.drive(command.velocity)
+        self._machine.controlled(command is not None, self._progress.is_nearer(pose),
+                                 rospy.get_time())
         return None
 
     def _situation(self) -> Situation | None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import sys
 import time
 
 import actionlib
@@ -31,9 +29,11 @@ from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
 from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
+from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import stamped_pose
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
+from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
 
 KILLED = "Aborting on the goal because the node has been killed"
@@ -50,11 +50,14 @@ class MoveBase:
         self._global_planner = kinds[0]()
         local_planner = kinds[1](values["controller_frequency"])
         complaints = Complaints()
+        clock.watch(complaints)
         self._transforms = Transforms(complaints)
         self._base = Base(values["command_type"], values["wheelbase"],
                           local_planner.values["odom_topic"])
         self._costmaps = (CostmapROS("global_costmap", self._transforms, complaints),
                           CostmapROS("local_costmap", self._transforms, complaints))
+        frames = [costmap.global_frame for costmap in self._costmaps]
+        self._transforms.chain = *dict.fromkeys(frames), self._costmaps[0].base_frame
         self._machine = StateMachine(settings_from(Patience, values))
         radius = reach(self._costmaps[0].bare_footprint)
         recoveries = load(values, radius)
@@ -199,13 +202,13 @@ class MoveBase:
             pass  # its topics have gone already
 
 
-def main() -> None:
-    """Runs the node until it is told to end."""
-    rospy.init_node("move_base")
+def main() -> int:
+    """Runs the node until it is told to end; the exit status."""
+    init_node("move_base")
     try:
         MoveBase()
     except ParameterError as error:
         rospy.logfatal("%s", error)
-        sys.exit(1)
-    rospy.spin()
-    gc.freeze()  # else Python looks through all of numba's objects at its end, for a second
+        return 1
+    spin()
+    return 0

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 GOAL_REACHED = "Goal reached."
+A_TURN = 10.0  # s that a robot may take, at least, without getting nearer: it turns round before
 
 
 class State(Enum):
@@ -59,7 +60,7 @@ class StateMachine:
     def _reset(self) -> None:
         self.state, self.trigger, self.recovery = State.PLANNING, Trigger.PLANNING, 0
         self.wants_plan, self._retries = False, 0
-        self._last_plan = self._last_control = self._last_moved = 0.0
+        self._last_plan = self._last_control = self._last_moved = self._last_nearer = 0.0
 
     def begin(self, now: float) -> int:
         """A new goal, maybe in place of another; the number by which its plans are known."""
@@ -83,7 +84,7 @@ class StateMachine:
     def hold(self, now: float) -> None:
         """Patience begins anew: the robot cannot see, or time went back."""
         with self._lock:
-            self._last_plan = self._last_control = self._last_moved = now
+            self._last_plan = self._last_control = self._last_moved = self._last_nearer = now
 
     def at(self, x: float, y: float, now: float) -> None:
         """Where the robot is, m: as long as it gets about, it does not oscillate."""
@@ -126,14 +127,19 @@ class StateMachine:
             self._clear(Trigger.OSCILLATION)
             return True
 
-    def controlled(self, found: bool, now: float) -> None:
-        """Whether the local planner had a velocity to drive with."""
+    def controlled(self, found: bool, nearer: bool, now: float) -> None:
+        """Whether the local planner had a velocity, and the robot has come nearer to its goal."""
         with self._lock:
-            if found:
-                self._last_control = now
+            patience = self.patience.controller_patience
+            if nearer:
+                self._last_nearer = now
                 if self.trigger is Trigger.CONTROLLING:
                     self.recovery = 0
-            elif now > self._last_control + self.patience.controller_patience:
+            if found:
+                self._last_control = now
+                if now > self._last_nearer + max(patience, A_TURN):
+                    self._clear(Trigger.CONTROLLING)
+            elif now > self._last_control + patience:
                 self._clear(Trigger.CONTROLLING)
             else:
                 self._plan_again(now)
@@ -147,7 +153,7 @@ class StateMachine:
     def recovered(self, now: float) -> None:
         """A behaviour has ended; planning shows whether it helped."""
         with self._lock:
-            self._last_moved = now
+            self._last_moved = self._last_nearer = now
             self.recovery += 1
             self._plan_again(now)
 

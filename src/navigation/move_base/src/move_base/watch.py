@@ -39,15 +39,19 @@ class Watch:
         A timeout of 0 asks, as upstream, only for costmaps, poses and what an
         `expected_update_rate` was set for.
         """
-        return ((timeout <= 0.0 or self._all_speak(now, timeout))
-                and all(costmap.is_ready() and costmap.robot_pose() is not None
-                        for costmap in self._costmaps)
+        poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, for what they say
+        located = all(pose is not None for pose in poses)
+        return ((timeout <= 0.0 or self._all_speak(now, timeout, located)) and located
+                and all(costmap.is_ready() for costmap in self._costmaps)
                 and self._sensors_are_current())
 
-    def _all_speak(self, now: float, timeout: float) -> bool:
-        """Sensors, odometry and localisation; each that does not is complained about."""
+    def _all_speak(self, now: float, timeout: float, located: bool) -> bool:
+        """Sensors, odometry and localisation; each that does not is complained about.
+
+        Without odometry there is no localisation either, and only the first is to blame.
+        """
         return all([self._sensors_speak(timeout), self._odometry_speaks(now, timeout),
-                    self._is_localised(now, timeout)])
+                    not located or self._is_localised(now, timeout)])
 
     def _sensors_are_current(self) -> bool:
         if self._costmaps[1].is_current():
@@ -84,11 +88,12 @@ class Watch:
             self._seen = _Seen(stamp, now, now)
         self._seen.looked = now
         late = now - self._seen.since > timeout
-        self._say(f"new transform from {parent} to {child}", late)
+        self._say(f"new transform from {parent} to {child}", late, is_result=True)
         return not late
 
-    def _say(self, what: str, missing: bool) -> None:
+    def _say(self, what: str, missing: bool, is_result: bool = False) -> None:
         if missing:
-            self._complaints.missing(what, "the robot stands until it is there again")
+            self._complaints.missing(what, "the robot stands until it is there again",
+                                     is_result=is_result)
         else:
             self._complaints.present(what)

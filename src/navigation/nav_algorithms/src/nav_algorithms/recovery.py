@@ -8,8 +8,8 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.local_planning.free_arcs import arc_of
 from nav_algorithms.local_planning.goal import turned
-from nav_algorithms.local_planning.pure_pursuit import arc_of
 from nav_algorithms.local_planning.velocities import Command
 
 

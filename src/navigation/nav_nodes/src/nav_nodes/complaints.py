@@ -1,17 +1,33 @@
-"""Lines that say what is missing and for how long, at most every 5 s each."""
+"""Lines that say what is missing and for how long: one for all of it, at most every 5 s."""
 
 from __future__ import annotations
 
 import threading
 import time
+from dataclasses import dataclass
 
 import rospy
 
-INTERVAL = 5.0  # s of wall time between two lines of one kind
+INTERVAL = 5.0    # s of wall time between two lines about the same
+GATHERING = 0.3   # s that a first line waits for what is missing for the same reason
+SOON = 3.0        # s between a cause and its result
+RECENT = 2.0      # s since somebody missed it, for it to be said
+FORGOTTEN = 12.0  # s after which what nobody missed any more is missing anew
+
+
+@dataclass
+class _Absence:
+    since: float
+    patience: float
+    advice: str
+    is_root: bool
+    is_result: bool
+    seen: float
+    said: float | None = None
 
 
 class Complaints:
-    """Remembers since when each thing has been missing. Safe on any thread.
+    """Remembers since when each thing has been missing. One a node; safe on any thread.
 
     Wall time, because a simulated clock that stands still is one of the things that can be missing.
     """
@@ -20,24 +36,56 @@ class Complaints:
         """Nothing is said in the first `patience` s of an absence."""
         self._patience = patience
         self._lock = threading.Lock()
-        self._since: dict[str, float] = {}
-        self._said: dict[str, float] = {}
+        self._absent: dict[str, _Absence] = {}
 
-    def missing(self, what: str, advice: str = "") -> None:
-        """`what` ("laser scans on /scan") is still missing; call as often as that is noticed."""
+    def missing(self, what: str, advice: str = "", patience: float | None = None,
+                since: float | None = None, is_root: bool = False,
+                is_result: bool = False) -> None:
+        """`what` ("laser scans on /scan") is still missing; call as often as that is noticed.
+
+        Of several who miss it the least patient one's `advice` is said. `since`: of
+        time.monotonic, if that was before the first call. While something is missing that
+        `is_root`, nothing else is said: it follows from that. What `is_result` is not said while
+        something else is missing since about then, however patient one is with that.
+        """
         now = time.monotonic()
+        patience = self._patience if patience is None else patience
         with self._lock:
-            since = self._since.setdefault(what, now)
-            if now - since < self._patience or now - self._said.get(what, -INTERVAL) < INTERVAL:
-                return
-            self._said[what] = now
-        tail = f": {advice}" if advice else ""
-        rospy.logwarn("no %s for %.0f s%s", what, now - since, tail)
+            entry = self._absent.get(what)
+            if entry is None or now - entry.seen > FORGOTTEN:
+                entry = self._absent[what] = _Absence(now, patience, advice, is_root, is_result,
+                                                      now)
+            entry.since, entry.seen = min(entry.since, now if since is None else since), now
+            if patience <= entry.patience:
+                entry.patience, entry.advice = patience, advice
+            line = self._line(now)
+        if line:
+            rospy.logwarn("%s", line)
 
     def present(self, what: str) -> None:
         """It is there: the next absence begins anew."""
         with self._lock:
-            self._since.pop(what, None)
-            said = self._said.pop(what, None)
-        if said is not None:
+            entry = self._absent.pop(what, None)
+        if entry is not None and entry.said is not None:
             rospy.loginfo("%s: there again", what)
+
+    def _line(self, now: float) -> str:
+        """What is to be said now; what was never said does not wait for the rest."""
+        missed = {what: entry for what, entry in self._absent.items() if now - entry.seen <= RECENT}
+        causes = [entry.since for entry in missed.values()
+                  if not entry.is_result and now - entry.since >= self._patience]
+        known = {what: entry for what, entry in missed.items()
+                 if now - entry.since >= entry.patience and not (
+                     entry.is_result and any(abs(entry.since - cause) < SOON for cause in causes))}
+        known = {what: entry for what, entry in known.items() if entry.is_root} or known
+        chosen = {what: entry for what, entry in known.items() if entry.said is None}
+        if chosen:
+            if all(now - entry.since < entry.patience + GATHERING for entry in chosen.values()):
+                return ""
+        elif all(now - entry.said >= INTERVAL for entry in known.values()):
+            chosen = known
+        for entry in chosen.values():
+            entry.said = now
+        return "; ".join(f"no {what} for {now - entry.since:.0f} s"
+                         + (f": {entry.advice}" if entry.advice else "")
+                         for what, entry in chosen.items())

@@ -1,4 +1,4 @@
-"""How a laser sits on the robot."""
+"""How lasers sit on the robot."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from geometry_msgs.msg import Transform
+
+from nav_nodes.complaints import Complaints
+from nav_nodes.transforms import Transforms
 
 LEVEL = 0.02  # how much of a laser's upward axis may lean away from the vertical: about 11 degrees
 
@@ -26,3 +29,29 @@ class Mount:
             raise ValueError("the laser must look along the floor, but its transform tilts it")
         yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
         return cls(np.array([transform.translation.x, transform.translation.y, yaw]), up < 0.0)
+
+
+class Mounts:
+    """Of all lasers of one robot, each looked up once, because it is screwed on."""
+
+    def __init__(self, base: str, transforms: Transforms, complaints: Complaints) -> None:
+        """`base`: name of the robot's frame."""
+        self._base, self._transforms, self._complaints = base, transforms, complaints
+        self._known: dict[str, Mount] = {}
+
+    def of(self, laser: str) -> Mount | None:
+        """By the name of its frame; None, with a line, while it is not known or tilted."""
+        laser = laser.lstrip("/")
+        if laser in self._known:
+            return self._known[laser]
+        found = self._transforms.find(self._base, laser)
+        if found is None:
+            return None
+        what = f"level laser in frame {laser}"
+        try:
+            self._known[laser] = Mount.of(found)
+        except ValueError as error:
+            self._complaints.missing(what, str(error))
+            return None
+        self._complaints.present(what)
+        return self._known[laser]

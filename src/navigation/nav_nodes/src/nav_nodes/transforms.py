@@ -1,33 +1,111 @@
-"""Poses of frames in the plane, by tf2, with one line that says what is missing."""
+"""Transforms between frames, by tf2, with one line that says which one is missing or late."""
 
 from __future__ import annotations
+
+import threading
+import time
 
 import numpy as np
 import rospy
 import tf2_ros
+from geometry_msgs.msg import Transform, TransformStamped
 
 from nav_nodes.complaints import Complaints
+from nav_nodes.links import Link, known_links, weakest
 from nav_nodes.messages import yaw_of
+
+NEWEST = rospy.Time(0)
+POLL = 0.01  # s of wall time
+LATE = 0.5   # s; transforms that are older than that are late, whatever was asked for
+ODD = 3.0    # s that messages may be dated oddly before that is said
 
 
 class Transforms:
-    """One tf2 buffer and listener a node; a lookup that fails complains and answers None."""
+    """One tf2 buffer and listener a node; a lookup that fails complains and answers None.
 
-    def __init__(self, complaints: Complaints, cache_s: float = 30.0) -> None:
+    Waits by the wall's clock: the simulated one may stand.
+    """
+
+    def __init__(self, complaints: Complaints, chain: tuple[str, ...] = (),
+                 cache_s: float = 30.0) -> None:
+        """`chain`: frames of which each should be known in the one before; may be set later."""
+        self.chain = chain
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_s))
         self._listener = tf2_ros.TransformListener(self.buffer)
         self._complaints = complaints
+        self._lock = threading.Lock()
+        self._blamed: dict[tuple[str, str], set[str]] = {}  # by what was asked for
 
-    def pose(self, parent: str, child: str, stamp: rospy.Time = rospy.Time(0),
+    def find(self, parent: str, child: str, stamp: rospy.Time = NEWEST) -> Transform | None:
+        """The transform of `child` in `parent` at `stamp` (0: the newest)."""
+        found = self._look_up(parent, child, stamp)
+        if found is not None:
+            self._trust(parent, child)
+        return None if found is None else found.transform
+
+    def pose(self, parent: str, child: str, stamp: rospy.Time = NEWEST,
              wait_s: float = 0.0) -> np.ndarray | None:
         """(x, y, yaw) of `child` in `parent` at `stamp` (0: the newest), waited for `wait_s`."""
-        what = f"transform from {parent} to {child}"
-        try:
-            found = self.buffer.lookup_transform(parent, child, stamp,
-                                                 rospy.Duration(wait_s)).transform
-        except (tf2_ros.LookupException, tf2_ros.ConnectivityException,
-                tf2_ros.ExtrapolationException, tf2_ros.InvalidArgumentException) as error:
-            self._complaints.missing(what, " ".join(str(error).split()))
+        end = time.monotonic() + wait_s
+        while (not self.buffer.can_transform(parent, child, stamp) and time.monotonic() < end
+               and not rospy.is_shutdown()):
+            time.sleep(POLL)
+        found = self.find(parent, child, stamp)
+        return None if found is None else _in_the_plane(found)
+
+    def newest_pose(self, parent: str, child: str, tolerance_s: float) -> np.ndarray | None:
+        """(x, y, yaw) of `child` in `parent`; None if tf has none that is new enough."""
+        found = self._look_up(parent, child, NEWEST)
+        if found is None:
             return None
-        self._complaints.present(what)
-        return np.array([found.translation.x, found.translation.y, yaw_of(found.rotation)])
+        stamp = found.header.stamp
+        if not stamp.is_zero() and (rospy.Time.now() - stamp).to_sec() > tolerance_s:
+            self._blame(parent, child, stamp)  # a stamp of 0: all of it is static
+            return None
+        self._trust(parent, child)
+        return _in_the_plane(found.transform)
+
+    def _look_up(self, parent: str, child: str, stamp: rospy.Time) -> TransformStamped | None:
+        try:
+            return self.buffer.lookup_transform(parent, child, stamp)
+        except tf2_ros.TransformException:
+            self._blame(parent, child, stamp)
+            return None
+
+    def _blame(self, parent: str, child: str, stamp: rospy.Time) -> None:
+        link = weakest(known_links(self.buffer), parent, child, self.chain)
+        what, why, patience = _fault(link, stamp)
+        with self._lock:
+            others = self._blamed.pop((parent, child), set()) - {what}
+            self._blamed[parent, child] = {what}
+        for other in others:
+            self._complaints.present(other)
+        is_localisation = len(self.chain) > 2 and link.parent == self.chain[0]
+        self._complaints.missing(what, why, patience, is_result=is_localisation
+                                 and link.newest is not None)
+
+    def _trust(self, parent: str, child: str) -> None:
+        if (parent, child) not in self._blamed:
+            return
+        with self._lock:
+            whats = self._blamed.pop((parent, child), set())
+        for what in whats:
+            self._complaints.present(what)
+
+
+def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
+    """What is missing, why, and the patience with it, where a transform is not to be had."""
+    name = f"transform from {link.parent} to {link.child}"
+    if link.newest is None:
+        return name, "nothing on /tf or /tf_static says it", None
+    age = rospy.Time.now().to_sec() - link.newest
+    if age > LATE or stamp.is_zero():
+        return f"new {name}", f"the newest is {age:.1f} s old", None
+    ahead = stamp.to_sec() - link.newest
+    return (f"{name} at the stamps of messages",
+            f"they are {abs(ahead):.1f} s {'ahead of' if ahead > 0 else 'behind'} the newest one; "
+            f"do the clocks of all machines agree?", ODD)
+
+
+def _in_the_plane(found: Transform) -> np.ndarray:
+    return np.array([found.translation.x, found.translation.y, yaw_of(found.rotation)])

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nav_algorithms.cells import Cells
+
 FREE = 0          # nothing near
 INSCRIBED = 253   # an obstacle is within the inscribed radius: a robot centred here touches it
 LETHAL = 254      # an obstacle is in the cell
@@ -13,7 +15,7 @@ UNKNOWN = 255     # never seen
 
 
 @dataclass
-class Costmap:
+class Costmap(Cells):
     """Costs of a plane; a layer may write into `cells`, a planner only reads them.
 
     `cells` is uint8 (rows, columns), C-contiguous: FREE to LETHAL, or UNKNOWN; row 0 has the lowest
@@ -27,26 +29,5 @@ class Costmap:
 
     def __post_init__(self) -> None:
         """Raises ValueError for cells or sizes that make no costmap."""
-        if self.cells.ndim != 2 or self.cells.dtype != np.uint8:
-            raise ValueError(f"cells of a costmap are uint8 (rows, columns), "
-                             f"not {self.cells.dtype} {self.cells.shape}")
-        if not (np.isfinite(self.resolution) and self.resolution > 0):
-            raise ValueError(f"a costmap's resolution is above 0 m, not {self.resolution}")
-        if not np.isfinite(self.origin).all():
-            raise ValueError(f"a costmap's origin is two finite numbers, not {self.origin}")
+        self.check_geometry("costmap", np.uint8)
         self.cells = np.ascontiguousarray(self.cells)
-
-    def cells_of(self, points: np.ndarray) -> np.ndarray:
-        """(row, column), int64 (..., 2), of points (..., 2), m; may lie outside the costmap."""
-        points = np.asarray(points, float)
-        found = np.floor((points - self.origin) / self.resolution).astype(np.int64)
-        return found[..., ::-1]
-
-    def centres_of(self, cells: np.ndarray) -> np.ndarray:
-        """Centres (..., 2), m, of cells (row, column), (..., 2)."""
-        return (np.asarray(cells)[..., ::-1] + 0.5) * self.resolution + self.origin
-
-    def contains(self, cells: np.ndarray) -> np.ndarray:
-        """Which (row, column) of (..., 2) lie in the costmap, bool (...)."""
-        cells = np.asarray(cells)
-        return ((cells >= 0) & (cells < self.cells.shape)).all(axis=-1)

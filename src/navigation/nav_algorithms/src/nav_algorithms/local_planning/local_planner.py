@@ -13,18 +13,26 @@ from nav_algorithms.local_planning.velocities import Command
 
 
 class LocalPlanner:
-    """Follows one path; `set_path` begins a new one. Subclasses choose the velocity."""
+    """Follows one path; `set_path` begins a new one. Subclasses choose the velocity.
+
+    Upstream's planners forget with every plan which way they turned last, and whether the place was
+    right already; with five plans a second they rock to and fro.
+    """
 
     def __init__(self, arrival: Arrival, oscillation: Oscillation) -> None:
         self.end = StopAndTurn(arrival)
         self.oscillation = oscillation
         self.following: Following | None = None
 
-    def set_path(self, path: np.ndarray) -> None:
-        """Path (N, 3), poses in a fixed frame. Raises ValueError for what is no path."""
+    def set_path(self, path: np.ndarray, again: bool = False) -> None:
+        """Path (N, 3), poses in a fixed frame. Raises ValueError for what is no path.
+
+        `again`: on the way to the same goal as before.
+        """
         self.following = Following(path)
-        self.oscillation.reset()
-        self.end.reset()
+        if not again:
+            self.oscillation.reset()
+            self.end.reset()
 
     def reached(self, pose: np.ndarray, velocity: np.ndarray,
                 path_frame: np.ndarray = STANDSTILL) -> bool:
@@ -51,7 +59,11 @@ class LocalPlanner:
         near = within(costmap, path)
         if not len(near):
             return None
-        return self._best(costmap, footprint, pose, velocity, near, path[-1])
+        self.oscillation.at(pose)
+        best = self._best(costmap, footprint, pose, velocity, near, path[-1])
+        if best is None:
+            self.oscillation.reset()  # what it forbids may be the only way out
+        return best
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:

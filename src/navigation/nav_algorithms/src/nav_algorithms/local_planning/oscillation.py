@@ -6,12 +6,15 @@ import numpy as np
 
 from nav_algorithms.poses import wrap_angle
 
+GROWTH, LARGEST = 2.0, 3.0  # of the angle, rad; it is measured up to half a turn
+
 
 class Oscillation:
     """Per axis, the sign of the last motion, and the only sign allowed until the robot has moved.
 
     As dwa_local_planner's flags: forward and backward always count, strafing and turning only
-    where the robot does not drive.
+    where the robot does not drive. Unlike there, the angle that counts as a move grows each time
+    that the robot has only turned: it looks farther round instead of rocking for ever.
     """
 
     def __init__(self, reset_distance: float, reset_angle: float) -> None:
@@ -21,6 +24,11 @@ class Oscillation:
 
     def reset(self) -> None:
         """Forgets all."""
+        self._begin_anew()
+        self.angle = self.reset_angle
+        self.spot = np.zeros(2)  # where the robot has only turned
+
+    def _begin_anew(self) -> None:
         self.last = np.zeros(3)
         self.only = np.zeros(3)
         self.where = np.zeros(3)
@@ -42,8 +50,15 @@ class Oscillation:
                 self.last[axis] = sign
         if turned:
             self.where = np.array(pose, float)
-        if self.only.any():
-            moved = np.hypot(*(pose[:2] - self.where[:2]))
-            if (moved > self.reset_distance
-                    or abs(wrap_angle(pose[2] - self.where[2])) > self.reset_angle):
-                self.reset()
+
+    def at(self, pose: np.ndarray) -> None:
+        """Where the robot is: far enough from where it turned round, everything is allowed."""
+        if np.hypot(*(pose[:2] - self.spot)) > self.reset_distance:
+            self.angle, self.spot = self.reset_angle, pose[:2].copy()
+        if not self.only.any():
+            return
+        if np.hypot(*(pose[:2] - self.where[:2])) > self.reset_distance:
+            self._begin_anew()
+        elif abs(wrap_angle(pose[2] - self.where[2])) > self.angle:
+            self._begin_anew()
+            self.angle = min(GROWTH * self.angle, LARGEST)

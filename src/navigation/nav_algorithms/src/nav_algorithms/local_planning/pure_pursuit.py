@@ -12,16 +12,18 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import Costmap
-from nav_algorithms.global_planning.drives import DRIVE, move
 from nav_algorithms.local_planning.following import STANDSTILL
+from nav_algorithms.local_planning.free_arcs import free_arc, space
 from nav_algorithms.local_planning.goal import turned
 from nav_algorithms.local_planning.pieces import ON_THE_SPOT, Piece, cut
 from nav_algorithms.local_planning.velocities import Command, turning
 from nav_algorithms.poses import compose, relative, wrap_angle
 
 AHEAD = 1.0       # m along the path in which the vehicle's place on it is looked for
-BENDS = 21        # curvatures that are tried where the pursuit's own is not free
 DONE = 0.02       # m before its end at which a piece is over
+ENOUGH = 0.15     # m before its end at which it is over where something is in the way
+STEERED = 0.3     # of the sharpest curvature: so far off are wheels that are still being turned
+STEERING_TIME = 0.6  # s, that a piece may begin slowly because of that
 
 
 @dataclass(frozen=True)
@@ -62,13 +64,20 @@ class PurePursuit:
         self.pieces: list[Piece] = []
         self.goal: np.ndarray | None = None
 
-    def set_path(self, path: np.ndarray) -> None:
-        """Path (N, 3) with the heading at each pose, in a fixed frame. Raises ValueError."""
+    def set_path(self, path: np.ndarray, again: bool = False) -> None:
+        """Path (N, 3) with the heading at each pose, in a fixed frame. Raises ValueError.
+
+        `again`: on the way to the same goal as before; that makes no difference here.
+        """
         path = np.array(path, float)
         if path.ndim != 2 or path.shape[1:] != (3,) or not len(path) or not np.isfinite(path).all():
             raise ValueError(f"a path is (N, 3), finite and not empty, not {path.shape}")
         self.pieces, self.goal = cut(path), path[-1]
+        self._begin_piece()
+
+    def _begin_piece(self) -> None:
         self.at = 0
+        self.steering_left = round(STEERING_TIME * self.settings.controller_frequency)
 
     def reached(self, pose: np.ndarray, velocity: np.ndarray,
                 path_frame: np.ndarray = STANDSTILL) -> bool:
@@ -110,13 +119,15 @@ class PurePursuit:
             else:
                 left = self._left(piece, poses, pose)
                 if left > DONE and not (len(self.pieces) == 1 and self._there(pose, goal, 0.4)):
-                    return self._drive(costmap, footprint, pose, velocity, piece, poses, left)
+                    command = self._drive(costmap, footprint, pose, velocity, piece, poses, left)
+                    if command is not None or left > ENOUGH or len(self.pieces) == 1:
+                        return command
             if abs(velocity[0]) > self.settings.trans_stopped_vel:
                 return standing
             if len(self.pieces) == 1:
                 break
             self.pieces.pop(0)
-            self.at = 0
+            self._begin_piece()
         return standing if self._there(pose, goal) else None
 
     def _left(self, piece: Piece, poses: np.ndarray, pose: np.ndarray) -> float:
@@ -164,7 +175,7 @@ class PurePursuit:
         ahead = min(reach, most * s.max_allowed_time_to_collision_up_to_carrot)
         ahead = max(ahead, speed ** 2 / (2 * s.acc_lim_x) + costmap.resolution)
         ahead = min(ahead, max(left, costmap.resolution))
-        chosen = self._free_arc(costmap, footprint, pose, piece, wanted, limit, carrot, ahead)
+        chosen = free_arc(costmap, footprint, pose, piece.direction * ahead, wanted, limit, carrot)
         if chosen is None:
             return None
         curvature, arc = chosen
@@ -174,6 +185,8 @@ class PurePursuit:
                ) -> Command:
         """Towards the wanted speed, no faster than the limits allow."""
         s = self.settings
+        if not self._is_steered(velocity, curvature):
+            wanted = float(np.sign(wanted)) * s.min_approach_linear_velocity
         step = s.acc_lim_x / s.controller_frequency
         vx = float(np.clip(wanted, velocity[0] - step, velocity[0] + step))
         if 0.0 < vx * np.sign(wanted) < s.min_approach_linear_velocity:
@@ -181,6 +194,17 @@ class PurePursuit:
         if abs(vx * curvature) > s.max_vel_theta:
             vx = float(np.sign(vx)) * s.max_vel_theta / abs(curvature)
         return Command(vx, 0.0, vx * curvature, arc)
+
+    def _is_steered(self, velocity: np.ndarray, curvature: float) -> bool:
+        """Whether it may gather speed: the front wheels of a car take a while to be turned."""
+        s = self.settings
+        speed = abs(velocity[0])
+        if speed > 2 * s.min_approach_linear_velocity or self.steering_left <= 0:
+            return True
+        self.steering_left -= 1
+        moves = speed > 0.5 * s.min_approach_linear_velocity
+        turned = velocity[2] / velocity[0] if moves else 0.0  # where it stands nobody can say
+        return bool(abs(turned - curvature) <= STEERED / s.minimum_turning_radius)
 
     def _carrot(self, piece: Piece, poses: np.ndarray, reach: float) -> np.ndarray:
         """The pose (3,) that is pursued: `reach` along the piece, or straight on after its end."""
@@ -199,52 +223,10 @@ class PurePursuit:
             radius = 1.0 / abs(curvature)
             speed *= min(radius / s.regulated_linear_scaling_min_radius, 1.0)
         if s.use_cost_regulated_linear_velocity_scaling:
-            space = self._space(costmap, footprint, pose)
-            if space < s.cost_scaling_dist:
-                speed *= min(s.cost_scaling_gain * space / s.cost_scaling_dist, 1.0)
+            room = space(costmap, footprint, pose)
+            if room < s.cost_scaling_dist:
+                speed *= min(s.cost_scaling_gain * room / s.cost_scaling_dist, 1.0)
         speed = max(speed, min(s.regulated_linear_scaling_min_speed, s.desired_linear_vel))
         speed *= min(left / s.approach_velocity_scaling_dist, 1.0)
         speed = min(speed, np.sqrt(2 * 0.5 * s.acc_lim_x * max(left, 0.0)))
         return max(float(speed), s.min_approach_linear_velocity)
-
-    def _space(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> float:
-        """Distance of the outline's corners and sides to the nearest obstacle, about, m."""
-        if len(footprint) < 3:
-            return np.inf
-        outline = np.vstack((footprint, 0.5 * (footprint + np.roll(footprint, 1, axis=0))))
-        points = compose(pose, np.column_stack((outline, np.zeros(len(outline)))))[:, :2]
-        cells = costmap.cells_of(points)
-        inside = cells[costmap.contains(cells)]
-        if not len(inside):
-            return 0.0
-        return float(footprints.free_radii(costmap)[tuple(inside.T)].min() * costmap.resolution)
-
-    def _free_arc(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, piece: Piece,
-                  wanted: float, limit: float, carrot: np.ndarray, ahead: float
-                  ) -> tuple[float, np.ndarray] | None:
-        """(curvature, poses) of the wanted arc; where that is not free, of the one nearest to the
-        carrot that is. None: there is no free one."""
-        signed = piece.direction * ahead
-        arc = arc_of(pose, signed, wanted, costmap.resolution)
-        if (footprints.costs(costmap, footprint, arc) >= 0).all():
-            return wanted, arc
-        best, least = None, np.inf
-        for curvature in np.linspace(-limit, limit, BENDS):
-            arc = arc_of(pose, signed, curvature, costmap.resolution)
-            if (footprints.costs(costmap, footprint, arc) < 0).any():
-                continue
-            offset = relative(arc[-1], carrot)
-            error = abs(offset[1]) + 0.3 * abs(wrap_angle(offset[2]))
-            if error < least:
-                best, least = (float(curvature), arc), error
-        return best
-
-
-def arc_of(pose: np.ndarray, length: float, curvature: float, step: float) -> np.ndarray:
-    """Poses (M, 3) along an arc, no more than `step`, m, apart; a length below 0 goes backwards."""
-    steps = max(int(np.ceil(abs(length) / step)), 1)
-    poses = np.empty((steps + 1, 3))
-    poses[0] = pose
-    for n in range(1, steps + 1):
-        move(poses[0], DRIVE, length * n / steps, curvature, poses[n])
-    return poses

@@ -1,0 +1,63 @@
+"""What amcl publishes: pose, particles, the transform to the odometry, and how sure it is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import rospy
+import tf2_ros
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+
+from amcl.conversions import ParticleCloud, pose_with_covariance
+from amcl.diagnostics import deviations
+from nav_algorithms.estimates import Estimate
+from nav_nodes.messages import transform_message
+
+
+class Outputs:
+    """Topics under upstream's names; `values` are by the names of the parameter table."""
+
+    def __init__(self) -> None:
+        self._pose = rospy.Publisher("amcl_pose", PoseWithCovarianceStamped, queue_size=2,
+                                     latch=True)
+        self._cloud = rospy.Publisher("particlecloud", PoseArray, queue_size=2)
+        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
+        self._transforms = tf2_ros.TransformBroadcaster()
+        self._newest_cloud = rospy.Time(0)
+
+    def restart(self) -> None:
+        """The clock was set back."""
+        self._newest_cloud = rospy.Time(0)
+
+    def pose(self, estimate: Estimate, values: dict[str, Any], stamp: rospy.Time) -> None:
+        """A new estimate."""
+        message = pose_with_covariance(estimate)
+        message.header.frame_id, message.header.stamp = _frame(values, "global"), stamp
+        self._pose.publish(message)
+
+    def transform(self, map_to_odom: np.ndarray, values: dict[str, Any], stamp: rospy.Time) -> None:
+        """Dated ahead by transform_tolerance."""
+        ahead = rospy.Duration.from_sec(values["transform_tolerance"])
+        self._transforms.sendTransform(transform_message(
+            map_to_odom, _frame(values, "global"), _frame(values, "odom"), stamp + ahead))
+
+    def cloud(self, particles: np.ndarray, values: dict[str, Any]) -> None:
+        """No more often than gui_publish_rate, and only to somebody."""
+        now, rate = rospy.Time.now(), values["gui_publish_rate"]
+        if not self._cloud.get_num_connections() or (
+                rate > 0 and (now - self._newest_cloud).to_sec() < 1.0 / rate):
+            return
+        self._newest_cloud = now
+        cloud = ParticleCloud(particles)
+        cloud.header.frame_id, cloud.header.stamp = _frame(values, "global"), now
+        self._cloud.publish(cloud)
+
+    def diagnostics(self, covariance: np.ndarray, values: dict[str, Any]) -> None:
+        """Whether the pose is sure enough."""
+        self._diagnostics.publish(deviations(covariance, values))
+
+
+def _frame(values: dict[str, Any], which: str) -> str:
+    return values[f"{which}_frame_id"].lstrip("/")

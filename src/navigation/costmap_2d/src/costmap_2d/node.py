@@ -1,0 +1,26 @@
+"""The node costmap_2d: one costmap."""
+
+from __future__ import annotations
+
+import rospy
+
+from costmap_2d.costmap_ros import CostmapROS
+from nav_nodes import clock
+from nav_nodes.complaints import Complaints
+from nav_nodes.parameters import ParameterError
+from nav_nodes.program import init_node, spin
+from nav_nodes.transforms import Transforms
+
+
+def main() -> int:
+    """Keeps `~costmap` until it is told to end; the exit status."""
+    init_node("costmap_node")
+    complaints = Complaints()
+    clock.watch(complaints)
+    try:
+        CostmapROS("costmap", Transforms(complaints), complaints)
+    except ParameterError as error:
+        rospy.logfatal("%s", error)
+        return 1
+    spin()
+    return 0

@@ -1,0 +1,41 @@
+"""Where the cells of a plane lie: what maps and costmaps have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+class Cells:
+    """Has `cells` (rows, columns), `resolution`, m a cell, and `origin`, (x, y), m.
+
+    The origin is the outer corner of cell (0, 0); row 0 has the lowest y and column 0 the lowest x.
+    """
+
+    cells: np.ndarray
+    resolution: float
+    origin: tuple[float, float]
+
+    def check_geometry(self, what: str, kind: type) -> None:
+        """Raises ValueError for cells not of that kind, or sizes that make no `what` ("map")."""
+        if self.cells.ndim != 2 or self.cells.dtype != kind:
+            raise ValueError(f"cells of a {what} are {np.dtype(kind)} (rows, columns), "
+                             f"not {self.cells.dtype} {self.cells.shape}")
+        if not (np.isfinite(self.resolution) and self.resolution > 0):
+            raise ValueError(f"a {what}'s resolution is above 0 m, not {self.resolution}")
+        if not np.isfinite(self.origin).all():
+            raise ValueError(f"a {what}'s origin is two finite numbers, not {self.origin}")
+
+    def cells_of(self, points: np.ndarray) -> np.ndarray:
+        """(row, column), int64 (..., 2), of points (..., 2), m; may lie outside."""
+        points = np.asarray(points, float)
+        found = np.floor((points - self.origin) / self.resolution).astype(np.int64)
+        return found[..., ::-1]
+
+    def centres_of(self, cells: np.ndarray) -> np.ndarray:
+        """Centres (..., 2), m, of cells (row, column), (..., 2)."""
+        return (np.asarray(cells)[..., ::-1] + 0.5) * self.resolution + self.origin
+
+    def contains(self, cells: np.ndarray) -> np.ndarray:
+        """Which (row, column) of (..., 2) lie inside, bool (...)."""
+        cells = np.asarray(cells)
+        return ((cells >= 0) & (cells < self.cells.shape)).all(axis=-1)

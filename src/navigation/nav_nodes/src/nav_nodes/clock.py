@@ -1,0 +1,51 @@
+"""The simulated clock: one line while it does not run, and no other line meanwhile."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from nav_nodes.complaints import Complaints
+from nav_nodes.silence import is_published
+
+CLOCK = "simulated clock /clock"
+LOOK = 0.25   # s of wall time between two looks
+STILL = 1.0   # s of wall time, until it is asked whether anybody publishes it any more
+
+
+def watch(complaints: Complaints) -> None:
+    """From now on, on a thread, if /use_sim_time is true. A paused simulation is no fault."""
+    if not rospy.rostime.is_wallclock():
+        threading.Thread(target=_watch, args=(complaints,), daemon=True).start()
+
+
+def wait_until_it_runs(complaints: Complaints) -> bool:
+    """Until time is not 0, where a message's stamp must not be; false on the way out."""
+    watch(complaints)
+    while rospy.Time.now().is_zero() and not rospy.is_shutdown():
+        time.sleep(LOOK / 5)
+    return not rospy.is_shutdown()
+
+
+def _watch(complaints: Complaints) -> None:
+    before, changed = rospy.Time.now(), time.monotonic()
+    ticks = rospy.Subscriber("/clock", Clock, queue_size=1)
+    while not rospy.is_shutdown():
+        now = rospy.Time.now()
+        if now != before:
+            before, changed = now, time.monotonic()
+        stands = time.monotonic() - changed > STILL and not is_published(ticks)
+        if now.is_zero() or stands:
+            complaints.missing(CLOCK, _why(ticks), since=changed, is_root=True)
+        else:
+            complaints.present(CLOCK)
+        time.sleep(LOOK)
+
+
+def _why(ticks: rospy.Subscriber) -> str:
+    advice = ("its publisher is silent, is the simulation paused?" if is_published(ticks)
+              else "nobody publishes it; start the simulator.")
+    return f"{advice} Or rosparam set use_sim_time false and start again"

@@ -1,0 +1,56 @@
+"""Why a topic may be silent, as far as the one who listens can tell."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import rospy
+
+from nav_nodes.complaints import Complaints
+
+QUIET = 1.0  # s of wall time without a message until that is noticed
+
+
+def is_published(topic: rospy.Subscriber) -> bool:
+    """Whether somebody is connected who could send.
+
+    rospy counts a publisher that was killed, too: it tries for ever to reach it again.
+    """
+    impl = topic.impl
+    return impl is not None and any(link.socket is not None for link in impl.connections)
+
+
+def why_silent(topic: rospy.Subscriber, name: str) -> str:
+    """Advice for a topic that is called `name` in the node ("scan"), before remapping."""
+    if is_published(topic):
+        return "its publisher is silent, is the simulation paused?"
+    return (f"nobody publishes there {topic.data_class._type} (rostopic info "
+            f"{topic.resolved_name}, or {name}:=TOPIC)")
+
+
+class Silence:
+    """Notices that a topic is silent; not while a message from it is being worked on."""
+
+    def __init__(self, complaints: Complaints, what: str, name: str) -> None:
+        """`what` it carries ("laser scans") and what the node calls it ("scan")."""
+        self._complaints, self._what, self._name = complaints, what, name
+        self._last, self._at_work = time.monotonic(), False
+
+    @contextmanager
+    def heard(self) -> Iterator[None]:
+        """Around the work on a message."""
+        self._at_work = True
+        try:
+            yield
+        finally:
+            self._last, self._at_work = time.monotonic(), False
+
+    def look(self, topic: rospy.Subscriber) -> None:
+        """Call now and then: says how long it has been silent."""
+        what = f"{self._what} on {topic.resolved_name}"
+        if not self._at_work and time.monotonic() - self._last > QUIET:
+            self._complaints.missing(what, why_silent(topic, self._name), since=self._last)
+        else:
+            self._complaints.present(what)
