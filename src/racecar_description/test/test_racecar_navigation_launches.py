@@ -50,6 +50,13 @@ def test_the_car_starts_where_amcl_thinks_it_does():
     assert pose == [1.5, 0.0, 0.5]
 
 
+def test_amcl_stays_with_the_place_where_the_car_was_put():
+    """Between two walls random particles found a likely place elsewhere, facing backwards."""
+    _, values = load("navigation")
+    assert values["/amcl/recovery_alpha_slow"] == values["/amcl/recovery_alpha_fast"] == 0.0
+    assert max(values[f"/amcl/initial_cov_{axis}"] for axis in ("xx", "yy", "aa")) <= 0.01
+
+
 def test_parameters_are_known():
     known = {
         "/slam_gmapping/": table("gmapping", "slam_gmapping"), "/amcl/": table("amcl", "amcl"),
