@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials drive viewer test bench setup build lint clean
+.PHONY: help course race race-trials navigate navigation-trials drive viewer test bench setup build lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -17,6 +17,14 @@ race: ## drive the racetrack by camera and report [LAPS= DURATION= FAST= CAMERA=
 
 race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRACKS=10]
 	@scripts/race_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(TRACKS),--tracks "$(TRACKS)")
+
+navigate: ## map the house, localise, visit goals, report [GOALS=5] [SEED=0] [PACE=1] [MAP=out/navigate/map.yaml]
+	@scripts/navigate.sh $(if $(GOALS),--goals "$(GOALS)") $(if $(SEED),--seed "$(SEED)") \
+	  $(if $(PACE),--real-time-factor "$(PACE)") $(if $(MAP),--map "$(MAP)")
+
+navigation-trials: ## move_base through narrow worlds, and past persons [YARDS=50] [REPEATS=2] [CROSSINGS=20] [PACE=1]
+	@scripts/navigation_trials.sh $(if $(YARDS),--yards "$(YARDS)") $(if $(REPEATS),--repeats "$(REPEATS)") \
+	  $(if $(CROSSINGS),--crossings "$(CROSSINGS)") $(if $(PACE),--real-time-factor "$(PACE)")
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh

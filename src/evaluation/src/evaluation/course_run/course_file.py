@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -64,18 +65,28 @@ def load_course(name: str) -> Course:
     """Course `name` of courses/, or the file of that path; RunError names file and key."""
     folder = find_package("evaluation") / "courses"
     path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
+    if not name.endswith(".yaml") and not path.exists():
+        known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
+        raise RunError(f"no course {name!r} (--course); there are: {known}")
+    return _checked(path, read_keys(path, [field.name for field in fields(Course)]))
+
+
+def read_keys(path: Path, expected: Sequence[str]) -> dict:
+    """A YAML file that has exactly these keys; RunError names file and key."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except UnicodeDecodeError as error:
         raise RunError(f"{path}: no text file") from error
     except OSError as error:
-        if name.endswith(".yaml"):
-            raise RunError(f"{path}: {error.strerror}") from error
-        known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
-        raise RunError(f"no course {name!r} (--course); there are: {known}") from error
+        raise RunError(f"{path}: {error.strerror}") from error
     except yaml.YAMLError as error:
         raise RunError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
-    return _checked(path, values)
+    if not isinstance(values, dict) or set(values) != set(expected):
+        given = set(values) if isinstance(values, dict) else set()
+        wrong = sorted(given - set(expected), key=str) or sorted(set(expected) - given)
+        kind = "unknown" if given - set(expected) else "missing"
+        raise RunError(f"{path}: {kind} key {wrong[0]!r}; there are: {', '.join(expected)}")
+    return values
 
 
 def find_package(name: str) -> Path:
@@ -86,13 +97,8 @@ def find_package(name: str) -> Path:
         raise RunError(f"package {name} not found: source devel/setup.bash") from error
 
 
-def _checked(path: Path, values: object) -> Course:
+def _checked(path: Path, values: dict) -> Course:
     expected = {field.name: field.type for field in fields(Course)}
-    if not isinstance(values, dict) or set(values) != set(expected):
-        given = set(values) if isinstance(values, dict) else set()
-        wrong = sorted(given - set(expected)) or sorted(set(expected) - given)
-        kind = "unknown" if given - set(expected) else "missing"
-        raise RunError(f"{path}: {kind} key {wrong[0]!r}; there are: {', '.join(expected)}")
     for key, kind in expected.items():
         if kind == "float":
             fits = type(values[key]) in (int, float) and 0 <= values[key] < math.inf

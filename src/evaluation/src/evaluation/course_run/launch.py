@@ -14,7 +14,7 @@ import xmlrpc.client
 from pathlib import Path
 
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.processes import Child, Family
+from evaluation.course_run.processes import INTERRUPT_TIME, Child, Family
 
 USUAL_PORT = 11311
 ROSCORE_TIME = 20.0  # s, wall
@@ -28,8 +28,10 @@ FINISHED = re.compile(r"\[([\w/.-]+)\] process has finished cleanly")
 class Launched:
     """roscore and roslaunch of one run, with the log files they write."""
 
-    def __init__(self, family: Family, log_folder: Path, follower: str):
-        self._family, self._follower = family, follower
+    def __init__(
+        self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car"
+    ):
+        self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         shutil.rmtree(self.log_folder, ignore_errors=True)
         self.log_folder.mkdir(parents=True)
@@ -70,14 +72,29 @@ class Launched:
             raise RunError(f"{command[0]} cannot be started: {error.strerror}") from error
         return self._children[-1]
 
-    def end(self, child: Child) -> None:
-        """End one program again; its death is then no failure."""
+    def run(self, name: str, command: list[str], limit: float) -> None:
+        """Run one program to its end; RunError if that is not exit code 0 within `limit`, s."""
+        child = self.start(name, command)
         self._children.remove(child)
-        self._family.end(child)
+        until = time.monotonic() + limit
+        while child.process.poll() is None and time.monotonic() < until:
+            self.check(None)
+            time.sleep(0.05)
+        code = child.process.poll()
+        if code != 0:
+            how = f"did not end within {limit:.0f} s" if code is None else describe_exit(code)
+            raise RunError(f"{name}: {how}; log: {child.log}", child.last_lines())
+
+    def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
+        """End one program again, by force after `limit` (s, wall); then it is no failure."""
+        self._children.remove(child)
+        self._family.end(child, limit)
 
     def check(self, sim_time: float | None) -> None:
         """RunError if anything that the run needs has died."""
-        when = "before the car drove" if sim_time is None else f"at simulated time {sim_time:.1f} s"
+        when = f"before the {self._vehicle} drove"
+        if sim_time is not None:
+            when = f"at simulated time {sim_time:.1f} s"
         for child in self._children:
             for line in child.new_lines():
                 death = self._death_in(child, line)
@@ -117,7 +134,8 @@ class Launched:
             return f"the simulator (process {process})"
         if process in ("master", "rosout-1"):
             return f"roscore (process {process})"
-        if "follower" in process or process.startswith(Path(self._follower).stem):
+        driver = Path(self._follower).stem
+        if driver and ("follower" in process or process.startswith(driver)):
             return f"the follower {self._follower} (process {process})"
         return f"process {process}"
 

@@ -9,7 +9,7 @@ import queue
 import threading
 import time
 import xmlrpc.client
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import rosgraph
 import rospy
@@ -21,6 +21,7 @@ from sensor_msgs.msg import CameraInfo
 from std_srvs.srv import Empty
 
 from evaluation.course_run import names
+from evaluation.course_run.asking import Asker
 from evaluation.course_run.connections import Connections, look_up
 from evaluation.course_run.course_file import Course
 from evaluation.course_run.frames import FrameCount
@@ -47,6 +48,7 @@ class Observer:
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Sample]] = queue.SimpleQueue()
         self._ended = threading.Event()
+        self._asker = Asker(self._ended)
         self.missing = f"the simulator (service {names.WORLD})"
         self.frames = FrameCount(lockstep)
         rospy.init_node("course_run", anonymous=True, disable_signals=True, disable_rosout=True)
@@ -97,8 +99,8 @@ class Observer:
             self._ask_poses()
 
     def _wait_for_car(self) -> None:
-        for _ in self._ticks(SETUP_RATE_HZ, names.WORLD, GetWorldProperties):
-            reply = self._call()
+        for _ in self._asker.ticks(SETUP_RATE_HZ, names.WORLD, GetWorldProperties):
+            reply = self._asker.call()
             if reply is None:
                 continue
             self.missing = f"the car (model {self._robot})"
@@ -109,8 +111,8 @@ class Observer:
         """Until they run, or will with the first step: a paused world starts nothing."""
         service = f"{self._course.controllers}/{names.LIST_CONTROLLERS}"
         self.missing = f"the car's controllers (service {service})"
-        for _ in self._ticks(SETUP_RATE_HZ, service, ListControllers):
-            reply = self._call()
+        for _ in self._asker.ticks(SETUP_RATE_HZ, service, ListControllers):
+            reply = self._asker.call()
             if reply is None:
                 continue
             started = {c.name for c in reply.controller if c.state in ("running", "waiting")}
@@ -123,7 +125,7 @@ class Observer:
         me, course = rospy.get_name(), self._course
         topics = (course.camera, course.camera_info, course.commands, course.odometry,
                   *course.lockstep)
-        for _ in self._ticks(SETUP_RATE_HZ):
+        for _ in self._asker.ticks(SETUP_RATE_HZ):
             try:
                 missing = missing_connection(look_up(self._master_uri, me, topics), me, course)
             except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
@@ -134,14 +136,14 @@ class Observer:
 
     def _begin(self) -> None:
         self.missing = f"the beginning of simulated time (service {names.UNPAUSE})"
-        for _ in self._ticks(SETUP_RATE_HZ, names.UNPAUSE, Empty):
-            if self._call() is not None:
+        for _ in self._asker.ticks(SETUP_RATE_HZ, names.UNPAUSE, Empty):
+            if self._asker.call() is not None:
                 self.missing = f"the first pose (topic {self._course.odometry})"
                 return
 
     def _ask_poses(self) -> None:
-        for _ in self._ticks(SAMPLE_RATE_HZ, names.POSE, GetModelState):
-            reply = self._call(self._robot, "world")
+        for _ in self._asker.ticks(SAMPLE_RATE_HZ, names.POSE, GetModelState):
+            reply = self._asker.call(self._robot, "world")
             if reply is not None and reply.success:
                 self._put(reply.header.stamp, reply.pose)
 
@@ -150,23 +152,6 @@ class Observer:
 
     def _put(self, stamp: rospy.Time, pose: Pose) -> None:
         self._samples.put((time.monotonic(), _to_sample(stamp, pose)))
-
-    def _ticks(self, rate_hz: float, service: str = "", kind: type = Empty) -> Iterator[None]:
-        """Times to ask a service; the connection stays open and is made again when it broke."""
-        self._service, self._kind, self._proxy = service, kind, None
-        while not self._ended.is_set():
-            began = time.monotonic()
-            yield
-            self._ended.wait(max(0.0, began + 1.0 / rate_hz - time.monotonic()))
-
-    def _call(self, *arguments: str) -> object | None:
-        try:
-            if self._proxy is None:
-                self._proxy = rospy.ServiceProxy(self._service, self._kind, persistent=True)
-            return self._proxy(*arguments)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._proxy = None
-            return None
 
 
 def missing_connection(found: Connections, me: str, course: Course) -> str | None:

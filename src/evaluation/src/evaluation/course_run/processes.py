@@ -80,12 +80,12 @@ class Family:
         """Ask all but one to end, and do not wait."""
         self._send(signal.SIGINT, spare)
 
-    def end(self, child: Child) -> None:
-        """End one child that was started here."""
+    def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
+        """End one child that was started here, by force if it takes longer than this (s, wall)."""
         self._children.remove(child)
         child.process.send_signal(signal.SIGINT)
         try:
-            child.process.wait(2 * INTERRUPT_TIME)
+            child.process.wait(limit)
         except subprocess.TimeoutExpired:
             child.process.kill()
             child.process.wait()

@@ -1,0 +1,134 @@
+"""Sends the robot from place to place by move_base, and tells what became of each way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import actionlib
+import numpy as np
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+
+from evaluation.navigation.ground import Ground
+from evaluation.navigation.watch import MAP, Watch
+from nav_algorithms.poses import compose, invert, wrap_angle
+
+LIMIT, LIMIT_FACTOR = 60.0, 5.0  # s, simulated, and times the shortest way at full speed, for a way
+CANCEL_LIMIT = 10.0  # s, simulated, for move_base to give a goal up
+TURN_RATE = 0.6  # rad/s
+STANDING = 0.3  # s, simulated, at a goal before it is looked where that is
+TOLD_COVARIANCE = (0.25, 0.25, (np.pi / 12) ** 2)  # x, y, yaw, as rviz's button sends it
+DONE = (actionlib.CommState.DONE, actionlib.CommState.LOST)
+TIME_IS_UP = "time is up"
+
+Look = Callable[[str], None]  # waits a little, checks that all goes on, shows how things stand
+
+
+@dataclass(frozen=True)
+class Way:
+    """From where the robot stood to a goal; m, s simulated, rad; truth unless it says otherwise."""
+
+    goal: tuple[float, float, float]  # in the world's frame
+    reached: bool  # as move_base said
+    text: str  # move_base's
+    time: float
+    driven: float
+    straight: float  # as the crow flies
+    shortest: float  # without touching a wall; inf: none
+    off: float  # from the goal at the end
+    off_yaw: float
+
+
+class Driver:
+    """Drives on a map that lies at `map_in_world` (3,), the pose of its frame in the world's."""
+
+    def __init__(self, watch: Watch, ground: Ground, look: Look, map_in_world: np.ndarray,
+                 max_speed: float):
+        self._watch, self._ground, self._look = watch, ground, look
+        self._map_in_world, self._max_speed = map_in_world, max_speed
+        self._client = actionlib.ActionClient("/move_base", MoveBaseAction)
+        self._commands = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+        self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
+
+    @property
+    def is_connected(self) -> bool:
+        """Does move_base take goals?"""
+        return self._client.wait_for_server(rospy.Duration(0.01))
+
+    @property
+    def is_heard(self) -> bool:
+        """Is there a localisation that can be told a pose, and a drive?"""
+        return min(self._told.get_num_connections(), self._commands.get_num_connections()) > 0
+
+    def drive_to(self, goal: np.ndarray, what: str) -> Way:
+        """Until move_base has done with the goal (3,), in the world's frame, or its time is up."""
+        records = self._watch.records
+        start, began, before = records.true_pose, records.now, records.length
+        shortest = self._ground.shortest_way(start, goal)
+        until = began + LIMIT + LIMIT_FACTOR * min(shortest, 100.0) / self._max_speed
+        sent = self._client.send_goal(self._goal(goal))
+        text = None
+        while sent.get_comm_state() not in DONE:
+            left = np.linalg.norm(records.true_pose[:2] - goal[:2])
+            self._look(f"{what}, {left:.1f} m off")
+            if records.now > until and text is None:
+                text, until = TIME_IS_UP, records.now + CANCEL_LIMIT
+                sent.cancel()
+            elif records.now > until:
+                break
+        took = records.now - began
+        self._let_stand()
+        reached = text is None and sent.get_goal_status() == GoalStatus.SUCCEEDED
+        end = records.true_pose
+        return Way(
+            tuple(goal.tolist()), reached, text or sent.get_goal_status_text(),
+            took, records.length - before,
+            float(np.linalg.norm(goal[:2] - start[:2])), shortest,
+            float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))),
+        )  # fmt: skip
+
+    def tell_pose(self, pose: np.ndarray) -> None:
+        """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id = MAP
+        message.header.stamp = rospy.Time.from_sec(self._watch.records.now)
+        on_map = compose(invert(self._map_in_world), pose)
+        message.pose.pose.position.x, message.pose.pose.position.y = on_map[:2]
+        message.pose.pose.orientation = _quaternion(on_map[2])
+        covariance = np.zeros((6, 6))
+        covariance[[0, 1, 5], [0, 1, 5]] = TOLD_COVARIANCE
+        message.pose.covariance = covariance.ravel().tolist()
+        self._told.publish(message)
+
+    def turn_round(self, what: str) -> None:
+        """Once on the spot, by simulated time."""
+        records = self._watch.records
+        until = records.now + 2 * np.pi / TURN_RATE
+        command = Twist()
+        command.angular.z = TURN_RATE
+        while records.now < until:
+            self._commands.publish(command)
+            self._look(what)
+        self._commands.publish(Twist())
+
+    def _let_stand(self) -> None:
+        """Until it is seen where the robot has come to."""
+        until = self._watch.records.now + STANDING
+        while self._watch.records.now < until:
+            self._look("standing")
+
+    def _goal(self, goal: np.ndarray) -> MoveBaseGoal:
+        on_map = compose(invert(self._map_in_world), goal)
+        message = MoveBaseGoal()
+        message.target_pose.header.frame_id = MAP
+        message.target_pose.header.stamp = rospy.Time.from_sec(self._watch.records.now)
+        message.target_pose.pose.position.x, message.target_pose.pose.position.y = on_map[:2]
+        message.target_pose.pose.orientation = _quaternion(on_map[2])
+        return message
+
+
+def _quaternion(yaw: float) -> Quaternion:
+    return Quaternion(0.0, 0.0, float(np.sin(yaw / 2)), float(np.cos(yaw / 2)))

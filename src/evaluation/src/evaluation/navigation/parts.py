@@ -1,0 +1,201 @@
+"""The run's two parts: the mapping round, and the goals on the map that it made."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import rospy
+
+from evaluation.bench.cpu import CpuMeter
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.launch import Launched
+from evaluation.course_run.processes import Child
+from evaluation.navigation.driver import Driver
+from evaluation.navigation.ground import Ground
+from evaluation.navigation.options import Options
+from evaluation.navigation.progress import Progress
+from evaluation.navigation.score import (
+    Navigation,
+    Pace,
+    Result,
+    localisation,
+    pose_errors,
+    score_mapping,
+    seen_of,
+)
+from evaluation.navigation.watch import Watch
+from map_server.map_files import read_map
+from nav_algorithms.poses import compose, invert, relative, wrap_angle
+
+LOOK_PERIOD = 0.05  # s, wall
+END_LIMIT = 30.0  # s, wall, for all nodes of one launch file to end
+SAVE_LIMIT = 60.0  # s, wall, for map_saver
+LAST_MAP_LIMIT = 3.0  # s, simulated; slam_gmapping's map comes every 2 s
+TOLD_OFF, TOLD_OFF_YAW = 0.3, 0.26  # m along x and y, and rad, at most, of the told first pose
+SIMULATOR = ("roslaunch", "evaluation", "house.launch")
+SLAM = ("roslaunch", "turtlebot3_slam", "turtlebot3_slam.launch", "slam_methods:=gmapping",
+        "open_rviz:=false")
+MOVE_BASE = ("roslaunch", "turtlebot3_navigation", "move_base.launch")
+NAVIGATION = ("roslaunch", "turtlebot3_navigation", "turtlebot3_navigation.launch",
+              "open_rviz:=false")
+
+
+class Part:
+    """What both parts do: start programs, wait for them, look after them, end them."""
+
+    name = ""
+
+    def __init__(self, options: Options, ground: Ground, watch: Watch, launched: Launched,
+                 progress: Progress):
+        self._options, self._ground, self._watch = options, ground, watch
+        self._launched, self._progress = launched, progress
+        self._children: list[Child] = []
+        self._moved_at = self._began = time.monotonic()
+        self._moved_to = self._begin_time = 0.0  # s, simulated
+        self._driver: Driver | None = None
+        self._cpu: CpuMeter | None = None
+
+    def _start(self, *commands: tuple[str, ...]) -> None:
+        """The simulator first; what is there of it is known anew."""
+        self._watch.begin()
+        house, options = self._options.house, self._options
+        x, y, yaw = house.start
+        self._run("simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
+                  f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
+                  f"real_time_factor:={options.real_time_factor:g}")
+        self._wait_for("the robot in the simulator", lambda: self._watch.records.truth)
+        self._watch.feelers = self._ground.feelers(rospy.get_param("/robot_description"))
+        for number, command in enumerate(commands, start=1):
+            self._run(f"navigation-{number}", *command, f"model:={house.model}")
+
+    def _run(self, name: str, *command: str) -> None:
+        self._children.append(self._launched.start(f"{self.name}-{name}", list(command)))
+
+    def _wait_for(self, what: str, condition: Callable[[], object]) -> None:
+        until = time.monotonic() + self._options.startup_timeout
+        while not condition():
+            self._launched.check(None)
+            self._progress.status(f"{self.name}: waiting for {what}")
+            if time.monotonic() > until:
+                limit = f"{self._options.startup_timeout:.0f} s"
+                raise RunError(f"{what} was not there within {limit}", self._launched.tail())
+            time.sleep(LOOK_PERIOD)
+
+    def _connect(self, map_in_world: np.ndarray) -> Driver:
+        self._driver = Driver(self._watch, self._ground, self._look, map_in_world,
+                              self._options.house.max_speed)
+        self._wait_for("move_base", lambda: self._driver.is_connected)
+        return self._driver
+
+    def _begin(self) -> None:
+        """From here on time and processors are counted."""
+        self._cpu = CpuMeter()
+        self._began, self._begin_time = time.monotonic(), self._watch.records.now
+
+    def _pace(self) -> Pace:
+        simulated = self._watch.records.now - self._begin_time
+        wall = time.monotonic() - self._began
+        used = self._cpu.look()  # percent of a core in wall time
+        share = {name: round(percent * wall / max(simulated, 1e-9), 1)
+                 for name, percent in sorted(used.items(), key=lambda item: -item[1])}
+        return Pace(simulated, wall, share)
+
+    def _look(self, what: str) -> None:
+        """Waits a little, checks that all goes on, shows how things stand."""
+        time.sleep(LOOK_PERIOD)
+        records, now = self._watch.records, time.monotonic()
+        self._launched.check(records.now)
+        if records.now > self._moved_to or not self._moved_to:
+            self._moved_at, self._moved_to = now, records.now
+        still = now - self._moved_at
+        if still > self._options.stuck_timeout:
+            raise RunError(f"simulated time has stood still at {records.now:.1f} s for "
+                           f"{still:.0f} s: the simulator is paused or hangs")
+        self._progress.show(self.name, what, records)
+
+    def end(self) -> None:
+        """Ends this part's programs, those that were started last first."""
+        for child in reversed(self._children):
+            self._progress.status(f"{self.name}: ending {child.name}")
+            self._launched.end(child, END_LIMIT)
+        self._children.clear()
+
+
+class MappingPart(Part):
+    """The mapping round: move_base on the map that slam_gmapping is making."""
+
+    name = "mapping"
+
+    def run(self, result: Result) -> None:
+        """Drives the round and saves the map; what was found stands in `result`, always."""
+        self._start(SLAM, MOVE_BASE)
+        watch, house = self._watch, self._options.house
+        self._wait_for("the first map and the transform map to odom",
+                       lambda: watch.map is not None and watch.records.believed)
+        # Where somebody who clicks into rviz would see that the map's frame lies.
+        result.map_in_world = compose(watch.records.true_pose, invert(watch.records.believed_pose))
+        driver = self._connect(result.map_in_world)
+        ways = []
+        self._begin()
+        points = np.array(house.way_points)
+        yaws = np.arctan2(*np.diff(points, axis=0, append=points[:1]).T[::-1])
+        try:
+            for number, (point, yaw) in enumerate(zip(points, yaws), start=1):
+                what = f"way-point {number}/{len(points)}"
+                ways.append(driver.drive_to(np.array([*point, yaw]), what))
+            self._save()
+        finally:
+            result.paths[self.name] = np.array(watch.records.truth).reshape(-1, 4)[:, 1:3]
+        result.map = read_map(self._options.out / "map.yaml")[0]
+        result.mapping = score_mapping(self._ground, result.map, watch.records, watch.scan.angles,
+                                       house.laser_reach, ways, self._pace())
+        result.map_in_world = result.mapping.trajectory.alignment
+
+    def _save(self) -> None:
+        """The map of the whole round, by map_saver."""
+        until = self._watch.records.now + LAST_MAP_LIMIT
+        while self._watch.records.now < until:
+            self._look("waiting for the last map")
+        name = str(self._options.out / "map")
+        self._launched.run("map_saver", ["rosrun", "map_server", "map_saver", "-f", name],
+                           SAVE_LIMIT)
+
+
+class NavigationPart(Part):
+    """The goals: localisation on the saved map, from a first pose that is a little wrong."""
+
+    name = "goals"
+
+    def run(self, result: Result, map_file: str, goals: np.ndarray) -> None:
+        """Visits the goals (N, 3), in the world's frame; `result` keeps what was found, always."""
+        self._start((*NAVIGATION, f"map_file:={map_file}"))
+        watch = self._watch
+        self._wait_for("the map and the transform map to odom",
+                       lambda: watch.map is not None and watch.records.believed)
+        driver = self._connect(result.map_in_world)
+        self._wait_for("localisation and drive", lambda: driver.is_heard)
+        told = self._tell_pose(driver)
+        self._begin()
+        driver.turn_round("turning round to find itself")
+        since, ways = watch.records.now, []
+        try:
+            for number, goal in enumerate(goals, start=1):
+                ways.append(driver.drive_to(goal, f"goal {number}/{len(goals)}"))
+        finally:
+            records = watch.records
+            result.paths[self.name] = np.array(records.truth).reshape(-1, 4)[:, 1:3]
+            errors = pose_errors(records, result.map_in_world, since)
+            result.navigation = Navigation(ways, records.contacts, seen_of(records),
+                                           records.length, localisation(told, errors),
+                                           self._pace())
+
+    def _tell_pose(self, driver: Driver) -> tuple[float, float]:
+        """Tells a pose that is off as the seed says; returns how far, m and rad."""
+        generator = np.random.default_rng([self._options.seed, 1])
+        off = generator.uniform(-1, 1, 3) * (TOLD_OFF, TOLD_OFF, TOLD_OFF_YAW)
+        true = self._watch.records.true_pose
+        told = np.array([*(true[:2] + off[:2]), wrap_angle(true[2] + off[2])])
+        driver.tell_pose(told)
+        return float(np.linalg.norm(relative(true, told)[:2])), float(abs(off[2]))

@@ -1,0 +1,168 @@
+"""report.json, and the table at the end."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from evaluation.navigation.driver import Way
+from evaluation.navigation.options import Options
+from evaluation.navigation.records import Contact
+from evaluation.navigation.score import (
+    LEAST_AGREEMENT,
+    MOST_ATE,
+    MOST_OFF,
+    MOST_OFF_DEG,
+    Mapping,
+    Navigation,
+    Pace,
+    Result,
+    Seen,
+)
+
+COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
+
+
+def write_report(path: Path, options: Options, outcome: tuple[str, str], result: Result,
+                 made_with: dict) -> None:
+    """All figures; lengths in m, times in simulated s but wall_s, angles in degrees."""
+    speed = options.house.max_speed
+    mapping, navigation = result.mapping, result.navigation
+    values = {
+        "outcome": outcome[0],
+        "why": outcome[1] or None,
+        "seed": options.seed,
+        "wanted_real_time_factor": options.real_time_factor,
+        "goals_wanted": options.goals,
+        "goals_reached": sum(way.reached for way in navigation.ways) if navigation else 0,
+        "limits": {"ate_m": MOST_ATE, "agreement": LEAST_AGREEMENT, "localisation_m": MOST_OFF,
+                   "localisation_deg": MOST_OFF_DEG, "contacts": 0},
+        "faults": result.faults,
+        "map_in_world": [round(value, 4) for value in result.map_in_world.tolist()],
+        "mapping": _mapping(mapping, speed) if mapping else None,
+        "navigation": _navigation(navigation, speed) if navigation else None,
+        **made_with,
+    }
+    path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+
+
+def read_map_frame(path: Path) -> np.ndarray:
+    """`map_in_world` (3,) of the report of the run that made a map; 0 where there is none."""
+    try:
+        found = np.array(json.loads(path.read_text(encoding="utf-8"))["map_in_world"], float)
+    except (OSError, ValueError, KeyError, TypeError):
+        return np.zeros(3)
+    return found if found.shape == (3,) else np.zeros(3)
+
+
+def lines(options: Options, result: Result) -> list[str]:
+    """The table of goals and what there is to say of map and localisation."""
+    found = []
+    if result.mapping:
+        mapping = result.mapping
+        found += [
+            f"map: {mapping.agreement}",
+            f"trajectory while mapping: ATE {mapping.trajectory.ate_rmse * 100:.1f} cm,"
+            f" {mapping.driven:.1f} m in {mapping.pace.simulated:.0f} s,"
+            f" {_touched(mapping)}",
+        ]
+    if result.navigation:
+        place = result.navigation.localisation
+        found += [
+            *_table(result.navigation.ways, options.house.max_speed),
+            f"localisation: {_both(place.mean)} off in the mean, {_both(place.largest)} at most"
+            + (f"; was told {_both(place.told)} off" if place.told else ""),
+            f"driven {result.navigation.driven:.1f} m in {result.navigation.pace.simulated:.0f} s,"
+            f" {_touched(result.navigation)}",
+        ]
+    return found
+
+
+def _table(ways: list[Way], speed: float) -> list[str]:
+    rows = [COLUMNS]
+    for number, way in enumerate(ways, start=1):
+        rows.append((
+            str(number), f"{way.goal[0]:.2f}", f"{way.goal[1]:.2f}",
+            "yes" if way.reached else way.text, f"{way.time:.1f}", f"{way.straight / speed:.1f}",
+            f"{way.shortest / speed:.1f}", f"{way.driven:.2f}", f"{way.off * 100:.1f}",
+            f"{math.degrees(way.off_yaw):.1f}",
+        ))  # fmt: skip
+    widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows]
+
+
+def _mapping(mapping: Mapping, speed: float) -> dict:
+    trajectory, agreement = mapping.trajectory, mapping.agreement
+    return {
+        **_pace(mapping.pace),
+        "distance_m": round(mapping.driven, 3),
+        "ate_rmse_m": round(trajectory.ate_rmse, 4),
+        "yaw_rmse_deg": round(math.degrees(trajectory.yaw_rmse), 3),
+        "largest_m": round(trajectory.largest, 4),
+        **asdict(agreement),
+        "known_m2": round(mapping.known, 1),
+        **_seen(mapping.seen),
+        "contacts": [_contact(each) for each in mapping.contacts],
+        "way_points": [_way(way, speed) for way in mapping.ways],
+    }
+
+
+def _navigation(navigation: Navigation, speed: float) -> dict:
+    place = navigation.localisation
+    return {
+        **_pace(navigation.pace),
+        "distance_m": round(navigation.driven, 3),
+        "told_off": _error(place.told) if place.told else None,
+        "found_off": _error(place.found),
+        "mean_off": _error(place.mean),
+        "largest_off": _error(place.largest),
+        **_seen(navigation.seen),
+        "contacts": [_contact(each) for each in navigation.contacts],
+        "goals": [_way(way, speed) for way in navigation.ways],
+    }
+
+
+def _pace(pace: Pace) -> dict:
+    return {"simulated_s": round(pace.simulated, 1), "wall_s": round(pace.wall, 1),
+            "real_time_factor": round(pace.factor, 3), "cpu_percent_of_a_core": pace.cpu}
+
+
+def _seen(seen: Seen) -> dict:
+    return {"nearest_m": _finite(seen.nearest, 3), "longest_unseen_s": round(seen.unseen, 2)}
+
+
+def _way(way: Way, speed: float) -> dict:
+    x, y, yaw = way.goal
+    return {
+        "x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
+        "reached": way.reached, "text": way.text, "time_s": round(way.time, 1),
+        "straight_s": round(way.straight / speed, 1),
+        "shortest_s": round(way.shortest / speed, 1) if math.isfinite(way.shortest) else None,
+        "driven_m": round(way.driven, 3), "off_m": round(way.off, 3),
+        "off_deg": round(math.degrees(way.off_yaw), 1),
+    }  # fmt: skip
+
+
+def _contact(contact: Contact) -> dict:
+    return {"own": contact.own, "begin_s": round(contact.begin, 2),
+            "end_s": round(contact.end, 2), "place_m": contact.place}
+
+
+def _error(error: tuple[float, float]) -> dict:
+    return {"m": _finite(error[0], 4), "deg": _finite(math.degrees(error[1]), 2)}
+
+
+def _finite(value: float, digits: int) -> float | None:
+    return round(value, digits) if np.isfinite(value) else None
+
+
+def _touched(part: Mapping | Navigation) -> str:
+    return f"touched {len(part.contacts)}, smallest gap {part.seen.nearest * 100:.1f} cm"
+
+
+def _both(error: tuple[float, float]) -> str:
+    return f"{error[0] * 100:.1f} cm and {math.degrees(error[1]):.1f}°"

@@ -1,0 +1,175 @@
+"""The figures of a run, and whether they are within the limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from evaluation.mapping.map_agreement import MapAgreement, map_agreement
+from evaluation.mapping.trajectory_error import TrajectoryError, trajectory_error
+from evaluation.mapping.true_map import visible_walls
+from evaluation.navigation.driver import Way
+from evaluation.navigation.ground import Ground
+from evaluation.navigation.records import Contact, Records
+from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
+from nav_algorithms.poses import compose, wrap_angle
+
+MOST_ATE = 0.05  # m
+LEAST_AGREEMENT = 0.95  # share
+MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees, mean error of localisation
+MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees, beside a goal that is called reached
+POSE_STEP = 10  # every so many poses are asked what the laser saw from there
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long a part of the run took, and what its processes used."""
+
+    simulated: float  # s
+    wall: float  # s
+    cpu: dict[str, float]  # percent of one core, by node; in s used in 100 simulated s
+
+    @property
+    def factor(self) -> float:
+        """Simulated over wall time."""
+        return self.simulated / self.wall if self.wall > 0 else 0.0
+
+
+@dataclass(frozen=True)
+class Seen:
+    """How near the robot was to touching something, and how well that was looked at."""
+
+    nearest: float  # m, smallest gap to anything
+    unseen: float  # s, simulated, between two looks, at most
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """The mapping round."""
+
+    ways: list[Way]
+    contacts: list[Contact]
+    seen: Seen
+    driven: float  # m
+    trajectory: TrajectoryError
+    agreement: MapAgreement
+    known: float  # m^2, free
+    pace: Pace
+
+    @property
+    def faults(self) -> list[str]:
+        """What is beyond the limits, in words."""
+        found = []
+        if self.trajectory.ate_rmse > MOST_ATE:
+            found.append(f"mapping: trajectory error {_cm(self.trajectory.ate_rmse)}, "
+                         f"more than {_cm(MOST_ATE)}")
+        for what, share in (("occupied cells near true walls", self.agreement.occupied_near_walls),
+                            ("seen walls on the map", self.agreement.walls_found)):
+            if share < LEAST_AGREEMENT:
+                found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
+        return found + _way_faults("way-point", self.ways) + _contact_faults("mapping",
+                                                                             self.contacts)
+
+
+@dataclass(frozen=True)
+class Localisation:
+    """How far the believed pose was from the true one; m and rad."""
+
+    told: tuple[float, float] | None  # the first pose that it was told, and how wrong that was
+    found: tuple[float, float]  # after the turn on the spot
+    mean: tuple[float, float]  # on the way to the goals
+    largest: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Navigation:
+    """The goals."""
+
+    ways: list[Way]
+    contacts: list[Contact]
+    seen: Seen
+    driven: float  # m
+    localisation: Localisation
+    pace: Pace
+
+    @property
+    def faults(self) -> list[str]:
+        """What is beyond the limits, in words."""
+        found = []
+        off, off_deg = self.localisation.mean[0], np.degrees(self.localisation.mean[1])
+        if off > MOST_OFF or off_deg > MOST_OFF_DEG:
+            found.append(f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
+                         f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°")
+        return (found + _way_faults("goal", self.ways)
+                + _contact_faults("on the way to the goals", self.contacts))
+
+
+@dataclass
+class Result:
+    """All of a run, or as much as there was before it ended."""
+
+    map: OccupancyGrid | None = None
+    map_in_world: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    mapping: Mapping | None = None
+    navigation: Navigation | None = None
+    paths: dict[str, np.ndarray] = field(default_factory=dict)  # (N, 2) m, by the run's part
+
+    @property
+    def faults(self) -> list[str]:
+        """What is beyond the limits, in words."""
+        return [fault for part in (self.mapping, self.navigation) if part for fault in part.faults]
+
+
+def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles: np.ndarray,
+                  reach: float, ways: list[Way], pace: Pace) -> Mapping:
+    """The map against the walls that a laser with these beams (rad) and reach (m) could see."""
+    believed, true = records.pairs()
+    trajectory = trajectory_error(believed, true)
+    seen = visible_walls(ground.walls, true[::POSE_STEP], angles, reach)
+    agreement = map_agreement(built, ground.walls, seen, trajectory.alignment)
+    free = (built.cells >= FREE) & (built.cells < 50) & (built.cells != UNKNOWN)
+    return Mapping(ways, records.contacts, seen_of(records), records.length, trajectory,
+                   agreement, float(free.sum() * built.resolution ** 2), pace)
+
+
+def seen_of(records: Records) -> Seen:
+    """Of one part of the run."""
+    return Seen(records.nearest[0], float(records.longest_unseen))
+
+
+def pose_errors(records: Records, map_in_world: np.ndarray, since: float) -> np.ndarray:
+    """(N, 2): m and rad between believed and true pose, from a moment (s) on."""
+    believed, true = records.pairs(since)
+    there = compose(map_in_world, believed)
+    return np.stack((np.linalg.norm(there[:, :2] - true[:, :2], axis=1),
+                     np.abs(wrap_angle(there[:, 2] - true[:, 2]))), axis=1)
+
+
+def localisation(told: tuple[float, float] | None, errors: np.ndarray) -> Localisation:
+    """Of errors (N, 2) on the way to the goals; the first of them is what was found."""
+    if not len(errors):
+        errors = np.full((1, 2), np.inf)
+    return Localisation(told, tuple(errors[0].tolist()), tuple(errors.mean(axis=0).tolist()),
+                        tuple(errors.max(axis=0).tolist()))
+
+
+def _way_faults(what: str, ways: list[Way]) -> list[str]:
+    found = []
+    for number, way in enumerate(ways, start=1):
+        name = f"{what} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
+        off_deg = np.degrees(way.off_yaw)
+        if not way.reached:
+            found.append(f"{name} not reached: {way.text}")
+        elif way.off > MOST_MISS or off_deg > MOST_MISS_DEG:
+            found.append(f"{name} called reached, but {_cm(way.off)} and {off_deg:.0f}° off")
+    return found
+
+
+def _contact_faults(when: str, contacts: list[Contact]) -> list[str]:
+    return [f"{when}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
+            for each in contacts]
+
+
+def _cm(length: float) -> str:
+    return f"{length * 100:.1f} cm"

@@ -1,0 +1,202 @@
+"""Figures of a navigation run, on records that are known; no ROS."""
+
+import json
+import re
+import subprocess
+
+import numpy as np
+import pytest
+
+from evaluation.course_run.course_file import find_package
+from evaluation.course_run.failure import RunError
+from evaluation.navigation.driver import Way
+from evaluation.navigation.feelers import Gap
+from evaluation.navigation.ground import Ground
+from evaluation.navigation.house_file import load_house
+from evaluation.navigation.options import parse_options
+from evaluation.navigation.picture import map_picture
+from evaluation.navigation.records import Records
+from evaluation.navigation.report import lines, read_map_frame, write_report
+from evaluation.navigation.score import (
+    Navigation,
+    Pace,
+    Result,
+    Seen,
+    localisation,
+    pose_errors,
+    score_mapping,
+)
+from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.poses import compose, invert
+
+PACE = Pace(100.0, 200.0, {"move_base": 40.0})
+SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's
+ANGLES = np.arange(360) * np.pi / 180
+
+
+def way(reached: bool = True, text: str = "Goal reached.") -> Way:
+    return Way((1.0, 2.0, 0.5), reached, text, 20.0, 4.2, 3.0, 4.0, 0.03, 0.1)
+
+
+@pytest.fixture(scope="module")
+def ground():
+    return Ground(load_house("house"))
+
+
+@pytest.fixture(scope="module")
+def urdf():
+    folder = find_package("turtlebot3_description") / "urdf"
+    done = subprocess.run(["xacro", str(folder / "turtlebot3_waffle.urdf.xacro")],
+                          capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def records_of(poses: np.ndarray, error: np.ndarray = np.zeros(3),
+               map_in_world: np.ndarray = SHIFT) -> Records:
+    """A drive of ten poses a second; the believed ones are on the map, and wrong by `error`."""
+    records = Records()
+    believed = compose(invert(map_in_world), poses) + error
+    for number, (true, thought) in enumerate(zip(poses, believed)):
+        records.truth.append((number / 10, *true.tolist()))
+        records.believed.append((number / 10, *thought.tolist()))
+    return records
+
+
+def round_of(ground: Ground) -> np.ndarray:
+    """Twenty poses from each way-point to the next."""
+    points = np.array(load_house("house").way_points)
+    at, known = np.arange(0.0, len(points) - 1, 0.05), np.arange(len(points))
+    return np.stack((*(np.interp(at, known, column) for column in points.T), at % 3), axis=1)
+
+
+def test_touching_again_within_half_a_second_is_one_contact():
+    records = Records()
+    for now, width in ((0.5, 0.1), (1.0, 0.004), (1.2, 0.01), (1.4, 0.0), (3.0, -0.001), (4.0, 1)):
+        records.note_gap(Gap(width, "wheel", (1.0, 2.0)), now)
+    assert [(each.begin, each.end) for each in records.contacts] == [(1.0, 1.4), (3.0, 3.0)]
+    assert records.contacts[0].own == "wheel" and records.nearest == (-0.001, 3.0)
+
+
+@pytest.mark.parametrize("pose, own, width", [
+    # The eastern outer wall begins at 7.525; the wheels' outer sides lie 0.153 from the middle.
+    ((7.3, -1.0, 0.0), "camera", 7.525 - 7.3 - 0.073),
+    ((7.3, -1.0, np.pi), "base_link", 7.525 - 7.3 - 0.197),
+    ((7.3, -1.0, np.pi / 2), "wheel_right", 7.525 - 7.3 - 0.153),
+    ((7.3, -1.0, -np.pi / 2), "wheel_left", 7.525 - 7.3 - 0.153),
+    ((7.372, -1.0, np.pi / 2), "wheel_right", 0.0),
+    # Between the legs of the kitchen table, 0.025 m thick, 0.78 m apart; and before one of them.
+    ((2.6, -2.4 + 0.1, 0.0), "base_", np.hypot(0.39 - 0.197, 0.39 - 0.1 - 0.133) - 0.025),
+    ((2.6 + 0.39 - 0.2, -2.4 + 0.39, 0.0), "camera", 0.2 - 0.025 - 0.073),
+    ((0.0, 1.5, 0.3), "", 0.5)])
+def test_gaps_are_those_of_the_shapes(ground, urdf, pose, own, width):
+    gap = ground.feelers(urdf).gap(np.array(pose))
+    assert gap.width == pytest.approx(width, abs=0.003) and own in gap.own
+
+
+def test_poses_are_compared_at_the_same_moments():
+    records = Records(truth=[(0.0, 0.0, 0.0, 0.0), (0.1, 1.0, 0.0, 0.2), (0.4, 1.0, 0.0, 3.0)],
+                      believed=[(-1.0, 9.0, 9.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.05, 0.5, 0.1, 0.1),
+                                (0.3, 1.0, 0.0, 2.0), (2.0, 9.0, 9.0, 0.0)])
+    believed, true = records.pairs()  # 0.3 s without a look: it may have turned either way
+    assert believed.tolist() == [[0.0, 0.0, 0.0], [0.5, 0.1, 0.1]]
+    assert true[1] == pytest.approx([0.5, 0.0, 0.1])
+    assert len(records.pairs(since=0.06)[0]) == 0
+    assert records.length == 1.0 and records.now == 0.4
+    assert records.longest_unseen == pytest.approx(0.3)
+
+
+def test_errors_of_localisation_are_taken_in_the_world():
+    records = records_of(np.random.default_rng(0).normal(size=(10, 3)), np.array([0.03, 0.04, 0.1]))
+    errors = pose_errors(records, SHIFT, since=0.4)
+    assert errors == pytest.approx(np.tile([0.05, 0.1], (6, 1)))
+    found = localisation((0.2, 0.1), errors)
+    for error in (found.mean, found.largest, found.found):
+        assert error == pytest.approx((0.05, 0.1))
+    part = Navigation([way()], [], Seen(0.1, 0.04), 4.2, found, PACE)
+    assert part.faults == ["localisation: 5.0 cm and 5.7° off in the mean, more than 5.0 cm and 2°"]
+    assert localisation(None, errors[:0]).mean == (np.inf, np.inf)  # nothing known is no success
+
+
+def test_a_right_map_in_a_frame_of_its_own_has_no_fault(ground):
+    walls, shift = ground.walls, np.array([0.52, -0.21, 0.0])
+    built = OccupancyGrid(walls.cells, walls.resolution, tuple(walls.origin - shift[:2]))
+    records = records_of(round_of(ground), map_in_world=shift)
+    part = score_mapping(ground, built, records, ANGLES, 3.0, [way()], PACE)
+    assert part.faults == [] and part.trajectory.ate_rmse == pytest.approx(0.0, abs=1e-6)
+    assert part.agreement.walls_found == 1.0 and part.agreement.wall_cells > 1500
+    assert 100.0 < part.known < 160.0  # m^2
+
+
+def test_each_fault_of_a_mapping_round_is_a_line(ground):
+    poses = round_of(ground)
+    error = np.column_stack((0.1 * (-1) ** np.arange(len(poses)), *np.zeros((2, len(poses)))))
+    records = records_of(poses, error, np.zeros(3))
+    records.note_gap(Gap(0.001, "wheel", (1.0, 2.0)), 1.0)
+    cells = ground.walls.cells.copy()
+    cells[:, 150:] = UNKNOWN  # half of the house is not on the map
+    cells[100:110, 20:40] = OCCUPIED  # and something that is not there
+    built = OccupancyGrid(cells, ground.walls.resolution, ground.walls.origin)
+    ways = [way(), way(False, "time is up")]
+    faults = score_mapping(ground, built, records, ANGLES, 3.0, ways, PACE).faults
+    wanted = (r"mapping: trajectory error 10\.0 cm, more than 5\.0 cm",
+              r"mapping: occupied cells near true walls [89]\d\.\d%, less than 95%",
+              r"mapping: seen walls on the map [3-6]\d\.\d%, less than 95%",
+              r"way-point 2 \(1\.00, 2\.00\) not reached: time is up",
+              r"mapping: wheel touched something at 1\.0 s, \(1\.0, 2\.0\)")
+    for fault, text in zip(faults, wanted, strict=True):
+        assert re.fullmatch(text, fault), fault
+
+
+def test_a_goal_that_is_only_called_reached_is_a_fault():
+    place = localisation(None, np.zeros((1, 2)))
+    beside = Way((1.0, 2.0, 0.5), True, "Goal reached.", 20.0, 4.2, 3.0, 4.0, 0.03, 1.6)
+    assert Navigation([way(), beside], [], Seen(0.1, 0.04), 4.2, place, PACE).faults == [
+        "goal 2 (1.00, 2.00) called reached, but 3.0 cm and 92° off"]
+
+
+def test_a_map_brings_its_frame_along(tmp_path, ground):
+    options = parse_options(["--out", str(tmp_path)])
+    report = tmp_path / "report.json"
+    assert (read_map_frame(report) == 0).all()
+    write_report(report, options, ("passed", ""), Result(map_in_world=SHIFT), {})
+    assert read_map_frame(report) == pytest.approx(SHIFT)
+    report.write_text('{"map_in_world": "here"}')
+    assert (read_map_frame(report) == 0).all()
+
+
+def test_report_table_and_picture_of_a_run(tmp_path, ground):
+    records = records_of(round_of(ground))
+    errors = pose_errors(records, SHIFT, since=0.0)
+    place = localisation((0.2, 0.1), errors)
+    missed = way(False, "Failed to find a valid plan. Even after executing recovery behaviors.")
+    result = Result(ground.walls, np.zeros(3), None, Navigation(
+        [way(), missed], records.contacts, Seen(0.1, 0.04), 8.4, place, PACE))
+    result.paths["goals"] = np.array(records.truth)[:, 1:3]
+    options = parse_options(["--goals", "2", "--seed", "7", "--out", str(tmp_path)])
+    write_report(tmp_path / "report.json", options, ("not passed", "why"), result, {"film": None})
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["goals_reached"] == 1 and report["goals_wanted"] == 2 and report["seed"] == 7
+    first = report["navigation"]["goals"][0]
+    assert first["time_s"] == 20.0 and first["straight_s"] == pytest.approx(3.0 / 0.26, abs=0.05)
+    assert report["navigation"]["cpu_percent_of_a_core"] == {"move_base": 40.0}
+    assert report["navigation"]["real_time_factor"] == 0.5
+    table = lines(options, result)
+    assert table[1].split()[:4] == ["1", "1.00", "2.00", "yes"]
+    assert "Failed to find a valid plan." in table[2]
+    picture = map_picture(ground, result, "title", "figures")
+    assert picture.shape == (1132, 1400, 3)
+    colours = {tuple(colour) for colour in picture.reshape(-1, 3)[::7].tolist()}
+    assert {(66, 58, 54), (220, 120, 210)} <= colours  # free cells, the way to the goals
+
+
+@pytest.mark.parametrize("arguments, said", [
+    (["--goals", "0"], r"--goals \(GOALS=\) must be a whole number, 1 or more; got '0'"),
+    (["--goals", "five"], "GOALS="), (["--seed", "-1"], "SEED="),
+    (["--real-time-factor", "0"], "PACE="), (["--real-time-factor", "fast"], "PACE="),
+    (["--real-time-factor", "nan"], "PACE="),
+    (["--map", "/nowhere.yaml"], "no such file"), (["--gaols", "3"], "--help"),
+    (["--house", "hut"], "there are: house")])
+def test_a_mistyped_option_is_one_line(arguments, said):
+    with pytest.raises(RunError, match=said) as found:
+        parse_options(arguments)
+    assert "\n" not in str(found.value)
