@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# move_base through many narrow yards, and past persons who cross its way: out/navigation_trials/.
+#
+#   scripts/navigation_trials.sh [--yards N] [--first-yard N] [--repeats N] [--crossings N]
+#                                [--first-crossing N] [--real-time-factor X] [--parameters FILE]
+#                                [--out DIR] [--resume]
+#
+# Exit code 0: 95 % of the yards crossed and no person touched; 1: not so; 2: it could not run.
+failure_code=2
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+"$root/scripts/setup.sh" --bench || exit 2
+enter_workspace
+exec python3 "$root/src/evaluation/scripts/navigation_trials.py" "$@"

@@ -1,0 +1,12 @@
+#!/usr/bin/env python3
+"""Drives the waffle through many narrow yards, and past persons who cross its way (--help)."""
+
+import signal
+import sys
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
+
+from evaluation.yards.main import main  # noqa: E402
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,130 @@
+"""One drive from start to goal: through a yard, or past a person who crosses."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import asdict
+
+import numpy as np
+
+from evaluation.course_run.failure import RunError
+from evaluation.yards import crossing, results
+from evaluation.yards.crossing import APPROACH, ROBOT_SPEED, Crossing
+from evaluation.yards.judge import WALKED_INTO, Judge, Place, Sample
+from evaluation.yards.results import Drive
+from evaluation.yards.rig import PERSON as PERSON_MODEL
+from evaluation.yards.rig import Rig
+from evaluation.yards.sdf import person_model, room_model, yard_model
+from evaluation.yards.yard import RADIUS, Yard
+
+LOOK_PERIOD = 0.05  # s, wall
+SILENCE = 30.0      # s, wall
+LIMIT = 100.0       # s, simulated, as in the benchmark
+ORIGIN = (0.0, 0.0, 0.0)
+Way = list[tuple[float, ...]]  # s, x, y, yaw
+
+
+def through_yard(rig: Rig, yard: Yard, repeat: int) -> tuple[Drive, Way]:
+    """The drive, and when it was where."""
+    start = yard.start(repeat)
+    rig.prepare({"yard": (yard_model(yard), ORIGIN)}, start)
+    judge = Judge(yard.cylinders, RADIUS)
+    outcome, pace = _watch(rig, judge, yard.goal)
+    drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
+             "path_length": yard.path_length, **asdict(yard.difficulty)}
+    return _drive(rig, judge, results.YARDS, yard.seed, repeat, outcome, pace,
+                  math.dist(start[:2], yard.goal[:2]), yard.path_length, drawn)
+
+
+def past_person(rig: Rig, walk: Crossing) -> tuple[Drive, Way]:
+    """The same in a room that a person walks across."""
+    rig.prepare({"room": (room_model(), ORIGIN), PERSON_MODEL: (person_model(), walk.begin)},
+                crossing.START)
+    rig.wait(rig.person_listens, "the person")
+    judge, walker = Judge(np.empty((0, 2)), 0.0), Walker(rig, walk)
+    outcome, pace = _watch(rig, judge, crossing.GOAL, walker)
+    straight = math.dist(crossing.START[:2], crossing.GOAL[:2])
+    return _drive(rig, judge, results.CROSSINGS, walk.seed, 0, outcome, pace, straight, straight,
+                  asdict(walk))
+
+
+class Walker:
+    """Has the person set off in time, and stop on the other side."""
+
+    def __init__(self, rig: Rig, walk: Crossing):
+        self._rig, self._walk = rig, walk
+        self._walking: bool | None = None  # None: waits
+
+    def see(self, sample: Sample) -> None:
+        """Where the robot is decides when the person sets off."""
+        if self._walking is None and sample.robot[0] >= self._walk.trigger:
+            self._rig.walk(self._walk.speed)
+            self._walking = True
+        elif self._walking and math.dist(sample.person[:2], self._walk.begin[:2]) > 2 * APPROACH:
+            self._rig.walk(0.0)
+            self._walking = False
+
+    def stop(self) -> None:
+        """However the drive ended."""
+        self._rig.walk(0.0)
+
+
+def _watch(rig: Rig, judge: Judge, goal: Place, walker: Walker | None = None
+           ) -> tuple[str, float]:
+    """Drives until the goal has ended; how, and the real-time factor meanwhile."""
+    rig.send(goal)
+    began, ended = time.monotonic(), None
+    heard = began
+    while ended is None:
+        ended = rig.result()  # before the samples, so that those of the way there all count
+        for sample in rig.samples(LOOK_PERIOD):
+            heard = time.monotonic()
+            judge.see(sample)
+            if walker:
+                walker.see(sample)
+        if time.monotonic() > heard + SILENCE:
+            raise RunError(f"no news of the robot for {SILENCE:.0f} s: the simulator hangs")
+        if judge.contact or judge.time > LIMIT:
+            ended = judge.contact or f"not there within {LIMIT:.0f} s"
+    wall = time.monotonic() - began
+    if walker:
+        walker.stop()
+    rig.end_goal()
+    return ended, judge.time / wall
+
+
+def _drive(rig: Rig, judge: Judge, kind: str, seed: int, repeat: int, ended: str, pace: float,
+           straight: float, shortest: float, drawn: dict) -> tuple[Drive, Way]:
+    drive = Drive(
+        set=kind,
+        seed=seed,
+        repeat=repeat,
+        outcome=_outcome(judge, ended),
+        why=None if ended == results.REACHED else ended,
+        time=round(judge.time, 2),
+        distance=round(judge.distance, 3),
+        straight_time=round(straight / ROBOT_SPEED, 2),
+        shortest_time=round(shortest / ROBOT_SPEED, 2),
+        to_obstacles=_known(judge.to_obstacles),
+        to_person=_known(judge.to_person),
+        recoveries=list(rig.recoveries),
+        slow_cycles=rig.slow_cycles,
+        real_time_factor=round(pace, 2),
+        drawn=drawn,
+    )
+    return drive, judge.path
+
+
+def _outcome(judge: Judge, ended: str) -> str:
+    if judge.contact == WALKED_INTO:
+        return results.WALKED_INTO
+    if judge.contact:
+        return results.CONTACT
+    if ended == results.REACHED:
+        return results.REACHED
+    return results.LATE if judge.time > LIMIT else results.GIVEN_UP
+
+
+def _known(air: float) -> float | None:
+    return None if math.isinf(air) else round(air, 4)

@@ -1,0 +1,113 @@
+"""The trials from beginning to end: drive by drive, print, write, draw."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from evaluation.bench.ros_run import RosRun
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.interruption import interruptible
+from evaluation.course_run.processes import Family
+from evaluation.yards.crossing import draw_crossing
+from evaluation.yards.drive import Way, past_person, through_yard
+from evaluation.yards.options import Options, parse_options
+from evaluation.yards.results import (
+    CROSSINGS,
+    YARDS,
+    Drive,
+    drive_line,
+    passed,
+    read_drives,
+    summarize,
+    table,
+    write_report,
+)
+from evaluation.yards.rig import Rig
+from evaluation.yards.sdf import world, yard_model
+from evaluation.yards.sheet import write_sheets
+from evaluation.yards.yard import draw_yard
+
+PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(arguments: list[str]) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        with interruptible():
+            return _run(parse_options(arguments))
+    except (RunError, OSError) as failure:
+        if getattr(failure, "details", ""):
+            print(failure.details, file=sys.stderr)
+        print(f"navigation_trials: {failure}", file=sys.stderr)
+        return NOT_RUN
+    except KeyboardInterrupt:
+        print("navigation_trials: interrupted; all processes ended", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _run(options: Options) -> int:
+    write_chart = _chart_writer()  # a missing package is said before anything is driven
+    try:
+        (options.out / "drives").mkdir(parents=True, exist_ok=True)
+        (options.out / "worlds").mkdir(exist_ok=True)
+    except OSError as error:
+        raise RunError(f"--out {options.out}: {error.strerror}") from error
+    drives = read_drives(options.out / "report.json") if options.resume else []
+    there = {drive.name for drive in drives}
+    left = [trial for trial in _trials(options) if "-".join(map(str, trial)) not in there]
+    try:
+        if left:
+            _drive_all(options, left, drives)
+    finally:
+        if drives:  # what was driven is kept, however it ended
+            print(table(summarize(drives)), flush=True)
+            _write(drives, options.out, write_chart)
+    return PASSED if passed(drives) else NOT_PASSED
+
+
+def _trials(options: Options) -> Iterator[tuple[str, int, int]]:
+    """Set, seed and repeat of each drive."""
+    for repeat in range(options.repeats):
+        yield from ((YARDS, seed, repeat) for seed in options.yards)
+    yield from ((CROSSINGS, seed, 0) for seed in options.crossings)
+
+
+def _drive_all(options: Options, trials: list[tuple[str, int, int]], drives: list[Drive]) -> None:
+    with Family() as family:
+        run = RosRun(family, options.out / "log")
+        run.start_roscore()
+        rig = Rig(run, options.real_time_factor, options.parameters)
+        for number, (kind, seed, repeat) in enumerate(trials, start=1):
+            if kind == YARDS:
+                yard = draw_yard(seed)
+                (options.out / "worlds" / f"yard_{seed}.world").write_text(
+                    world(yard_model(yard)), encoding="utf-8")
+                drive, way = through_yard(rig, yard, repeat)
+            else:
+                drive, way = past_person(rig, draw_crossing(seed))
+            drives.append(drive)
+            print(f"[{number}/{len(trials)}] {drive_line(drive)}", flush=True)
+            _write_way(options.out, drive, way)
+            write_report(drives, options.out / "report.json")
+
+
+def _write_way(out: Path, drive: Drive, way: Way) -> None:
+    rounded = [[round(value, 4) for value in place] for place in way]
+    (out / "drives" / f"{drive.name}.json").write_text(json.dumps(rounded) + "\n")
+
+
+def _write(drives: list[Drive], out: Path, write_chart: Callable) -> None:
+    write_chart(drives, out / "trials.png")
+    names = ("report.json", "trials.png", *write_sheets(drives, out))
+    print(f"written to {out}: {', '.join(names)}", flush=True)
+
+
+def _chart_writer() -> Callable:
+    try:
+        return importlib.import_module("evaluation.yards.chart").write_chart
+    except ImportError as error:
+        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error

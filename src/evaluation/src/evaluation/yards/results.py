@@ -1,0 +1,167 @@
+"""What became of the drives: one by one, together, as a table and as report.json."""
+
+from __future__ import annotations
+
+import json
+import statistics
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from evaluation.course_run.failure import RunError
+
+YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
+REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE = (
+    "reached", "contact", "walked into", "given up", "late")
+LEAST_SHARE = 0.95  # of the yards
+BEST, WORST = 4.0, 8.0  # times the shortest time between which BARN's score falls
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One; m, s."""
+
+    set: str
+    seed: int
+    repeat: int
+    outcome: str
+    why: str | None
+    time: float
+    distance: float
+    straight_time: float  # of the straight line from start to goal at top speed
+    shortest_time: float  # of the shortest way that is wide enough, at top speed
+    to_obstacles: float | None  # the least air; None: there were none
+    to_person: float | None
+    recoveries: list[str]
+    slow_cycles: int  # move_base's own words that it was too slow, at most one in 5 s
+    real_time_factor: float
+    drawn: dict = field(default_factory=dict)  # the yard's difficulty, or the person's walk
+
+    @property
+    def reached(self) -> bool:
+        """Did it come to its goal without touching anything?"""
+        return self.outcome == REACHED
+
+    @property
+    def score(self) -> float:
+        """The BARN challenge's: 0.25 for a fast drive, 0.125 for a slow one, 0 for none."""
+        if not self.reached:
+            return 0.0
+        return self.shortest_time / min(max(self.time, BEST * self.shortest_time),
+                                        WORST * self.shortest_time)
+
+    @property
+    def name(self) -> str:
+        """As its files are called."""
+        return f"{self.set}-{self.seed}-{self.repeat}"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Of all drives of a set; means of those that reached the goal, None where none did."""
+
+    set: str
+    drives: int
+    outcomes: dict[str, int]
+    share_reached: float
+    mean_time: float | None
+    mean_straight_time: float | None
+    mean_time_by_straight: float | None
+    mean_time_by_shortest: float | None
+    mean_score: float
+    least_to_obstacles: float | None
+    least_to_person: float | None
+    drives_with_recovery: int
+    failed: list[str]
+
+
+def summarize(drives: Sequence[Drive]) -> list[Summary]:
+    """One for each set there is."""
+    sets = dict.fromkeys(drive.set for drive in drives)
+    return [_summary(name, [drive for drive in drives if drive.set == name]) for name in sets]
+
+
+def _summary(name: str, drives: list[Drive]) -> Summary:
+    there = [drive for drive in drives if drive.reached]
+    counted = dict.fromkeys(sorted(drive.outcome for drive in drives), 0)
+    for drive in drives:
+        counted[drive.outcome] += 1
+    return Summary(
+        name, len(drives), counted, len(there) / len(drives),
+        _mean([drive.time for drive in there]),
+        _mean([drive.straight_time for drive in there]),
+        _mean([drive.time / drive.straight_time for drive in there]),
+        _mean([drive.time / drive.shortest_time for drive in there]),
+        statistics.fmean(drive.score for drive in drives),
+        min((d.to_obstacles for d in there if d.to_obstacles is not None), default=None),
+        min((d.to_person for d in there if d.to_person is not None), default=None),
+        sum(bool(drive.recoveries) for drive in drives),
+        [drive.name for drive in drives if not drive.reached],
+    )  # fmt: skip
+
+
+def passed(drives: Sequence[Drive]) -> bool:
+    """Enough yards crossed, and nobody touched by the robot."""
+    yards = [drive.reached for drive in drives if drive.set == YARDS]
+    touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in drives)
+    return not touched and (not yards or sum(yards) >= LEAST_SHARE * len(yards))
+
+
+def table(summaries: Sequence[Summary]) -> str:
+    """A row each."""
+    rows = [("drives", "reached", "", "s", "straight s", "ratio", "BARN", "air cm", "to person cm",
+             "with recovery")]  # fmt: skip
+    rows += [
+        (
+            each.set, f"{each.outcomes.get(REACHED, 0)} of {each.drives}",
+            f"{each.share_reached:.0%}", _cell(each.mean_time, 1, 1),
+            _cell(each.mean_straight_time, 1, 1), _cell(each.mean_time_by_straight, 1, 2),
+            _cell(each.mean_score, 1, 3), _cell(each.least_to_obstacles, 100, 1),
+            _cell(each.least_to_person, 100, 1), str(each.drives_with_recovery),
+        )
+        for each in summaries
+    ]  # fmt: skip
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+                     for row in rows)
+
+
+def drive_line(drive: Drive) -> str:
+    """One drive on one line."""
+    why = f" ({drive.why})" if drive.why else ""
+    air = drive.to_obstacles if drive.to_person is None else drive.to_person
+    recovered = f", {len(drive.recoveries)} recoveries" if drive.recoveries else ""
+    return (f"{drive.name}: {drive.outcome}{why}, {drive.time:.1f} s (straight"
+            f" {drive.straight_time:.1f} s), {_cell(air, 100, 1)} cm of air{recovered},"
+            f" real time x{drive.real_time_factor:.2f}")
+
+
+def write_report(drives: Sequence[Drive], path: Path) -> None:
+    """All there is, with the limit it is held against."""
+    values = {
+        "least_share_of_yards": LEAST_SHARE,
+        "passed": passed(drives),
+        "summaries": [asdict(each) for each in summarize(drives)],
+        "drives": [{**asdict(drive), "score": drive.score} for drive in drives],
+    }
+    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+
+
+def read_drives(path: Path) -> list[Drive]:
+    """The drives of a report that `write_report` wrote."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))["drives"]
+        return [Drive(**{name: each[name] for name in Drive.__dataclass_fields__})
+                for each in found]
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise RunError(f"{path}: no report of navigation_trials: {error!r}") from error
+
+
+def _mean(values: list[float]) -> float | None:
+    return statistics.fmean(values) if values else None
+
+
+def _cell(value: float | None, factor: float, digits: int) -> str:
+    return "-" if value is None else f"{value * factor:.{digits}f}"

@@ -1,0 +1,172 @@
+"""The running simulator with the waffle and move_base: what trials do with it, and see of it."""
+
+from __future__ import annotations
+
+import math
+import queue
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from gazebo_msgs.msg import ModelState, ModelStates
+from gazebo_msgs.srv import DeleteModel, SetModelState, SpawnModel
+from geometry_msgs.msg import Pose, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
+from std_srvs.srv import Empty
+
+from evaluation.bench.ros_run import RosRun
+from evaluation.bench.simulator import FAILURES, WAFFLE, wait_for_model
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.launch import DIED, describe_exit
+from evaluation.yards.judge import Place, Sample
+from evaluation.yards.sdf import PERSON_TOPIC
+
+START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
+FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 10 Hz
+PERSON = "person"
+UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
+
+class Rig:
+    """Made once a run; all of its calls may raise RunError."""
+
+    def __init__(self, run: RosRun, real_time_factor: float, parameters: Path):
+        self._run = run
+        self._launched = run.launch(
+            "evaluation", "yard.launch", f"real_time_factor:={real_time_factor:g}",
+            f"parameters:={parameters}",
+        )  # fmt: skip
+        wait_for_model(run, WAFFLE)
+        rospy.init_node("navigation_trials", disable_signals=True, disable_rosout=True)
+        self._samples: queue.SimpleQueue[Sample] = queue.SimpleQueue()
+        self.recoveries: list[str] = []
+        self.slow_cycles = 0  # since `prepare`; move_base says so at most once in 5 s
+        self._there: set[str] = set()
+        self._walk = rospy.Publisher(PERSON_TOPIC, Twist, queue_size=1)
+        rospy.Subscriber("gazebo/model_states", ModelStates, self._take, queue_size=1)
+        rospy.Subscriber("move_base/recovery_status", RecoveryStatus, self._take_recovery)
+        self._client = actionlib.ActionClient("move_base", MoveBaseAction)
+        self._goal: actionlib.ClientGoalHandle | None = None
+        run.wait(lambda: self._client.wait_for_server(rospy.Duration(0.1)), START_LIMIT,
+                 "the action server of move_base")
+
+    def prepare(self, models: dict[str, tuple[str, Place]], start: Place) -> None:
+        """These models (SDF and place by name) instead of the last; the robot stands at `start`.
+
+        Its costmaps know only what it sees from there.
+        """
+        for name in sorted(self._there):
+            self._call("gazebo/delete_model", DeleteModel, name)
+            self._there.discard(name)
+        state = ModelState(model_name=WAFFLE, pose=pose_message(start), reference_frame="world")
+        self._call("gazebo/set_model_state", SetModelState, state)
+        for name, (text, place) in models.items():
+            self._call("gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
+                       "world")
+            self._there.add(name)
+        self.pause(FRESH)
+        self._call("move_base/clear_costmaps", Empty)
+        self.pause(FRESH)
+        self.samples()
+        self.recoveries.clear()
+        self.slow_cycles = 0
+
+    def send(self, goal: Place) -> None:
+        """Have the robot drive to a place."""
+        message = MoveBaseGoal()
+        message.target_pose.header.frame_id = "odom"  # the drive takes it from the world
+        message.target_pose.pose = pose_message(goal)
+        self._goal = self._client.send_goal(message)
+
+    def result(self) -> str | None:
+        """How the goal ended: "reached", or the action's status and text; None until it has."""
+        status = self._goal.get_goal_status()
+        if status in UNDER_WAY:
+            return None
+        if status == GoalStatus.SUCCEEDED:
+            return "reached"
+        return f"{GoalStatus.to_string(status).lower()}: {self._goal.get_goal_status_text()}"
+
+    def end_goal(self) -> None:
+        """Returns when no goal is pursued any more."""
+        if self.result() is None:
+            self._goal.cancel()
+            self.wait(lambda: self.result() is not None, "the end of the cancelled goal")
+
+    def walk(self, speed: float) -> None:
+        """Have the person walk on at this speed, m/s; 0: stand."""
+        message = Twist()
+        message.linear.x = speed
+        self._walk.publish(message)
+
+    def person_listens(self) -> bool:
+        """Whether the person would obey."""
+        return self._walk.get_num_connections() > 0
+
+    def samples(self, wait: float = 0.0) -> list[Sample]:
+        """All since the last call and within this time, s, wall."""
+        time.sleep(wait)
+        self._run.check()
+        self.slow_cycles += slow_cycles_in(self._launched.new_lines())
+        found = []
+        while not self._samples.empty():
+            found.append(self._samples.get_nowait())
+        return found
+
+    def pause(self, seconds: float) -> None:
+        """Let so much simulated time go by."""
+        until = rospy.get_time() + seconds
+        self.wait(lambda: rospy.get_time() >= until, "simulated time")
+
+    def wait(self, condition: Callable[[], bool], what: str) -> None:
+        """Returns once the condition is true; RunError after ANSWER_LIMIT."""
+        self._run.wait(condition, ANSWER_LIMIT, what)
+
+    def _take(self, message: ModelStates) -> None:
+        places = dict(zip(message.name, message.pose, strict=True))
+        if WAFFLE not in places:
+            return
+        motion = message.twist[message.name.index(WAFFLE)].linear
+        self._samples.put(Sample(
+            rospy.get_time(), place_of(places[WAFFLE]), math.hypot(motion.x, motion.y),
+            place_of(places[PERSON]) if PERSON in places else None,
+        ))  # fmt: skip
+
+    def _take_recovery(self, message: RecoveryStatus) -> None:
+        self.recoveries.append(message.recovery_behavior_name)
+
+    def _call(self, name: str, kind: type, *arguments: object) -> None:
+        try:
+            rospy.wait_for_service(name, ANSWER_LIMIT)
+            answer = rospy.ServiceProxy(name, kind)(*arguments)
+        except FAILURES as error:
+            raise RunError(f"service /{name}: {error}") from error
+        if not getattr(answer, "success", True):
+            raise RunError(f"service /{name}: {answer.status_message}")
+
+
+def slow_cycles_in(lines: list[str]) -> int:
+    """How often move_base was too slow, by roslaunch's output; RunError if a node has died."""
+    for line in lines:
+        died = DIED.search(line)
+        if died:
+            raise RunError(f"process {died[1]} died ({describe_exit(int(died[2]))})")
+    return sum("missed its desired rate" in line for line in lines)
+
+
+def pose_message(place: Place) -> Pose:
+    """On the ground."""
+    pose = Pose()
+    pose.position.x, pose.position.y = place[:2]
+    pose.orientation.z, pose.orientation.w = math.sin(place[2] / 2), math.cos(place[2] / 2)
+    return pose
+
+
+def place_of(pose: Pose) -> Place:
+    """x, y and yaw of a pose that is upright, or nearly so."""
+    turn = pose.orientation
+    yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
+                     1 - 2 * (turn.y * turn.y + turn.z * turn.z))
+    return pose.position.x, pose.position.y, yaw

@@ -1,0 +1,155 @@
+"""The navigation trials without driving: command line, tables, pictures, exit codes."""
+
+import importlib
+import json
+from dataclasses import asdict, replace
+from types import SimpleNamespace
+
+import cv2
+import pytest
+
+from evaluation.course_run.failure import RunError
+from evaluation.yards import main
+from evaluation.yards.crossing import draw_crossing
+from evaluation.yards.options import parse_options
+from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, read_drives, summarize, table
+from evaluation.yards.sheet import write_sheets
+from evaluation.yards.yard import draw_yard
+
+
+def made(seed=0, repeat=0, **changes) -> Drive:
+    """A good drive through a yard, or one that differs in this."""
+    usual = Drive(YARDS, seed, repeat, "reached", None, 20.0, 4.5, 16.0, 17.0, 0.05, None, [], 0,
+                  1.0, asdict(draw_yard(seed).difficulty))  # fmt: skip
+    return replace(usual, **changes)
+
+
+def crossed(seed=0, **changes) -> Drive:
+    """The same of one past a person."""
+    return made(seed, **{"set": CROSSINGS, "to_obstacles": None, "to_person": 0.2,
+                         "drawn": asdict(draw_crossing(seed)), **changes})
+
+
+# --- command line
+
+
+def test_yards_and_crossings_that_are_asked_for():
+    found = parse_options(["--yards", "3", "--first-yard", "7", "--crossings", "0"])
+    assert (list(found.yards), found.repeats, list(found.crossings)) == ([7, 8, 9], 2, [])
+    assert found.parameters.name == "yard.yaml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--yards", "many"], "--yards must be a whole number"),
+        (["--first-crossing", "-1"], "--first-crossing"),
+        (["--repeats", "0", "--crossings", "0"], "nothing to drive"),
+        (["--real-time-factor", "0"], "--real-time-factor must be"),
+        (["--parameters", "/none.yaml"], "--parameters /none.yaml: no such file"),
+        (["--quick"], "--quick"),
+        (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
+    ],
+)
+def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
+    assert main.main(arguments) == main.NOT_RUN
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert said in line
+
+
+# --- results
+
+
+@pytest.mark.parametrize(
+    ("drives", "good"),
+    [
+        ([made(n % 12, n // 12) for n in range(20)], True),
+        ([made(n % 12, n // 12, outcome="late" if n == 0 else "reached") for n in range(20)], True),
+        ([made(n, outcome="late" if n == 0 else "reached") for n in range(10)], False),
+        ([made(), crossed(outcome="contact")], False),
+        ([made(), crossed(outcome="walked into")], True),
+    ],
+)
+def test_limits(drives, good):
+    assert passed(drives) is good
+
+
+def test_scores_are_the_challenge_s():
+    scores = [made(time=time).score for time in (17.0, 4 * 17.0, 6 * 17.0, 100 * 17.0)]
+    assert scores == pytest.approx([0.25, 0.25, 1 / 6, 0.125])
+    assert made(outcome="contact").score == 0.0
+
+
+def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
+    yards, crossings = summarize(
+        [made(0), made(1, time=30.0, recoveries=["rotate"]), made(2, time=5.0, outcome="contact"),
+         crossed(0)])  # fmt: skip
+    assert (yards.drives, yards.outcomes) == (3, {"contact": 1, "reached": 2})
+    assert (yards.mean_time, yards.mean_time_by_straight) == (25.0, 25 / 16)
+    assert (yards.drives_with_recovery, yards.failed) == (1, ["yards-2-0"])
+    assert (crossings.least_to_person, crossings.least_to_obstacles) == (0.2, None)
+    assert "2 of 3" in table([yards, crossings]) and "67%" in table([yards, crossings])
+    assert "0 of 1" in table(summarize([made(outcome="late")]))
+
+
+def test_pictures_are_drawn_of_what_there_is(tmp_path):
+    chart = importlib.import_module("evaluation.yards.chart")
+    drives = [made(0), made(0, 1, outcome="contact"), made(3, outcome="late"), crossed(2)]
+    (tmp_path / "drives").mkdir()
+    for each in drives[:2]:
+        (tmp_path / "drives" / f"{each.name}.json").write_text("[[0, 0, 0, 0], [9, 1, 0.5, 0]]")
+    chart.write_chart(drives, tmp_path / "trials.png")
+    assert write_sheets(drives, tmp_path) == ["yards.png", "crossings.png"]
+    for name in ("trials.png", "yards.png", "crossings.png"):
+        assert cv2.imread(str(tmp_path / name)) is not None
+
+
+# --- from beginning to end
+
+
+@pytest.fixture
+def trials(tmp_path, monkeypatch):
+    """Runs main with these drives instead of driven ones; an exception among them is raised."""
+
+    def run(drives, *options: str) -> int:
+        given = iter(drives)
+
+        def drive(*_arguments):
+            found = next(given)
+            if isinstance(found, BaseException):
+                raise found
+            return found, [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
+
+        monkeypatch.setattr(main, "RosRun", lambda *_: SimpleNamespace(start_roscore=lambda: None))
+        for name, fake in (("Rig", lambda *_: None), ("through_yard", drive),
+                           ("past_person", drive)):
+            monkeypatch.setattr(main, name, fake)
+        return main.main([*options, "--out", str(tmp_path)])
+
+    return run
+
+
+def test_all_is_driven_and_written(trials, tmp_path, capsys):
+    drives = [made(0), made(1), made(0, 1), made(1, 1), crossed(0)]
+    assert trials(drives, "--yards", "2", "--crossings", "1") == main.PASSED
+    assert read_drives(tmp_path / "report.json") == drives
+    assert json.loads((tmp_path / "report.json").read_text())["passed"] is True
+    assert len(list(tmp_path.glob("*.png"))) == 3
+    assert (tmp_path / "worlds" / "yard_1.world").exists()
+    assert "[5/5] crossings-0-0: reached" in capsys.readouterr().out
+
+
+def test_what_was_driven_is_kept_and_resume_goes_on(trials, tmp_path, capsys):
+    options = ("--yards", "2", "--repeats", "1", "--crossings", "0")
+    assert trials([made(0), RunError("gazebo ended")], *options) == main.NOT_RUN
+    assert len(read_drives(tmp_path / "report.json")) == 1
+    assert trials([made(1, outcome="late")], *options, "--resume") == main.NOT_PASSED
+    assert [each.seed for each in read_drives(tmp_path / "report.json")] == [0, 1]
+    assert trials([], *options, "--resume") == main.NOT_PASSED
+    assert "gazebo ended" in capsys.readouterr().err
+
+
+def test_a_report_of_something_else_is_refused(tmp_path, capsys):
+    (tmp_path / "report.json").write_text("{}")
+    assert main.main(["--resume", "--out", str(tmp_path)]) == main.NOT_RUN
+    assert "no report of navigation_trials" in capsys.readouterr().err

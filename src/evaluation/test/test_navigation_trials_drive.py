@@ -1,0 +1,116 @@
+"""Drives without a simulator: what the judge sees, and how a drive ends."""
+
+import time
+
+import numpy as np
+import pytest
+
+from evaluation.course_run.failure import RunError
+from evaluation.yards import drive as driving
+from evaluation.yards.crossing import draw_crossing
+from evaluation.yards.judge import OBSTACLE, PERSON, WALKED_INTO, Judge, Sample
+from evaluation.yards.rig import slow_cycles_in
+from evaluation.yards.yard import draw_yard
+
+NOBODY = np.empty((0, 2))
+
+
+def at(time, x, speed=0.26, person=None) -> Sample:
+    return Sample(time, (x, 0.0, 0.0), speed, person)
+
+
+# --- judge
+
+
+def test_time_and_way_are_counted_from_the_first_sample():
+    judge = Judge(np.array([[1.0, 0.353]]), 0.1)
+    for n in range(5):
+        judge.see(at(10.0 + n, 0.25 * n))
+    assert (judge.time, judge.distance, judge.contact, len(judge.path)) == (4.0, 1.0, None, 5)
+    assert judge.to_obstacles == pytest.approx(0.1)
+
+
+def test_a_contact_ends_what_counts():
+    judge = Judge(np.array([[1.0, 0.0]]), 0.1)
+    for n in range(100):
+        judge.see(at(0.1 * n, 0.026 * n))
+    assert judge.contact == OBSTACLE
+    assert judge.time == pytest.approx(3.2)  # 0.827 m until the camera touches
+
+
+@pytest.mark.parametrize(("speed", "said"), [(0.1, PERSON), (0.0, WALKED_INTO)])
+def test_who_touched_whom(speed, said):
+    judge = Judge(NOBODY, 0.0)
+    judge.see(at(0.0, 0.0, speed, (0.5, 0.0, 0.0)))
+    assert judge.contact is None and judge.to_person == pytest.approx(0.177)
+    judge.see(at(0.1, 0.0, speed, (0.31, 0.0, 0.0)))
+    assert judge.contact == said
+
+
+# --- one drive
+
+
+class FakeRig:
+    """Drives straight on to the goal at 0.26 m/s, or until it is told to end."""
+
+    def __init__(self, limit=1000, person=False):
+        self.limit, self.there, self.walks, self.recoveries = limit, person, [], []
+        self.slow_cycles = 0
+
+    def prepare(self, _models, start):
+        self.start = start
+
+    def send(self, _goal):
+        self.now = 0.0
+
+    def result(self):
+        return "reached" if self.now >= self.limit else None
+
+    def samples(self, _wait):
+        self.now += 0.1
+        person = (9.0, 9.0, 0.0) if self.there else None
+        return [at(self.now, self.start[0] + 0.26 * self.now, person=person)]
+
+    def wait(self, condition, _what):
+        assert condition()
+
+    def person_listens(self):
+        return True
+
+    def walk(self, speed):
+        self.walks.append(round(0.26 * self.now, 3) if speed else 0.0)
+
+    def end_goal(self):
+        pass
+
+
+def test_a_drive_into_an_obstacle_is_a_contact():
+    found, way = driving.through_yard(FakeRig(), draw_yard(3), 0)
+    assert (found.outcome, found.why) == ("contact", OBSTACLE) and len(way) > 3
+
+
+def test_the_person_sets_off_when_the_robot_has_come_so_far():
+    rig, walk = FakeRig(limit=19.0, person=True), draw_crossing(4)
+    found, _ = driving.past_person(rig, walk)
+    assert found.outcome == "reached" and found.straight_time == pytest.approx(5 / 0.26, abs=0.01)
+    first, *_, last = rig.walks
+    assert walk.trigger <= first < walk.trigger + 0.03 and last == 0.0
+
+
+def test_a_drive_that_takes_too_long_is_late():
+    found, _ = driving.past_person(FakeRig(person=True), draw_crossing(4))
+    assert found.outcome == "late" and found.time == pytest.approx(driving.LIMIT, abs=0.2)
+
+
+def test_a_simulator_that_hangs_is_no_late_robot(monkeypatch):
+    monkeypatch.setattr(driving, "SILENCE", 0.05)
+    monkeypatch.setattr(FakeRig, "samples", lambda _self, wait: time.sleep(wait) or [])
+    with pytest.raises(RunError, match="no news of the robot"):
+        driving.through_yard(FakeRig(), draw_yard(0), 0)
+
+
+def test_what_roslaunch_says_of_the_nodes():
+    slow = "[ WARN] Control loop missed its desired rate of 10.0000Hz... took 0.2 seconds"
+    assert slow_cycles_in([slow, "all is well", slow]) == 2
+    with pytest.raises(RunError, match="process move_base-4 died"):
+        slow_cycles_in([slow, "[move_base-4] process has died [pid 7, exit code -9, cmd x]"])
