@@ -33,7 +33,7 @@ viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [PORT
 	@scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
 	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)")
 
-test: ## run every check and test [JOBS=2]
+test: ## run every check and test [JOBS=3]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")
 
 bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]

@@ -54,6 +54,8 @@ class Tools(unittest.TestCase):
         plot = self.link.watch("plot", paths=lines)
         wait_until(lambda: sum(len(e.get(lines[1], [])) for e in plot.events) > 100, "samples")
         plot.stop()
+        last = [event[lines[0]][-1][1] for event in plot.events if event.get(lines[0])][-1]
+        wait_until(lambda: any(pose.x == last for pose in heard), "the last value shown, here")
         subscriber.unregister()
         for line, field in zip(lines, ("x", "theta")):
             true = [getattr(pose, field) for pose in heard]
