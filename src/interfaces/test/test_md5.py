@@ -14,7 +14,7 @@ HERE = Path(__file__).resolve().parents[1]
 SUMS = yaml.safe_load((Path(__file__).parent / "md5.yaml").read_text(encoding="utf-8"))
 DEFINITIONS = [(package, kind, name) for package, kinds in SUMS.items()
                for kind, names in kinds.items() for name in names]
-DEPENDENCIES = ("actionlib_msgs", "geometry_msgs", "std_msgs", "trajectory_msgs")
+DEPENDENCIES = ("actionlib_msgs", "geometry_msgs", "sensor_msgs", "std_msgs", "trajectory_msgs")
 GENACTION = "/usr/lib/actionlib_msgs/genaction.py"
 
 
