@@ -175,6 +175,19 @@ def test_remote_model_and_rviz(monkeypatch):
     assert values(prefixed)["/robot_state_publisher/tf_prefix"] == "tb3_7"
 
 
+@pytest.mark.parametrize("name", ["turtlebot3_model", "turtlebot3_gazebo_rviz"])
+def test_without_a_screen_one_line_stands_for_rviz(name, monkeypatch):
+    """These have no open_rviz, and so none is advised."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    line = nodes(load(launch(name)))["/rviz"]
+    assert (line.package, line.required) == ("turtlebot3_bringup", False)
+    program = COMPAT / "turtlebot3_bringup" / "nodes" / line.type
+    done = subprocess.run([sys.executable, program, *line.args.split()], capture_output=True,
+                          text=True, check=True)
+    assert len(done.stderr.splitlines()) == 1 and "DISPLAY is not set" in done.stderr
+    assert "open_rviz" not in done.stderr
+
+
 def test_simulation_and_fake():
     # conforms: turtlebot3_simulation.launch, turtlebot3_simulation.launch/cmd_vel
     # conforms: turtlebot3_simulation.launch/name, turtlebot3_fake.launch

@@ -13,6 +13,17 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 WAIT = 30  # s for move_base to answer  等 move_base 应答的秒数
 
 
+def place_of(words):
+    """x and y, m, and degrees, from what was typed.  读取命令行里的位置和角度。"""
+    try:
+        x, y, degrees = (float(word) for word in (words if len(words) == 3 else [*words, 0]))
+        if not all(map(math.isfinite, (x, y, degrees))):
+            raise ValueError
+    except ValueError:
+        sys.exit("which place? e.g. rosrun nav_demo send_goal.py 1.5 -1.5 90")
+    return x, y, degrees
+
+
 def goal_at(x, y, yaw):
     """A goal in the map's frame; m, rad.  地图坐标系里的目标。"""
     goal = MoveBaseGoal()
@@ -48,16 +59,16 @@ def stop_if_driving(client):
 
 
 def main():
-    words = rospy.myargv(sys.argv)[1:]  # without ROS's own  去掉 ROS 自己的参数
+    x, y, degrees = place_of(rospy.myargv(sys.argv)[1:])  # without ROS's own  去掉 ROS 自己的参数
     try:
-        x, y, degrees = (float(word) for word in (*words, 0)[:3])
-    except ValueError:
-        sys.exit("which place? e.g. rosrun nav_demo send_goal.py 1.5 -1.5 90")
-    rospy.init_node("send_goal")
+        rospy.init_node("send_goal")
+    except rospy.ROSInitException:
+        sys.exit("stopped while waiting for a master: start the simulator first")
     wait_for_clock()
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
     if not client.wait_for_server(rospy.Duration(WAIT)):
-        sys.exit("nobody answers as move_base: roslaunch nav_demo nav05_test.launch")
+        sys.exit("stopped" if rospy.is_shutdown() else
+                 "nobody answers as move_base: roslaunch nav_demo nav05_test.launch")
     client.send_goal(goal_at(x, y, math.radians(degrees)), feedback_cb=tell_progress)
     rospy.on_shutdown(lambda: stop_if_driving(client))
     client.wait_for_result()

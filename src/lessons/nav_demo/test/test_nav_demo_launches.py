@@ -17,6 +17,8 @@ NODES = {  # launch: the nodes it starts where there is no screen
     "nav05_test": {"/map_server", "/amcl", "/move_base"},
     "nav06_auto_slam": {"/slam_gmapping", "/move_base"},
 }
+RVIZ = {"nav01_slam": "map", "nav03_map_server": "map", "nav04_test": "map", "nav05_test": "nav",
+        "nav06_auto_slam": "nav"}  # launch: the configuration
 COSTMAP = ("costmap", "static_layer", "obstacle_layer", "inflation_layer")
 
 
@@ -40,8 +42,12 @@ def test_every_launch_file_is_listed():
 @pytest.mark.parametrize("name", NODES)
 def test_nodes(name, display, rviz, monkeypatch):
     monkeypatch.setenv("DISPLAY", display)
-    shows = name in ("nav01_slam", "nav04_test", "nav05_test", "nav06_auto_slam")
-    assert set(load(name)[0]) == NODES[name] | (rviz if shows else set())
+    shows = name in RVIZ
+    nodes = load(name)[0]
+    assert set(nodes) == NODES[name] | (rviz if shows else set())
+    if "/rviz" in nodes:
+        config = Path(nodes["/rviz"].args.split()[1])
+        assert config.stem == RVIZ[name] and config.is_file()
 
 
 def test_maps_are_given_by_name_or_by_path():
