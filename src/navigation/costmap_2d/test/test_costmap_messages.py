@@ -46,6 +46,14 @@ def test_ranges_that_count(inf_is_valid, expected):
     assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("angle", ["angle_min", "angle_increment"])
+def test_a_scan_that_leads_nowhere_is_refused(angle):
+    message = scan(1.0, 2.0)
+    setattr(message, angle, NAN)
+    with pytest.raises(ValueError, match="leads nowhere"):
+        clouds.points_of_scan(message, False)
+
+
 def test_clouds_become_points():
     wanted = [[1.0, 2.0, 3.0], [-4.0, 5.5, 0.25]]
     message = PointCloud(points=[Point32(*point) for point in [*wanted, (NAN, 0, 0)]])

@@ -104,6 +104,15 @@ def test_an_unknown_layer_is_left_out_with_a_line():
     assert "sonar" in found.warnings[0] and "costmap_2d::VoxelLayer" in found.warnings[0]
 
 
+@pytest.mark.parametrize("changed", [{"width": 6e9}, {"height": 9e3, "width": 9e3},
+                                     {"width": float("inf")}])
+def test_more_cells_than_there_is_room_for_are_refused(changed):
+    found = read({**TURTLEBOT3, "width": 2, "height": 3})
+    assert settings.geometry_of(found.values, WHERE)[0] == (60, 40)
+    with pytest.raises(ParameterError, match="/move_base/local_costmap/width is"):
+        settings.geometry_of({**found.values, **changed}, WHERE)
+
+
 @pytest.mark.parametrize("tree, line", [
     ({"update_frequency": "fast"}, "/move_base/local_costmap/update_frequency is 'fast'"),
     ({"inflation_layer": {"inflation_radius": -1}}, "inflation_layer/inflation_radius is -1"),

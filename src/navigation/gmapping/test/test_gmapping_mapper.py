@@ -42,9 +42,12 @@ def test_ranges_reach_as_far_as_the_sensor_unless_told_otherwise():
     assert (told.maxUrange, told.maxRange) == (2.0, 8.0)
 
 
-def test_a_map_without_extent_is_refused():
-    with pytest.raises(ParameterError, match="~ymin is 7"):
-        settings_from({**DEFAULTS, "ymin": 7.0, "ymax": 3.0}, 3.5)
+@pytest.mark.parametrize("changed, said", [
+    ({"ymin": 7.0, "ymax": 3.0}, "~ymin is 7"), ({"delta": 0.001}, "4e[+]10 cells"),
+    ({"xmax": np.inf}, "inf cells")])
+def test_a_map_without_extent_or_with_too_much_is_refused_before_any_scan(changed, said):
+    with pytest.raises(ParameterError, match=said):
+        Mapper({**DEFAULTS, **changed})
 
 
 def test_what_is_too_near_counts_as_nothing_there():

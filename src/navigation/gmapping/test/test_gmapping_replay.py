@@ -58,6 +58,21 @@ def test_map_and_trajectory(bag, capsys):
     assert path[-1, 1:3] == pytest.approx((0.38, 0.0), abs=0.02)
 
 
+def test_scans_before_all_odometry_do_not_hold_up_slow_ones(tmp_path, capsys):
+    """tf knows the last 30 s; who waited longer for one that can never be used would lose all."""
+    path = tmp_path / "slow.bag"
+    with rosbag.Bag(str(path), "w") as out:
+        for i in range(70):
+            stamp = rospy.Time(10 + i)
+            out.write("/scan", scan_at(0.0, stamp), stamp)
+            if i > 2:
+                out.write("/tf", TFMessage([
+                    transform_message(np.zeros(3), "odom", "base_link", stamp),
+                    transform_message(np.zeros(3), "base_link", "laser", stamp)]), stamp)
+    assert replay(path, "slow") == 0
+    assert "67 scans of 66 s" in (said := capsys.readouterr().out) and "; 3 without" in said
+
+
 def test_the_same_bag_and_seed_give_the_same_bytes(bag):
     results = []
     for name, seed in (("a", "4"), ("b", "4"), ("c", "5")):
@@ -76,6 +91,15 @@ def test_what_is_wrong_is_said_in_one_line(bag, capsys, arguments, text):
     said = capsys.readouterr().err
     assert text in said and said.count("\n") == 1
     assert not (bag.parent / "none.pgm").exists()
+
+
+@pytest.mark.parametrize("text, said", [
+    ("", "NAME: VALUE lines"), ("- particles", "NAME: VALUE lines"), ("a: [", "is no YAML")])
+def test_a_file_of_parameters_that_is_none(bag, capsys, tmp_path, text, said):
+    (tmp_path / "slam.yaml").write_text(text)
+    assert replay(bag, "none", "--params", str(tmp_path / "slam.yaml")) == 1
+    line = capsys.readouterr().err
+    assert said in line and "slam.yaml" in line and line.count("\n") == 1
 
 
 def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys):

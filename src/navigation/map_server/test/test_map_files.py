@@ -95,6 +95,7 @@ def test_an_image_of_16_bits_and_one_elsewhere(tmp_path):
     *[(key, None, f"has no {key}; write for example {key}: ") for key in GOOD],
     ("resolution", "0", "resolution is 0, but must be above 0"),
     ("resolution", "-0.05", "resolution is -0.05, but must be above 0"),
+    ("resolution", "1e300", "resolution is '1e300', but must be at most 1000 m a pixel"),
     ("resolution", "5 cm", "resolution is '5 cm', but must be a number"),
     ("resolution", "true", "resolution is True, but must be a number"),
     ("resolution", ".nan", "resolution is nan, but must be a number"),
@@ -120,6 +121,22 @@ def test_each_key_that_is_wrong_is_named(tmp_path, key, value, said):
     assert said in str(error.value)
     assert str(path) in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("typed", ["map", "map.yml"])
+def test_a_name_without_its_end_is_completed(tmp_path, typed):
+    path = write(tmp_path, greys([0]))
+    with pytest.raises(MapMissingError, match=rf"/{typed}: there is no such file; write {path}$"):
+        read_map(tmp_path / typed)
+
+
+@pytest.mark.parametrize("name", ["map.pgm", "map.png"])
+def test_an_image_is_no_description_of_one(tmp_path, name):
+    """A slip when the two files stand beside each other."""
+    write(tmp_path, greys([0]), name=name)
+    with pytest.raises(MapMetadataError, match=rf"{name}: is an image; write the YAML file "
+                                               r"that belongs to it, such as map\.yaml$"):
+        read_map(tmp_path / name)
 
 
 @pytest.mark.parametrize("content", [b"", b"- 1\n", b"a: [\n", b"\t\x00", b"P5\n\xff\xfe",

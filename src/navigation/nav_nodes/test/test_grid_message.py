@@ -1,13 +1,16 @@
 """Maps as messages: the quick way of packing them gives the usual bytes."""
 
+import time
 from io import BytesIO
 
 import numpy as np
+import pytest
 import rospy
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
+from nav_msgs.srv import GetMapResponse, LoadMapResponse
 
 from nav_algorithms.grid import OccupancyGrid
-from nav_nodes.messages import grid_message, grid_of
+from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, grid_of
 
 GRID = OccupancyGrid(np.random.default_rng(0).integers(-1, 101, (7, 5)).astype(np.int8), 0.25,
                      (-1.5, 2.0))
@@ -25,6 +28,24 @@ def test_a_map_packs_as_any_other_message():
     assert packed(quick) == packed(usual)
     assert isinstance(quick, OccupancyGridMessage)
     assert quick._md5sum == usual._md5sum
+
+
+@pytest.mark.parametrize("quick, usual, more", [
+    (MapAnswer, GetMapResponse, ()), (LoadedMapAnswer, LoadMapResponse, (255,))])
+def test_an_answer_with_a_map_packs_as_any_other(quick, usual, more):
+    message = grid_message(GRID, "map", rospy.Time(3, 4))
+    listed = OccupancyGridMessage(message.header, message.info, GRID.cells.ravel().tolist())
+    assert packed(quick(message, *more)) == packed(usual(listed, *more))
+    assert quick._type == usual._type  # by which rospy knows an answer
+
+
+def test_a_large_map_is_answered_at_once():
+    """The usual way takes 2 s for a map of gmapping's default size, and no thread goes on."""
+    message = grid_message(OccupancyGrid(np.zeros((2000, 2000), np.int8), 0.05, (0.0, 0.0)),
+                           "map", rospy.Time(3, 4))
+    begun = time.process_time()
+    packed(MapAnswer(message))
+    assert time.process_time() - begun < 0.2
 
 
 def test_there_and_back():

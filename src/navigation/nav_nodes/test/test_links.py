@@ -31,7 +31,10 @@ def links(*known):
     ([("base", "mast", 0)], ("base", "laser"), ("base", "laser")),
     ([("mast", "laser", 0)], ("base", "laser"), ("base", "mast")),
     ([("chassis", "base", 0)], ("map", "base"), ("odom", "chassis")),
-    ([("chassis", "base", 0)], ("odom", "base"), ("odom", "chassis"))])
+    ([("chassis", "base", 0)], ("odom", "base"), ("odom", "chassis")),
+    ([("map", "odom", 5), ("odom", "bass", 5), ("bass", "laser", 0)], ("base", "laser"),
+     ("odom", "base")),
+    ([("odom", "bass", 5), ("bass", "laser", 0)], ("base", "laser"), ("odom", "base"))])
 def test_what_never_came(known, asked, blamed):
     assert weakest(links(*known), *asked, CHAIN) == Link(*blamed, None)
 

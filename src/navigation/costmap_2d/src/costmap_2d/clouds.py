@@ -15,8 +15,11 @@ def points_of_scan(message: LaserScan, inf_is_valid: bool) -> tuple[np.ndarray, 
     """(points (N, 3), when in the sweep (N,), s after the message's stamp).
 
     Ranges count from range_min to below range_max. With `inf_is_valid` +inf is a ray that ended
-    at range_max; else it is nothing.
+    at range_max; else it is nothing. Raises ValueError where the angles are no numbers.
     """
+    if not np.isfinite((message.angle_min, message.angle_increment)).all():
+        raise ValueError(f"a scan from {message.angle_min} rad in steps of "
+                         f"{message.angle_increment} rad leads nowhere")
     ranges = np.asarray(message.ranges, float)
     beams = np.arange(len(ranges))
     if inf_is_valid:

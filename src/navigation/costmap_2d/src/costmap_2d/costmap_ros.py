@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import traceback
 from functools import partial
 from typing import Any
 
@@ -58,7 +59,7 @@ class CostmapROS:
         self.base_frame = self._values["robot_base_frame"].lstrip("/")
         self.transform_tolerance = self._values["transform_tolerance"]
         layers = [build_layer(layer, self._values["rolling_window"]) for layer in settings.layers]
-        self._layered = LayeredCostmap(layers, *geometry_of(self._values),
+        self._layered = LayeredCostmap(layers, *geometry_of(self._values, self._where),
                                        self._values["rolling_window"],
                                        self._values["track_unknown_space"])
         self._set_footprint(self._values)
@@ -89,8 +90,8 @@ class CostmapROS:
     def snapshot(self) -> Costmap:
         """A copy of the newest whole update: the caller's own, to read or to write into."""
         with self._lock:
-            master = self._layered.master
-            return Costmap(master.cells.copy(), master.resolution, master.origin)
+            newest = self._layered.newest
+            return Costmap(newest.cells.copy(), newest.resolution, newest.origin)
 
     def robot_pose(self) -> np.ndarray | None:
         """(x, y, yaw) in the global frame; None if tf has none, or none within the tolerance."""
@@ -117,6 +118,10 @@ class CostmapROS:
     def silences(self) -> dict[str, float]:
         """s of ROS time since each sensor was heard from, by names like "LaserScan on /scan"."""
         return self._sensors.silences()
+
+    def orphaned_maps(self) -> list[str]:
+        """Topics of maps that nobody publishes; what they said last still counts."""
+        return [topic for each in self._maps if (topic := each.orphaned) is not None]
 
     def start(self) -> None:
         """Goes on listening to sensors and updating after `stop`; waits for nothing."""
@@ -189,6 +194,10 @@ class CostmapROS:
                 self._sensors.forget()
             except rospy.ROSInterruptException:
                 return
+            except Exception:  # without this thread the robot would stand for ever
+                rospy.logerr_throttle(5.0, f"{self.name}: an update failed: "
+                                           + traceback.format_exc())
+                time.sleep(IDLE)
 
     def _update_and_rest(self) -> None:
         frequency = self._values["update_frequency"]
@@ -199,6 +208,8 @@ class CostmapROS:
         if self.update():
             self._publish_if_due()
         took, period = (rospy.Time.now() - began).to_sec(), 1 / frequency
+        if took < 0:  # else it would sleep until the clock is where it was
+            raise rospy.ROSTimeMovedBackwardsException(took)
         if took > period:
             rospy.logwarn_throttle(5.0, "%s: an update took %.2f s, but update_frequency is %g Hz",
                                    self.name, took, frequency)
@@ -220,13 +231,13 @@ class CostmapROS:
 
     def _change(self, values: dict[str, Any]) -> None:
         """dynamic_reconfigure of the costmap's own parameters."""
-        before = self._values
+        before, geometry = self._values, geometry_of(values, self._where)
         with self._lock:
             if any(values[key] != before[key] for key in OUTLINE):
                 self._set_footprint(values)
-            if geometry_of(values) != geometry_of(before) and not (
+            if geometry != geometry_of(before, self._where) and not (
                     self._maps and not values["rolling_window"]):
-                self._layered.resize(*geometry_of(values))
+                self._layered.resize(*geometry)
             self.transform_tolerance = values["transform_tolerance"]
             self._values = values
 

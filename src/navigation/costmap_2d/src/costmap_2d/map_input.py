@@ -15,6 +15,7 @@ from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer, costs_of
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_of
+from nav_nodes.silence import is_published
 from nav_nodes.transforms import Transforms
 
 
@@ -44,6 +45,12 @@ class MapInput:
             return False
         complaints.present(what)
         return True
+
+    @property
+    def orphaned(self) -> str | None:
+        """The map's topic if it is still listened to and nobody publishes there."""
+        listens = self._subscriber.impl is not None
+        return self._topic if listens and not is_published(self._subscriber) else None
 
     def place(self, transforms: Transforms, costmap_frame: str) -> None:
         """Tells the layer of a rolling costmap where that lies in the map."""

@@ -19,6 +19,7 @@ PARAMS = Path(__file__).resolve().parents[2] / "params"
 STATIC, OBSTACLE, VOXEL, INFLATION = "StaticLayer", "ObstacleLayer", "VoxelLayer", "InflationLayer"
 TABLES = {STATIC: ("static_layer",), OBSTACLE: ("obstacle_layer",),
           VOXEL: ("obstacle_layer", "voxel_layer"), INFLATION: ("inflation_layer",)}
+LARGEST = 5e8  # cells
 # A layer takes these from the costmap's own namespace if they are there, as upstream's does.
 OF_THE_COSTMAP = {
     STATIC: ("map_topic", "unknown_cost_value", "lethal_cost_threshold", "track_unknown_space"),
@@ -108,10 +109,19 @@ def footprint_of(values: Mapping[str, Any], where: str) -> np.ndarray | None:
     return corners
 
 
-def geometry_of(values: Mapping[str, Any]) -> tuple[tuple[int, int], float, tuple[float, float]]:
-    """((rows, columns), resolution, origin), m, of a costmap that takes no map's size."""
+def geometry_of(values: Mapping[str, Any], where: str
+                ) -> tuple[tuple[int, int], float, tuple[float, float]]:
+    """((rows, columns), resolution, origin), m, of a costmap that takes no map's size.
+
+    Raises ParameterError for more cells than a computer has room for.
+    """
     resolution = values["resolution"]
-    rows, columns = (max(1, int(values[side] / resolution + 1e-9)) for side in ("height", "width"))
+    cells = [min(values[side] / resolution + 1e-9, LARGEST) for side in ("height", "width")]
+    rows, columns = (max(1, int(each)) for each in cells)
+    if rows * columns > LARGEST:
+        raise ParameterError(f"{where}/width is {values['width']:g} and height "
+                             f"{values['height']:g}, but that is more than {LARGEST:.0e} cells of "
+                             f"{resolution:g} m")
     return (rows, columns), resolution, (values["origin_x"], values["origin_y"])
 
 

@@ -15,20 +15,31 @@ from nav_nodes.parameters import ParameterError
 
 TABLE = Path("params/slam_gmapping.yaml")  # below the package's folder
 BEYOND = 0.01  # m below the sensor's reach a range begins to say nothing
+LARGEST = 5e8  # cells, of 8 bytes while it is made
 
 
 def settings_from(values: dict[str, Any], range_max: float) -> SlamSettings:
-    """The algorithm's settings, for a laser that reaches so far, m; raises ParameterError."""
+    """The algorithm's settings, for a laser that reaches so far, m."""
     chosen = {field.name: values[field.name] for field in fields(SlamSettings)}
     if chosen["maxRange"] < 0:
         chosen["maxRange"] = range_max - BEYOND
     if chosen["maxUrange"] < 0:
         chosen["maxUrange"] = chosen["maxRange"]
-    for low, high in (("xmin", "xmax"), ("ymin", "ymax")):
-        if not chosen[low] < chosen[high]:
-            raise ParameterError(f"~{low} is {chosen[low]}, but must be below ~{high}, "
-                                 f"{chosen[high]}")
     return SlamSettings(**chosen)
+
+
+def check_extent(values: dict[str, Any]) -> None:
+    """Raises ParameterError for a map that has no cells, or too many."""
+    cells = 1.0
+    for low, high in (("xmin", "xmax"), ("ymin", "ymax")):
+        if not values[low] < values[high]:
+            raise ParameterError(f"~{low} is {values[low]}, but must be below ~{high}, "
+                                 f"{values[high]}")
+        cells *= (values[high] - values[low]) / values["delta"]
+    if not cells <= LARGEST:
+        raise ParameterError(f"~delta is {values['delta']}, but then the map from ~xmin, ~ymin to "
+                             f"~xmax, ~ymax has {cells:.0e} cells, more than {LARGEST:.0e}: write "
+                             f"a smaller extent, it grows where needed")
 
 
 def ranges_of(scan: LaserScan) -> np.ndarray:
@@ -42,7 +53,8 @@ class Mapper:
     """Made with the first scan's settings; one laser, one robot."""
 
     def __init__(self, values: dict[str, Any]) -> None:
-        """`values` by the names of the parameter table."""
+        """`values` by the names of the parameter table; raises ParameterError."""
+        check_extent(values)
         self._values = values
         self._seen = 0
         self.slam: ParticleSlam | None = None

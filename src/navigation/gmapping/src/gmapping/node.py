@@ -18,7 +18,7 @@ from std_msgs.msg import Float64
 from gmapping.mapper import TABLE, Mapper
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
-from nav_nodes.messages import grid_message, transform_message
+from nav_nodes.messages import MapAnswer, grid_message, transform_message
 from nav_nodes.mount import Mounts
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
@@ -26,6 +26,7 @@ from nav_nodes.silence import Silence
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time that a scan waits for the odometry of its moment
+DISORDER = 1.0  # s by which scans of two lasers may come in the wrong order
 
 
 class SlamNode:
@@ -63,11 +64,13 @@ class SlamNode:
                 self._use_scan(scan)
 
     def _use_scan(self, scan: LaserScan) -> None:
-        if scan.header.stamp < self._newest:
+        behind = (self._newest - scan.header.stamp).to_sec()
+        if behind > DISORDER:
             rospy.logwarn("the clock went back by %.1f s: mapping goes on from the odometry there",
-                          (self._newest - scan.header.stamp).to_sec())
+                          behind)
             self._transforms.buffer.clear()
-        self._newest = scan.header.stamp
+        if not 0.0 < behind <= DISORDER:
+            self._newest = scan.header.stamp
         mount = self._mounts.of(scan.header.frame_id)
         odometry = self._transforms.pose(self._frames["odom_frame"], self._frames["base_frame"],
                                          scan.header.stamp, PATIENCE)
@@ -75,7 +78,7 @@ class SlamNode:
             return
         self._map_to_odom = self._mapper.slam.map_to_odom
         age = None if self._map is None else (scan.header.stamp - self._map.header.stamp).to_sec()
-        if age is None or not 0.0 <= age <= self._values["map_update_interval"]:
+        if age is None or not -DISORDER <= age <= self._values["map_update_interval"]:
             self._publish_map(scan.header.stamp)
 
     def _publish_map(self, stamp: rospy.Time) -> None:
@@ -86,7 +89,7 @@ class SlamNode:
 
     def _answer_map(self, _request: GetMapRequest) -> GetMapResponse | None:
         """The newest map; the call fails while there is none, as upstream's."""
-        return None if self._map is None else GetMapResponse(self._map)
+        return None if self._map is None else MapAnswer(self._map)
 
     def _broadcast(self) -> None:
         """The transform, at the wall's pace, and a look at whether scans still come."""

@@ -25,7 +25,7 @@ from nav_nodes.messages import yaw_of
 from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
 
-WAITING = 50  # scans; one that has waited so long for its odometry is left out
+WAITING = 5.0  # s between stamps; a scan so far behind the newest, without odometry, is left out
 
 
 class BagScans:
@@ -45,7 +45,7 @@ class BagScans:
                 topics=[*self._topics, "tf", "/tf", "tf_static", "/tf_static"]):
             if topic in self._topics:
                 waiting.append(message)
-                if len(waiting) > WAITING:
+                while abs((message.header.stamp - waiting[0].header.stamp).to_sec()) > WAITING:
                     waiting.popleft()
                     self.left_out += 1
             else:
@@ -91,12 +91,14 @@ def _own(transform: Any) -> TransformStamped:
 def values_from(settings: list[str], seed: int | None, params: Path | None) -> dict[str, Any]:
     """Every parameter of the table; `settings` are NAME:=VALUE. Raises ParameterError."""
     table = load_table(Path(rospkg.RosPack().get_path("gmapping")) / TABLE)
-    given = yaml.safe_load(params.read_text(encoding="utf-8")) if params else {}
+    given = _yaml(params.read_text(encoding="utf-8"), str(params)) if params else {}
+    if not isinstance(given, dict):
+        raise ParameterError(f"{params} must hold NAME: VALUE lines, such as particles: 30")
     for setting in settings:
         name, separator, value = setting.partition(":=")
         if not separator:
             raise ParameterError(f"{setting} is no NAME:=VALUE")
-        given[name.lstrip("_~")] = yaml.safe_load(value)
+        given[name.lstrip("_~")] = _yaml(value, setting)
     if seed is not None:
         given["seed"] = seed
     strange = given.keys() - {entry.name for entry in table}
@@ -104,6 +106,14 @@ def values_from(settings: list[str], seed: int | None, params: Path | None) -> d
         raise ParameterError(f"slam_gmapping has no parameter {', '.join(sorted(strange))}")
     return {entry.name: entry.checked(given.get(entry.name, entry.default), entry.name)
             for entry in table}
+
+
+def _yaml(text: str, where: str) -> Any:
+    """Its value; raises ParameterError with the place that it comes from."""
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ParameterError(f"{where} is no YAML: {' '.join(str(error).split())}") from None
 
 
 def write_trajectory(path: Path, stamps: np.ndarray, poses: np.ndarray) -> None:

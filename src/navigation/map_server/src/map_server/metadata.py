@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from map_server.errors import MapMetadataError, MapMissingError
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
+COARSEST = 1000.0  # m a pixel; from 3e38 on no message can hold it
+IMAGE = re.compile(rb"P[1-6]\s|\x89PNG|\xff\xd8\xff|BM|GIF8")  # how files of images begin
 EXAMPLES = {
     "image": "image: map.pgm",
     "resolution": "resolution: 0.05",
@@ -48,6 +51,8 @@ def read_metadata(path: Path) -> MapMetadata:
     resolution = keys.number("resolution")
     if resolution <= 0:
         raise keys.wrong("resolution", "must be above 0 m a pixel")
+    if resolution > COARSEST:
+        raise keys.wrong("resolution", f"must be at most {COARSEST:g} m a pixel")
     x, y, yaw = keys.numbers("origin", "[x, y, yaw] in m, m, rad", 3)
     occupied, free = keys.probability("occupied_thresh"), keys.probability("free_thresh")
     if free > occupied:
@@ -64,10 +69,14 @@ def _load(path: Path) -> dict[str, Any]:
     try:
         content = path.read_bytes()
     except (FileNotFoundError, NotADirectoryError):
-        raise MapMissingError(f"{path}: there is no such file; write the path of a map's "
-                              f"YAML file") from None
+        meant = path.with_suffix(".yaml")
+        advice = meant if meant.is_file() else "the path of a map's YAML file"
+        raise MapMissingError(f"{path}: there is no such file; write {advice}") from None
     except OSError as error:
         raise MapMissingError(f"{path}: cannot be read: {error.strerror}") from None
+    if IMAGE.match(content):
+        raise MapMetadataError(f"{path}: is an image; write the YAML file that belongs to it, "
+                               f"such as {path.with_suffix('.yaml').name}")
     if len(content) > LARGEST:
         raise MapMetadataError(f"{path}: is no map's YAML file: {len(content)} bytes are too many")
     try:

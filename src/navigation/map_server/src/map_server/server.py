@@ -22,7 +22,7 @@ from map_server.map_files import load_map, read_map
 from map_server.metadata import MapMetadata
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
-from nav_nodes.messages import grid_message, quaternion_of
+from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
 
@@ -63,7 +63,7 @@ class MapServer:
 
     def _answer_map(self, _request: GetMapRequest) -> GetMapResponse:
         with self._lock:
-            return GetMapResponse(_in_a_response(self._map))
+            return MapAnswer(self._map)
 
     def _change_map(self, request: LoadMapRequest) -> LoadMapResponse:
         try:
@@ -74,12 +74,7 @@ class MapServer:
         with self._lock:
             self._map = self._show(loaded)
             rospy.loginfo("Changed map to %s", request.map_url)
-            return LoadMapResponse(_in_a_response(self._map), LoadMapResponse.RESULT_SUCCESS)
-
-
-def _in_a_response(message: OccupancyGrid) -> OccupancyGrid:
-    """The same with cells in a list, which a message within another packs six times as fast."""
-    return OccupancyGrid(message.header, message.info, message.data.tolist())
+            return LoadedMapAnswer(self._map, LoadMapResponse.RESULT_SUCCESS)
 
 
 def main() -> int:

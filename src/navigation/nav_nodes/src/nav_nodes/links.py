@@ -40,6 +40,8 @@ def weakest(links: dict[str, Link], parent: str, child: str, chain: tuple[str, .
     above, below = _ancestors(links, parent), _ancestors(links, child)
     shared = next((frame for frame in below if frame in above), None)
     if shared is None:
+        if parent in chain[1:] and chain[chain.index(parent) - 1] in below:  # passes it by
+            return Link(chain[chain.index(parent) - 1], parent, None)
         return _missing(below[-1], parent, child, chain)
     between = [links[frame] for branch in (below, above)
                for frame in branch[:branch.index(shared)]]

@@ -1,8 +1,9 @@
 """A node's parameters as a table in a YAML file: read once, checked, and changed while it runs.
 
 A table is a list of entries with `name`, `type` (bool, int, double, str, list), `default`, and if
-wanted `min`, `max` (numbers), `choices` (str), `change` (true: offered by dynamic_reconfigure),
-`status` (works, or accepted: read, no effect) and `meaning`. READMEs are made from the same file.
+wanted `min`, `max` (numbers), `choices` (str), `also` (names that upstream reads as well, where
+`name` is not set), `change` (true: offered by dynamic_reconfigure), `status` (works, or accepted:
+read, no effect) and `meaning`. READMEs are made from the same file.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ class Parameter:
     min: float = -math.inf
     max: float = math.inf
     choices: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
     change: bool = False
     status: str = "works"
     meaning: str = ""
@@ -44,6 +46,8 @@ class Parameter:
         kind = KINDS[self.type]
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
+        if kind is int and isinstance(value, float) and value.is_integer():
+            value = int(value)  # roscpp takes 20.0 for 20, too
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
             raise ParameterError(f"{where} is {value!r}, but must be of type {self.type}")
         if kind in (int, float) and not self.min <= value <= self.max:
@@ -67,7 +71,8 @@ def load_table(path: Path) -> list[Parameter]:
         if strange or entry["type"] not in KINDS:
             raise ParameterError(f"{path}: {entry['name']}: unknown key or type: "
                                  f"{', '.join(sorted(strange)) or entry['type']}")
-        entry["choices"] = tuple(entry.get("choices", ()))
+        for key in ("choices", "also"):
+            entry[key] = tuple(entry.get(key, ()))
         table.append(Parameter(**entry))
         table[-1].checked(table[-1].default, f"{path}: default of {table[-1].name}")
     return table
@@ -80,9 +85,16 @@ def read_parameters(table: list[Parameter], namespace: str = "~") -> dict[str, A
     """
     values = {}
     for entry in table:
-        name = rospy.resolve_name(namespace + entry.name)
+        name = _name_on_server(entry, namespace)
         values[entry.name] = entry.checked(rospy.get_param(name, entry.default), name)
     return values
+
+
+def _name_on_server(entry: Parameter, namespace: str) -> str:
+    """Its own name, or another of its names that is set while that is not."""
+    names = [rospy.resolve_name(namespace + name) for name in (entry.name, *entry.also)]
+    return next((name for name in names[1:] if rospy.has_param(name)
+                 and not rospy.has_param(names[0])), names[0])
 
 
 def serve_changes(table: list[Parameter], values: dict[str, Any],

@@ -34,7 +34,12 @@ class Transforms:
         self._listener = tf2_ros.TransformListener(self.buffer)
         self._complaints = complaints
         self._lock = threading.Lock()
-        self._blamed: dict[tuple[str, str], set[str]] = {}  # by what was asked for
+        self._blamed: dict[tuple[str, str], str] = {}  # by what was asked for
+
+    def knows(self, frame: str) -> bool:
+        """Whether tf has ever named it, or the robot must have it."""
+        return frame in self.chain or any(frame in (link.parent, link.child)
+                                          for link in known_links(self.buffer).values())
 
     def find(self, parent: str, child: str, stamp: rospy.Time = NEWEST) -> Transform | None:
         """The transform of `child` in `parent` at `stamp` (0: the newest)."""
@@ -76,9 +81,9 @@ class Transforms:
         link = weakest(known_links(self.buffer), parent, child, self.chain)
         what, why, patience = _fault(link, stamp)
         with self._lock:
-            others = self._blamed.pop((parent, child), set()) - {what}
-            self._blamed[parent, child] = {what}
-        for other in others:
+            settled = self._settled(parent, child) - {what}
+            self._blamed[parent, child] = what
+        for other in settled:
             self._complaints.present(other)
         is_localisation = len(self.chain) > 2 and link.parent == self.chain[0]
         self._complaints.missing(what, why, patience, is_result=is_localisation
@@ -88,9 +93,13 @@ class Transforms:
         if (parent, child) not in self._blamed:
             return
         with self._lock:
-            whats = self._blamed.pop((parent, child), set())
-        for what in whats:
+            settled = self._settled(parent, child)
+        for what in settled:
             self._complaints.present(what)
+
+    def _settled(self, parent: str, child: str) -> set[str]:
+        """What was blamed for these two, unless it still is for two others."""
+        return {self._blamed.pop((parent, child), None)} - {None, *self._blamed.values()}
 
 
 def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:

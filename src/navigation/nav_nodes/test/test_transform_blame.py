@@ -1,0 +1,59 @@
+"""Who misses one and the same transform in two ways gets one story, by a buffer without topics."""
+
+import threading
+
+import pytest
+import rospy
+import tf2_ros
+from geometry_msgs.msg import TransformStamped
+
+from nav_nodes.transforms import Transforms
+
+LATE = 2.0  # s by which the odometry's transforms come after their stamps
+
+
+class Told:
+    """Complaints that are only counted."""
+
+    def __init__(self):
+        self.missed, self.back = [], []
+
+    def missing(self, what, *_, **__):
+        self.missed.append(what)
+
+    def present(self, what):
+        self.back.append(what)
+
+
+@pytest.fixture
+def late(monkeypatch):
+    """At 10 s by the clock, what tf knows of the odometry ends 2 s ago."""
+    monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(10))
+    found = Transforms.__new__(Transforms)
+    found.chain, found.buffer = ("odom", "base"), tf2_ros.Buffer(rospy.Duration(30), debug=False)
+    found._complaints, found._lock, found._blamed = Told(), threading.Lock(), {}
+    for child, stamp in (("base", 7.0), ("base", 10.0 - LATE), ("laser", 0.0)):
+        message = TransformStamped(child_frame_id=child)
+        message.header.frame_id = "odom" if child == "base" else "base"
+        message.header.stamp = rospy.Time.from_sec(stamp)
+        message.transform.rotation.w = 1.0
+        put = found.buffer.set_transform if stamp else found.buffer.set_transform_static
+        put(message, "test")
+    return found
+
+
+def test_a_lookup_that_succeeds_in_the_past_does_not_say_that_all_is_well(late):
+    """Scans of two seconds ago have their transform in the end; the newest is late all the same."""
+    for stamp in (9, 7, 9, 7):  # s: too new, then old enough
+        assert late.newest_pose("odom", "base", 0.5) is None
+        assert (late.find("odom", "laser", rospy.Time(stamp)) is None) == (stamp == 9)
+    assert set(late._complaints.missed) == {"new transform from odom to base"}
+    assert late._complaints.back == []
+
+
+def test_when_nobody_misses_it_any_more_it_is_back(late):
+    late.newest_pose("odom", "base", 0.5)
+    late.find("odom", "laser", rospy.Time(9))
+    late.find("odom", "laser", rospy.Time(7))
+    assert late.newest_pose("odom", "base", 3.0) is not None
+    assert set(late._complaints.back) == {"new transform from odom to base"}
