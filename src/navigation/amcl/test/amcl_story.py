@@ -33,6 +33,7 @@ class AmclStory(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("amcl_story")
         cls.truth, cls.odometry, cls.seen = TRUTH, ODOMETRY, {}
+        cls.behind = 0  # s, of its stamps
         rospy.Service("static_map", GetMap, lambda _: GetMapResponse(cls.map_message()))
         cls.scans = rospy.Publisher("scan", LaserScan, queue_size=1)
         cls.told = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
@@ -56,7 +57,7 @@ class AmclStory(unittest.TestCase):
                                               rospy.Time.now()))
         occupied = (CELLS == 100).astype(np.uint8)
         while not rospy.is_shutdown():
-            now = rospy.Time.now()
+            now = rospy.Time.now() - rospy.Duration(cls.behind)
             sender.sendTransform(transform_message(cls.odometry, "odom", "base_link", now))
             x, y, yaw = poses.compose(cls.truth, (0.1, 0, 0))
             scan = LaserScan(angle_increment=ANGLES[1], range_min=0.1, range_max=8.0)
@@ -153,6 +154,15 @@ class AmclStory(unittest.TestCase):
         self.assertEqual((back["max_particles"], back["laser_model_type"]),
                          (2000, "likelihood_field"))
         self.assertFalse(back["restore_defaults"])
+
+    def test_9_a_world_that_began_anew_put_the_robot_where_the_odometry_says(self):
+        cls = type(self)
+        self.tell(cls.truth)
+        self.ask_for_updates_until(lambda: self.is_at(cls.truth))
+        step = poses.relative(cls.truth, (4.5, 0.6, 3.0))
+        cls.truth, cls.odometry = poses.compose(cls.truth, step), poses.compose(cls.odometry, step)
+        cls.behind = 100
+        self.ask_for_updates_until(lambda: self.is_at(cls.truth))
 
 
 if __name__ == "__main__":

@@ -37,10 +37,10 @@ def room() -> OccupancyGrid:
 class Robot:
     """Publishes odom, scan, tf and localisation while `speaks` has them; keeps its last velocity.
 
-    With localisation from the beginning it is its own map_server, too.
+    With localisation from the beginning it is its own map_server, too. `scan`: that topic's name.
     """
 
-    def __init__(self, pose: tuple[float, float, float], *speaks: str) -> None:
+    def __init__(self, pose: tuple[float, float, float], *speaks: str, scan: str = "scan") -> None:
         self.pose, self.velocity = np.array(pose), np.zeros(3)
         self.speaks = set(speaks)
         self.commands = 0
@@ -50,7 +50,7 @@ class Robot:
             self._map = rospy.Publisher("map", OccupancyGridMessage, queue_size=1, latch=True)
             self._map.publish(grid_message(grid, "map", rospy.Time.now()))
         self._odom = rospy.Publisher("odom", Odometry, queue_size=1)
-        self._scan = rospy.Publisher("scan", LaserScan, queue_size=1)
+        self._scan = rospy.Publisher(scan, LaserScan, queue_size=1)
         self._tf = tf2_ros.TransformBroadcaster()
         self._static = tf2_ros.StaticTransformBroadcaster()
         self._is_mounted = False

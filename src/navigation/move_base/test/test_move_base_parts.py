@@ -111,6 +111,13 @@ def test_carrot(costmap):
     assert carrot.plan(costmap, start, goal, OUTLINE) is None
 
 
+def test_a_carrot_may_be_however_far_away(costmap):
+    """The path ends where the line leaves the costmap."""
+    for far in (50.0, 1e9, 1e300):
+        end = carrot.plan(costmap, np.array([1.0, 2.0, 0.0]), np.array([far, 2.0, 0.0]), OUTLINE)[1]
+        assert end[0] == pytest.approx(3.9, abs=0.11) and end[1] == 2.0
+
+
 @pytest.fixture
 def loaded(monkeypatch):
     """Names and kinds of the behaviours that move_base's values stand for."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nav_algorithms import likelihood_field, poses, rays
-from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
+from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation
 from nav_algorithms.sensor_models import Scan
 
@@ -30,15 +30,34 @@ def flat() -> OccupancyGrid:
     return OccupancyGrid(cells, CELL, (0.0, 0.0))
 
 
+def room(margin: int = 10) -> OccupancyGrid:
+    """A room so many cells from the edge of 5 m x 4 m; nothing is known beyond its walls."""
+    cells = np.full((80, 100), UNKNOWN, np.int8)
+    wall, inside = margin - 1, margin
+    cells[wall:-wall, wall:-wall] = OCCUPIED
+    cells[inside:-inside, inside:-inside] = FREE
+    return OccupancyGrid(cells, CELL, (0.0, 0.0))
+
+
+def ring() -> OccupancyGrid:
+    """A way round a block: each place has a twin that looks the same."""
+    cells = np.pad(np.full((96, 156), FREE, np.int8), 2, constant_values=OCCUPIED)
+    cells[25:75, 25:135] = OCCUPIED
+    return OccupancyGrid(cells, CELL, (0.0, 0.0))
+
+
 class Robot:
     """Drives straight on until something is near, then turns by chance; odometry is off by 2 %."""
 
-    def __init__(self, seed: int) -> None:
-        """Stands somewhere."""
+    def __init__(self, seed: int, place: OccupancyGrid | None = None) -> None:
+        """Stands somewhere in the place, or in the flat."""
         self.random = np.random.default_rng(seed)
-        self._occupied = (flat().cells == OCCUPIED).astype(np.uint8)
-        self._roomy = likelihood_field.distances(self._occupied) * CELL > 0.25
+        place = place or flat()
+        self._occupied = (place.cells == OCCUPIED).astype(np.uint8)
+        self._roomy = ((likelihood_field.distances(self._occupied) * CELL > 0.25)
+                       & (place.cells == FREE))
         self._turns = 0
+        self.crowd = 0.0  # share of the beams, from straight ahead on, that meet persons
         self.odometry = np.zeros(3)
         self.kidnap()
 
@@ -68,6 +87,8 @@ class Robot:
         ranges = rays.cast(self._occupied, CELL, 0.0, 0.0, x, y, yaw + ANGLES, RANGE_MAX)
         ranges += self.random.normal(0, 0.01, ranges.size)
         ranges[self.random.random(ranges.size) < 0.02] = np.inf
+        crowded = np.arange(round(self.crowd * ranges.size))
+        ranges[crowded] = np.minimum(ranges[crowded], 0.4 + 0.2 * np.sin(crowded / 8))
         return Scan(ranges, ANGLES, LASER, RANGE_MAX)
 
     def follow(self, localisation: Localisation, seconds: float) -> np.ndarray:

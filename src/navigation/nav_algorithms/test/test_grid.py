@@ -39,6 +39,13 @@ def test_cells_and_centres_answer_each_other():
     assert grid.contains(np.array([[3, 5], [4, 0], [0, -1]])).tolist() == [True, False, False]
 
 
+@pytest.mark.parametrize("place", [(np.nan, 2.6), (1e300, 2.6), (-0.9, -np.inf)])
+def test_what_is_nowhere_lies_outside_without_a_warning(recwarn, place):
+    grid = OccupancyGrid(np.full((4, 6), UNKNOWN, np.int8), 0.5, (-1.0, 2.0))
+    assert not grid.contains(grid.cells_of(place))
+    assert not recwarn
+
+
 @pytest.mark.parametrize("arguments, text", [
     ((np.zeros((2, 2)), 0.05, (0, 0)), "int8"),
     ((np.zeros((2, 2), np.int8), 0.0, (0, 0)), "resolution"),

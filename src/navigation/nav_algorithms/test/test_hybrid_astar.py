@@ -5,6 +5,7 @@ import pytest
 
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
+from nav_algorithms.global_planning import hybrid_astar
 from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings, plan
 from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.poses import wrap_angle
@@ -104,6 +105,22 @@ def test_a_start_that_touches_is_left():
     path = plan(costmap, start, goal, CAR)
     assert path is not None
     assert (footprint.costs(costmap, CAR, path[-40:]) >= 0).all()
+
+
+@pytest.mark.parametrize("wall, looked_at", [(80, [(81, 161)]), (130, [(81, 161), (161, 201)])])
+def test_on_a_large_map_a_near_goal_is_sought_near_by_first(monkeypatch, wall, looked_at):
+    """Where the only way round a wall leads farther, it is found all the same."""
+    costmap = Costmap(np.zeros((161, 201), np.uint8), 0.05, (-5.0, -4.0))
+    costmap.cells[:wall, 98:102] = LETHAL
+    sizes, estimate = [], hybrid_astar._estimate
+    monkeypatch.setattr(hybrid_astar, "_estimate", lambda part, *others: sizes.append(
+        part.cells.shape) or estimate(part, *others))
+    for name, value in (("LARGE", 10_000), ("AROUND", 2.0)):
+        monkeypatch.setattr(hybrid_astar, name, value)
+    start, goal = np.array([-2.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])
+    path = plan(costmap, start, goal, CAR)
+    check(path, costmap, start, goal)
+    assert sizes == looked_at
 
 
 def test_the_number_of_steps_is_bounded():

@@ -155,6 +155,32 @@ def test_costs_about_a_wall_are_those_of_the_exact_distance():
     assert (layered.master.cells == expected).all()
 
 
+@pytest.mark.parametrize("rolling, unknown", [(False, [LETHAL, 100]), (True, [UNKNOWN, UNKNOWN])])
+def test_a_map_over_other_layers_with_use_maximum(rolling, unknown):
+    """An obstacle stays one where the map knows nothing; not in a rolling window, as upstream."""
+    static = StaticLayer("static", rolling, use_maximum=True)
+    found = grid((1, 4), wall=[(0, 0)], unknown=[(0, 2), (0, 3)])
+    below = Painter(0, [(0.0, 0.0), (0.39, 0.09)])
+    below.update_costs = lambda master, window: np.copyto(
+        master.cells, np.array([[7, 100, LETHAL, 100]], np.uint8))
+    layered = LayeredCostmap([below, static], (1, 4), 0.1, (0.0, 0.0), rolling)
+    static.set_map(found, costs_of(found.cells))
+    layered.update(np.array([0.2, 0.05, 0.0]))
+    assert layered.master.cells.tolist() == [[LETHAL, 100, *unknown]]
+
+
+def test_what_was_written_counts_until_a_new_size_is_written():
+    """Else a plan that is made just then would lead through the walls of a map that has grown."""
+    layered, static = with_map(grid((3, 3), wall=[(1, 1)]))
+    layered.update(HERE)
+    layered.resize((5, 5), 0.1, (0.0, 0.0))
+    assert layered.newest.cells.tolist() == [[0, 0, 0], [0, LETHAL, 0], [0, 0, 0]]
+    larger = grid((5, 5), wall=[(2, 2)])
+    static.set_map(larger, costs_of(larger.cells))
+    layered.update(HERE)
+    assert layered.newest is layered.master and layered.newest.cells[2, 2] == LETHAL
+
+
 @pytest.mark.parametrize("inflate_unknown", [False, True])
 def test_inflation_of_unknown_cells(inflate_unknown):
     inflation = InflationLayer("inflation", 0.5, 3.0, inflate_unknown)

@@ -322,6 +322,11 @@ def test_a_path_is_cut_where_the_motion_changes():
     assert cut(np.zeros((3, 3))) == []
 
 
+@pytest.mark.parametrize("make", [dwa, rollout])
+def test_a_robot_that_cannot_change_its_turn_rate_has_an_answer(make):
+    assert np.isfinite(commanded(make(acc_lim_theta=0.0), straight(yaw=1.5)).velocity).all()
+
+
 def test_pursuit_drives_backwards_and_turns():
     back = straight(1.0)[::-1] - np.array([1.0, 0.0, 0.0])
     command = commanded(pursuit(), back)

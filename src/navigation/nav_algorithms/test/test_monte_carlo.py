@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from house import ANGLES, LASER, RANGE_MAX, Robot, flat
+from house import ANGLES, LASER, RANGE_MAX, Robot, flat, ring, room
 
+from nav_algorithms import poses
 from nav_algorithms.monte_carlo import Localisation, LocalisationSettings
 from nav_algorithms.sensor_models import FIELD, FIELD_PROB, Scan, SensorSettings
 
@@ -17,8 +18,8 @@ CLOSE = np.diag([0.02, 0.02, 0.01])
 SEEN = Scan(np.full(360, 2.0), ANGLES, LASER, RANGE_MAX)
 
 
-def localisation(seed=0, model=FIELD, **changes):
-    return Localisation(flat(), replace(SETTINGS, **changes),
+def localisation(seed=0, model=FIELD, place=None, **changes):
+    return Localisation(place or flat(), replace(SETTINGS, **changes),
                         replace(SENSOR, laser_model_type=model), np.random.default_rng(seed))
 
 
@@ -30,6 +31,25 @@ def test_a_driving_robot_is_kept_track_of(seed, model):
     assert errors[:, 0].mean() < 0.05
     assert np.degrees(errors[:, 1]).mean() < 2.0
     assert len(found.particles) < 700
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_walls_a_cell_behind_those_of_the_map_push_the_robot_nowhere(seed):
+    robot, found = Robot(seed, room(9)), localisation(seed, place=room(10))
+    found.start_at(robot.pose, CLOSE)
+    assert robot.follow(found, 100)[100:, 0].mean() < 0.025
+
+
+@pytest.mark.parametrize("seed", [1, 5])
+def test_a_crowd_about_the_robot_does_not_have_it_at_a_place_that_looks_alike(seed):
+    robot, found = Robot(seed, ring()), localisation(seed, place=ring())
+    found.start_at(robot.pose, CLOSE)
+    robot.follow(found, 15)
+    robot.crowd = 0.55
+    errors = robot.follow(found, 15)
+    robot.crowd = 0.0
+    assert errors[:, 0].max() < 0.2
+    assert robot.follow(found, 15)[:, 0].max() < 0.2
 
 
 def test_the_beam_model_keeps_track_too():
@@ -125,11 +145,12 @@ def test_the_start_is_spread_as_asked():
     assert found.estimate.covariance[2, 2] == pytest.approx(0.01, rel=0.1)
 
 
-def test_odometry_forgotten_moves_no_particle():
+def test_a_robot_that_was_put_elsewhere_with_its_odometry_is_there_and_as_sure():
     found = localisation()
     found.start_at((4, 4, 0), CLOSE)
     found.add((0, 0, 0), SEEN)
-    before = found.estimate.pose
-    found.forget_odometry()
-    assert found.add((50, 50, 2), SEEN).estimated
-    assert np.abs(found.estimate.pose - before).max() < 0.2
+    before, place = found.particles, found.map_to_odom
+    found.jump_to(np.array([-2.0, 1.0, 2.0]))
+    assert not found.add((-2.0, 1.0, 2.0), SEEN).weighed
+    assert found.particles == pytest.approx(poses.compose(before, (-2.0, 1.0, 2.0)))
+    assert (found.map_to_odom == place).all()

@@ -130,3 +130,13 @@ def test_scans_that_see_nothing_do_no_harm():
     assert slam.pose == pytest.approx((2.4, 0, 0), abs=0.6)
     assert (slam.grid().cells == UNKNOWN).all()
     assert slam.entropy == pytest.approx(np.log(5), abs=0.01)
+
+
+@pytest.mark.parametrize("lost", [
+    {"ranges": np.array([1.52, np.inf])}, {"angles": np.array([0.0, np.nan])}])
+def test_a_beam_without_an_end_is_passed_over_whatever_the_sensor_calls_its_reach(lost):
+    slam = ParticleSlam(replace(SETTINGS, particles=2, maxRange=np.inf, maxUrange=np.inf))
+    beams = {"ranges": np.array([1.52, 1.0]), "angles": np.array([0.0, 1.5])} | lost
+    assert slam.add(0.0, (3, 3, 0), laser=np.zeros(3), **beams)
+    assert np.argwhere(slam.grid().cells == OCCUPIED).tolist() == [
+        slam.grid().cells_of((4.52, 3.01)).tolist()]

@@ -29,7 +29,7 @@ def p_of(distance):
     return 0.7 * np.exp(-distance**2 / (2 * 0.2**2)) + 0.1 / 3.5
 
 
-@pytest.mark.parametrize("measured, distance", [(1.0, 0.0), (0.9, 0.1), (0.6, 0.4), (1.1, 0.4)])
+@pytest.mark.parametrize("measured, distance", [(1.0, 0.0), (0.9, 0.1), (0.6, 0.4), (1.1, 0.1)])
 def test_a_beam_in_the_field_counts_by_its_end_s_distance_from_the_wall(measured, distance):
     assert logs(FIELD, [measured]).logs[0] == pytest.approx(np.log(1 + p_of(distance)**3))
     assert logs(FIELD_PROB, [measured]).logs[0] == pytest.approx(np.log(p_of(distance)))
@@ -57,13 +57,22 @@ def test_off_the_map_and_far_from_all_is_the_largest_distance(model, expected):
         assert found.logs[0] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("measured, distance", [(1.0, 0.0), (1.05, 0.2), (1.1, 0.4)])
-def test_behind_a_wall_s_surface_beams_are_four_times_as_wrong(measured, distance):
-    cells = CELLS.copy()
-    cells[:, 40:] = 100
+@pytest.mark.parametrize("thickness, measured, distance", [
+    (1.0, 1.0, 0.0), (1.0, 1.05, 0.05), (1.0, 1.2, 0.2),
+    (0.15, 1.0, 0.0), (0.15, 1.05, 0.1), (0.15, 1.1, 0.0), (0.15, 1.15, 0.05)])
+def test_behind_a_wall_s_surface_beams_are_as_wrong_and_within_thin_walls_twice(
+        thickness, measured, distance):
+    cells = np.zeros_like(CELLS)
+    cells[:, 40:40 + round(thickness / 0.05)] = 100
     scan = Scan(np.array([measured]), np.zeros(1), AHEAD, 3.5)
     found = LaserModel(OccupancyGrid(cells, 0.05, (0, 0)), SETTINGS).compare(PARTICLES, scan)
     assert found.logs[0] == pytest.approx(np.log(1 + p_of(distance)**3))
+
+
+def test_between_the_cells_centres_beams_count_in_between():
+    for model, factor in ((FIELD, np.log(1 + (p_of(0.0)**3 + p_of(0.05)**3) / 2)),
+                          (FIELD_PROB, (np.log(p_of(0.0)) + np.log(p_of(0.05))) / 2)):
+        assert logs(model, [0.975]).logs[0] == pytest.approx(factor)
 
 
 @pytest.mark.parametrize("measured, probability", [

@@ -59,6 +59,7 @@ class AmclNode:
         self._newest = rospy.Time(0)
         self._silence = Silence(self._complaints, "laser scans", "scan")
         self._is_tracking = False  # the transform map to odom is known
+        self._has_jumped = False   # with the next scan's odometry, when the clock went back
         self._outputs = Outputs()
         self._maps = MapSource(self._take_map, self._complaints)
         rospy.Service("global_localization", Empty, self._start_anywhere)
@@ -188,15 +189,17 @@ class AmclNode:
         with self._lock:
             if self._saved is not None:
                 self._localisation.start_at(*carried_on(*self._saved, odometry))
-            self._saved, self._odometry = None, odometry
+            elif self._has_jumped:
+                self._localisation.jump_to(odometry)
+            self._saved, self._odometry, self._has_jumped = None, odometry, False
             self._publish(self._localisation.add(odometry, scan, message.header.frame_id), stamp)
 
     def _restart(self, by: rospy.Duration) -> None:
-        rospy.logwarn("the clock went back by %.1f s: the robot is taken to stand where it was",
-                      by.to_sec())
+        """A simulation was reset: the robot is back where it and its odometry began."""
+        rospy.logwarn("the clock went back by %.1f s: the robot is taken to be where its odometry "
+                      "is now; if not, set its pose (2D Pose Estimate in rviz)", by.to_sec())
         self._frames.clear()
-        with self._lock:
-            self._localisation.forget_odometry()
+        self._has_jumped = True
         self._outputs.restart()
 
     def _publish(self, step: Step, stamp: rospy.Time) -> None:

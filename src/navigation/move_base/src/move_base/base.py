@@ -66,15 +66,15 @@ class Base:
 
     def limit(self, speed: float, turn: float, distance: float) -> None:
         """Slower over the next `distance`, m: no more than `speed`, m/s, and `turn`, rad/s."""
-        self._limits = max(speed, 1e-3), max(turn, 1e-3)
         self._slow_for = distance
+        self._limits = max(speed, 1e-3), max(turn, 1e-3)
 
     def drive(self, velocity: np.ndarray) -> None:
         """(vx, vy, omega), m/s and rad/s; along the same arc, but slower, where it is limited."""
         velocity = np.zeros(3) if self._closed else np.asarray(velocity, float)
-        if self._limits is not None:
-            share = max(np.hypot(*velocity[:2]) / self._limits[0],
-                        abs(velocity[2]) / self._limits[1], 1.0)
+        limits = self._limits  # odometry's thread may end them meanwhile
+        if limits is not None:
+            share = max(np.hypot(*velocity[:2]) / limits[0], abs(velocity[2]) / limits[1], 1.0)
             velocity = velocity / share
         driven = bool(velocity.any())
         if driven:  # the guard knows before the robot moves, and until it was told to stop

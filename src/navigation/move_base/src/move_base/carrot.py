@@ -27,8 +27,10 @@ def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.nd
     """
     start, goal = np.asarray(start, float), np.asarray(goal, float)
     distance = float(np.hypot(*(goal[:2] - start[:2])))
-    steps = max(int(np.ceil(distance / (settings.step_size or costmap.resolution))), 1)
-    shares = np.linspace(1.0, 0.0, steps + 1)[:, None]
+    # From a robot in the costmap, nothing lies in it that is farther than this.
+    farthest = min(distance, float(np.hypot(*costmap.cells.shape)) * costmap.resolution)
+    steps = max(int(np.ceil(farthest / (settings.step_size or costmap.resolution))), 1)
+    shares = np.linspace(farthest / distance if distance else 1.0, 0.0, steps + 1)[:, None]
     turn = (goal[2] - start[2] + np.pi) % (2 * np.pi) - np.pi
     poses = start + shares * np.array([*(goal[:2] - start[:2]), turn])
     free = footprints.costs(costmap, footprint, poses) >= 0

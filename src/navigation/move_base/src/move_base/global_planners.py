@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ class GlobalPlanner(Plugin):
 
     def __init__(self) -> None:
         super().__init__()
+        self._publishing = threading.Lock()  # another may take its place while it plans
         self._topic = (rospy.Publisher(f"~{self.NAME}/plan", Path, queue_size=1)
                        if self.PUBLISHES else None)
 
@@ -39,16 +41,19 @@ class GlobalPlanner(Plugin):
 
     def close(self) -> None:
         super().close()
-        if self._topic is not None:
-            self._topic.unregister()
+        with self._publishing:
+            topic, self._topic = self._topic, None
+            if topic is not None:
+                topic.unregister()
 
     def plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
              goal: np.ndarray, frame: str) -> np.ndarray | None:
         """Path (N, 3) in the costmap's `frame`, or None; published, and if None as an empty one."""
         path = self._plan(costmap, footprint, start, goal)
-        if self._topic is not None and self._topic.get_num_connections():
-            self._topic.publish(path_message(np.zeros((0, 3)) if path is None else path, frame,
-                                             rospy.Time.now()))
+        with self._publishing:
+            if self._topic is not None and self._topic.get_num_connections():
+                self._topic.publish(path_message(np.zeros((0, 3)) if path is None else path, frame,
+                                                 rospy.Time.now()))
         return path
 
     def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,

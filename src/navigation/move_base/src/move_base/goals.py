@@ -29,13 +29,21 @@ def fault_of(q: Quaternion) -> str | None:
 
 
 def in_frame(goal: PoseStamped, frame: str, transforms: Transforms) -> np.ndarray | None:
-    """(3,) of a pose in `frame`, by the newest transform; None if there is none."""
-    own = goal.header.frame_id.lstrip("/")
+    """(3,) of a pose in `frame`, by the newest transform; None, with a line, if it has none."""
+    own, place = goal.header.frame_id.lstrip("/"), pose_of(goal.pose)
+    if not np.isfinite(place).all():
+        rospy.logwarn_throttle(5.0, "A goal at x %g, y %g is nowhere", *place[:2])
+        return None
     if own == frame:
-        return pose_of(goal.pose)
+        return place
     if not own:
         rospy.logwarn_throttle(5.0, "Failed to transform the goal pose into the %s frame: its "
                                     "frame_id is empty; write for example map", frame)
         return None
+    if not transforms.knows(own):
+        rospy.logwarn_throttle(5.0, "Failed to transform the goal pose into the %s frame: nothing "
+                                    "on /tf or /tf_static knows its frame_id %s; write for "
+                                    "example map", frame, own)
+        return None
     origin = transforms.pose(frame, own)
-    return None if origin is None else compose(origin, pose_of(goal.pose))
+    return None if origin is None else compose(origin, place)

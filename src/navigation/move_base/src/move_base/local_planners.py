@@ -45,6 +45,7 @@ class LocalPlanner(Plugin):
         self._frequency = controller_frequency
         self._lock = threading.RLock()
         self._path: np.ndarray | None = None
+        self._closed = False
         warn_of_older_names(self.NAME, self.OLDER_NAMES)
         super().__init__()
         self._global_plan, self._local_plan = (
@@ -67,8 +68,10 @@ class LocalPlanner(Plugin):
 
     def close(self) -> None:
         super().close()
-        self._global_plan.unregister()
-        self._local_plan.unregister()
+        with self._lock:
+            self._closed = True
+            self._global_plan.unregister()
+            self._local_plan.unregister()
 
     def set_path(self, path: np.ndarray, again: bool) -> None:
         """Path (N, 3) to follow from now on. Raises ValueError for what is no path.
@@ -89,7 +92,8 @@ class LocalPlanner(Plugin):
         with self._lock:
             command = self._planner.command(situation.costmap, situation.footprint, situation.pose,
                                             situation.velocity, situation.path_frame)
-        self._publish(situation, command)
+            if not self._closed:  # another may take its place while it looks for a command
+                self._publish(situation, command)
         return command
 
     def _publish(self, situation: Situation, command: Command | None) -> None:

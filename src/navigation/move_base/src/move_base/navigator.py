@@ -59,14 +59,14 @@ class Navigator:
         self._recovering = None
         self._base.stop()
 
-    def cycle(self, now: float, frequency: float, timeout: float
+    def cycle(self, now: float, frequency: float, timeout: float, map_required: bool
               ) -> tuple[PoseStamped | None, Outcome | None]:
         """One step at `now`, s: where the robot is, if known, and how the goal ended, if it has.
 
         While something is missing the robot stands, and patience does not run out.
         """
         pose = self._costmaps[0].robot_pose()
-        if not self._watch.can_drive(now, timeout) or pose is None:
+        if not self._watch.can_drive(now, timeout, map_required) or pose is None:
             self._base.stop()
             self._machine.hold(now)
             return None, None

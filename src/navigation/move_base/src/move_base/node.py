@@ -27,6 +27,7 @@ from move_base.plugin import chosen, settings_from, table
 from move_base.recoveries import load
 from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
+from move_base.status import keep_telling
 from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
 from nav_nodes import clock
@@ -80,6 +81,7 @@ class MoveBase:
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._take_simple_goal,
                          queue_size=1)
         self._server.start()
+        keep_telling(self._server)
 
     def _planner_kinds(self, values: dict) -> tuple[type, type]:
         return tuple(chosen(values[name], known, rospy.resolve_name(f"~{name}"))
@@ -123,23 +125,17 @@ class MoveBase:
                                          start, place, costmap.global_frame)
 
     def _execute(self, goal: MoveBaseGoal) -> None:
-        """On the action's thread, until the goal, or what came in its place, has ended."""
+        """On the action's thread, until the goal, or what came in its place, has ended.
+
+        The robot stands then, also where something here failed; of that actionlib tells the client.
+        """
         for costmap in self._costmaps if self._values["shutdown_costmaps"] else ():
             costmap.start()
-        outcome = None
-        while outcome is None:
-            fault = fault_of(goal.target_pose.pose.orientation)
-            if fault is not None:
-                rospy.logerr("%s", fault)
-                outcome = Outcome(False, INVALID)
-                break
-            outcome = self._pursue(goal.target_pose)
-            if outcome is None:
-                if not self._server.is_new_goal_available():
-                    break
-                goal = self._server.accept_new_goal()
-        self._navigator.end()
-        self._rest_costmaps()
+        try:
+            outcome = self._outcome_of(goal)
+        finally:
+            self._navigator.end()
+            self._rest_costmaps()
         if rospy.is_shutdown():
             return  # _close has told the client
         if outcome is None:
@@ -148,6 +144,18 @@ class MoveBase:
             self._server.set_succeeded(text=outcome.text)
         else:
             self._server.set_aborted(text=outcome.text)
+
+    def _outcome_of(self, goal: MoveBaseGoal) -> Outcome | None:
+        """Of the goal, or of the last of those that came in its place; None if it was cancelled."""
+        while True:
+            fault = fault_of(goal.target_pose.pose.orientation)
+            if fault is not None:
+                rospy.logerr("%s", fault)
+                return Outcome(False, INVALID)
+            outcome = self._pursue(goal.target_pose)
+            if outcome is not None or not self._server.is_new_goal_available():
+                return outcome
+            goal = self._server.accept_new_goal()
 
     def _pursue(self, goal: PoseStamped) -> Outcome | None:
         """Until the goal has ended; None if it was cancelled or another has come."""
@@ -158,7 +166,8 @@ class MoveBase:
         self._current_goal.publish(goal)
         while not rospy.is_shutdown() and not self._server.is_preempt_requested():
             began, frequency = rospy.get_time(), self._values["controller_frequency"]
-            where, outcome = self._navigator.cycle(began, frequency, self._values["data_timeout"])
+            where, outcome = self._navigator.cycle(
+                began, frequency, self._values["data_timeout"], self._values["map_required"])
             if where is not None:
                 self._server.publish_feedback(MoveBaseFeedback(where))
             if outcome is not None:

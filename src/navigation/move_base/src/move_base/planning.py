@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import traceback
 from collections.abc import Callable
 
 import numpy as np
@@ -55,6 +56,9 @@ class Planning:
             except CannotPlanYet:
                 self._rest(number, began, self._pause())
                 continue
+            except Exception:  # a planner that fails has no path; this thread must go on
+                rospy.logerr_throttle(5.0, "The global planner failed: " + traceback.format_exc())
+                path = None
             with self._condition:
                 if number == self._number and path is not None:
                     self._path = path

@@ -38,7 +38,7 @@ class Services:
         """A copy of the global costmap, without the unknown space that was cleared."""
         snapshot = self._costmaps[0].snapshot()
         for pose in self._known:
-            around = square(snapshot, pose, 2 * self._clearing_radius)
+            around = square(snapshot, pose, self._clearing_radius)
             snapshot.cells[around][snapshot.cells[around] == UNKNOWN] = FREE
         return snapshot
 
@@ -70,11 +70,11 @@ class Services:
                             "start pose of the robot")
         goal = self._placed(request.goal)
         if goal is None:
-            return _refused("move_base cannot make a plan for you because the goal's frame "
-                            f"{request.goal.header.frame_id!r} is not known")
+            return _refused("move_base cannot make a plan for you because it does not know where "
+                            f"the goal is, in frame {request.goal.header.frame_id!r}")
         snapshot = self.costmap_to_plan_on()
         if self._values()["make_plan_clear_costmap"] and robot is not None:
-            snapshot.cells[square(snapshot, robot, 2 * self._clearing_radius)] = FREE
+            snapshot.cells[square(snapshot, robot, self._clearing_radius)] = FREE
         path = self._near_goal(snapshot, start, goal, request.tolerance)
         response = GetPlanResponse()
         if path is not None:

@@ -32,9 +32,12 @@ class Watch:
         self._costmaps, self._base, self._buffer = costmaps, base, buffer
         self._complaints = complaints
         self._seen: _Seen | None = None
+        self._orphaned: set[str] = set()
 
-    def can_drive(self, now: float, timeout: float) -> bool:
+    def can_drive(self, now: float, timeout: float, map_required: bool) -> bool:
         """Whether all is there at `now`, s of ROS time; older than `timeout`, s, is missing.
+
+        With `map_required` so is a map whose publisher has gone.
 
         A timeout of 0 asks, as upstream, only for costmaps, poses and what an
         `expected_update_rate` was set for.
@@ -42,6 +45,7 @@ class Watch:
         poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, for what they say
         located = all(pose is not None for pose in poses)
         return ((timeout <= 0.0 or self._all_speak(now, timeout, located)) and located
+                and not (map_required and self._miss_maps())
                 and all(costmap.is_ready() for costmap in self._costmaps)
                 and self._sensors_are_current())
 
@@ -53,6 +57,14 @@ class Watch:
         return all([self._sensors_speak(timeout), self._odometry_speaks(now, timeout),
                     not located or self._is_localised(now, timeout)])
 
+    def _miss_maps(self) -> bool:
+        """Each that nobody publishes is complained about."""
+        orphaned = {topic for costmap in self._costmaps for topic in costmap.orphaned_maps()}
+        for topic in self._orphaned | orphaned:
+            self._say(f"publisher of the map on {topic}", topic in orphaned)
+        self._orphaned = orphaned
+        return bool(orphaned)
+
     def _sensors_are_current(self) -> bool:
         if self._costmaps[1].is_current():
             return True
@@ -62,14 +74,15 @@ class Watch:
         return False
 
     def _sensors_speak(self, timeout: float) -> bool:
-        silences = self._costmaps[1].silences()
-        for what, silence in silences.items():
-            self._say(what, silence > timeout)
-        return all(silence <= timeout for silence in silences.values())
+        silent = {what: abs(silence) > timeout  # below 0: heard before the clock was set back
+                  for what, silence in self._costmaps[1].silences().items()}
+        for what, missing in silent.items():
+            self._say(what, missing)
+        return not any(silent.values())
 
     def _odometry_speaks(self, now: float, timeout: float) -> bool:
         heard = self._base.heard
-        silent = heard is None or now - heard.to_sec() > timeout
+        silent = heard is None or abs(now - heard.to_sec()) > timeout
         self._say(f"odometry on {self._base.odom_topic}", silent)
         return not silent
 

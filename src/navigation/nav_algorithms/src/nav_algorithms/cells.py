@@ -28,7 +28,8 @@ class Cells:
     def cells_of(self, points: np.ndarray) -> np.ndarray:
         """(row, column), int64 (..., 2), of points (..., 2), m; may lie outside."""
         points = np.asarray(points, float)
-        found = np.floor((points - self.origin) / self.resolution).astype(np.int64)
+        with np.errstate(invalid="ignore"):  # what is too far for a number lies outside, too
+            found = np.floor((points - self.origin) / self.resolution).astype(np.int64)
         return found[..., ::-1]
 
     def centres_of(self, cells: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 8.3: KLD-sampling, and random poses
 when the scans fit worse than they used to. As in amcl, with these differences: particles are drawn
 with low variance; the averages that tell of a lost robot are of the scans alone, not of the number
-of particles; and random poses are drawn where the latest scan fits (places.py).
+of particles; and random poses are few, but drawn where the latest scan fits (places.py).
 """
 
 from __future__ import annotations
@@ -20,6 +20,9 @@ from nav_algorithms.places import Places
 from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
 
 NOTICED = 0.1  # share by which scans must fit worse than they used to before that means anything
+# At most this share is drawn anew in one scan. A passer-by makes scans fit worse, too, and poses
+# that fit where the map looks alike must win by what is seen later, not by how many were drawn.
+MOST_ANEW = 0.02
 # Where a robot starts anywhere, several places look alike, and the right one may have been given up
 # before the robot saw the difference: this share is drawn anew in each of its first scans.
 SEARCH_SHARE, SEARCH_SCANS = 0.1, 40
@@ -105,9 +108,12 @@ class Localisation:
         """The next scan is weighed though the robot may stand."""
         self._wanted = True
 
-    def forget_odometry(self) -> None:
-        """The next scan's odometry is where this one's was, whatever it says."""
-        self._odometry = None
+    def jump_to(self, odometry: np.ndarray) -> None:
+        """The robot was put where the odometry (3,) has it now, without any error on the way."""
+        if self._odometry is not None:
+            self.particles = poses.compose(self.particles,
+                                           poses.relative(self._odometry, odometry))
+            self._odometry = np.asarray(odometry, float)
 
     def add(self, odometry: np.ndarray, scan: Scan, laser: str = "") -> Step:
         """A scan by the laser of that name, taken where the odometry was at `odometry` (3,)."""
@@ -164,7 +170,7 @@ class Localisation:
         if self._settings.recovery_alpha_fast == 0.0 or self._averages["slow"] == 0.0:
             return searched
         share = 1.0 - self._averages["fast"] / self._averages["slow"]
-        return max(searched, share if share > NOTICED else 0.0)
+        return max(searched, min(share, MOST_ANEW) if share > NOTICED else 0.0)
 
     def _resample(self, scan: Scan) -> None:
         settings, random, lost = self._settings, self._random, self.lost

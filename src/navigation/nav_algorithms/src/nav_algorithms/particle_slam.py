@@ -159,6 +159,7 @@ class ParticleSlam:
         limit = min(self.settings.maxUrange, self.settings.maxRange)
         with np.errstate(invalid="ignore"):
             told = (ranges > 0.0) & (ranges <= self.settings.maxRange)
+        told &= np.isfinite(ranges) & np.isfinite(angles)  # maxRange may be inf: a driver's may be
         ranges, angles = ranges[told], angles[told]
         usable = np.minimum(ranges, limit)
         ends = usable[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))

@@ -18,9 +18,10 @@ from nav_algorithms.compiled import compiled
 from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.rays import cast
 
-# With sigma_hit of 0.2 m a wall of 15 cm is one broad optimum, 7 cm behind its surface. In a house
-# known exactly this factor took the mean error from 7 to 3 cm.
-BEHIND = 4.0
+# A wall of 15 cm is one broad optimum for sigma_hit of 0.2 m, 7 cm behind its surface: the middle
+# cells count as farther off, and just so much that a beam too short is as wrong as one too long.
+# Where nothing is seen from behind, any more than that would push poses away from far walls.
+THIN, THIN_WALL = 2.0, 0.3  # times, m
 BEAM, FIELD, FIELD_PROB = "beam", "likelihood_field", "likelihood_field_prob"
 
 
@@ -90,7 +91,7 @@ class LaserModel:
         self._place = grid.resolution, *grid.origin
         # Where upstream's rays end: at all that is not free, and at the map's edge.
         self._blocked = np.pad((grid.cells != FREE).astype(np.uint8), 1, constant_values=1)
-        self._distances = np.minimum(_way_off(grid.cells) * grid.resolution,
+        self._distances = np.minimum(_way_off(grid.cells, grid.resolution),
                                      settings.laser_likelihood_max_dist)
         self._tables: dict[float, np.ndarray] = {}
 
@@ -156,26 +157,34 @@ def _part(sums: np.ndarray, best: float) -> np.ndarray:
     return sums / best if best > 0.0 else np.ones_like(sums)
 
 
-def _way_off(cells: np.ndarray) -> np.ndarray:
-    """How wrong it is for a beam to end in each cell, (rows, columns), in cells.
+def _way_off(cells: np.ndarray, resolution: float) -> np.ndarray:
+    """How wrong it is for a beam to end in each cell, (rows, columns), m.
 
-    Upstream's distance to the nearest occupied cell, and behind the surface of what is occupied
-    BEHIND times as much: a wall has two sides, and in between would be nearly as good as on them.
+    Upstream's distance to the nearest occupied cell, or that to the surface, where it is more; in
+    walls so thin that they are seen from both sides THIN times the latter.
     """
     occupied, free = cells == OCCUPIED, cells == FREE
-    distances = likelihood_field.distances(occupied.astype(np.uint8))
+    distances = likelihood_field.distances(occupied.astype(np.uint8)) * resolution
     if not (occupied.any() and free.any()):
         return distances
-    behind = likelihood_field.distances(free.astype(np.uint8)) - 1.0
-    return np.where(free, distances, np.maximum(distances, BEHIND * behind))
+    behind = (likelihood_field.distances(free.astype(np.uint8)) - 1.0) * resolution
+    deep = behind >= THIN_WALL / 2
+    of_thick = likelihood_field.distances(deep.astype(np.uint8)) * resolution <= THIN_WALL / 2
+    return np.where(free, distances, np.maximum(distances, np.where(of_thick, 1.0, THIN) * behind))
 
 
 @compiled("f8(f8[:,::1], f8, f8)")
 def _value_at(table: np.ndarray, column: float, row: float) -> float:
-    """Of a table with a border one cell wide, which stands for all that lies outside; in cells."""
-    i = min(max(int(np.floor(row)) + 1, 0), table.shape[0] - 1)
-    j = min(max(int(np.floor(column)) + 1, 0), table.shape[1] - 1)
-    return table[i, j]
+    """Of a table with a border one cell wide, which stands for all that lies outside; in cells.
+
+    In between for places between the cells' centres: else poses up to a cell apart fit alike.
+    """
+    across = min(max(column + 0.5, 0.0), table.shape[1] - 1.0)
+    up = min(max(row + 0.5, 0.0), table.shape[0] - 1.0)
+    i, j = min(int(up), table.shape[0] - 2), min(int(across), table.shape[1] - 2)
+    up, across = up - i, across - j
+    return ((1.0 - up) * ((1.0 - across) * table[i, j] + across * table[i, j + 1])
+            + up * ((1.0 - across) * table[i + 1, j] + across * table[i + 1, j + 1]))
 
 
 @compiled("f8[::1](f8[:,::1], f8, f8, f8, f8[:,::1], f8[:,::1])")

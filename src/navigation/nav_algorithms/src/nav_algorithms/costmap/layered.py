@@ -26,6 +26,7 @@ class LayeredCostmap:
         self.rolling = rolling
         self.default = UNKNOWN if track_unknown else FREE
         self.resize(shape, resolution, origin)
+        self.newest = self.master  # as the latest update left it, whatever was resized since
 
     def resize(self, shape: tuple[int, int], resolution: float,
                origin: tuple[float, float]) -> None:
@@ -56,6 +57,7 @@ class LayeredCostmap:
             layer.update_bounds(pose, bounds)
         window = bounds.window(self.master)
         self._all_is_new = False
+        self.newest = self.master
         if window is None:
             return None
         self.master.cells[window] = self.default

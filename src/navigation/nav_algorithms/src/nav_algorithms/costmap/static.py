@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nav_algorithms.costmap.costs import FREE, LETHAL, UNKNOWN, Costmap
-from nav_algorithms.costmap.layer import Bounds, Layer, Window
+from nav_algorithms.costmap.layer import MAXIMUM, Bounds, Layer, Window, combine
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import transform_points
 
@@ -81,7 +81,11 @@ class StaticLayer(Layer):
         self._changed = Bounds()
 
     def update_costs(self, master: Costmap, window: Window) -> None:
-        """Copies, or takes the greater of the two with `use_maximum`."""
+        """Copies, or takes the greater of the two with `use_maximum`.
+
+        Then what the map does not know changes nothing; where the master rolls it counts as the
+        greatest cost, as upstream's.
+        """
         if self._map is None or not self.enabled:
             return
         target = master.cells[window]
@@ -90,7 +94,10 @@ class StaticLayer(Layer):
                 self._copy_moved(master, window, target)
         elif self._map.cells.shape == master.cells.shape:
             cells = self._map.cells[window]
-            target[:] = np.maximum(target, cells) if self.use_maximum else cells
+            if self.use_maximum:
+                combine(target, cells, MAXIMUM)
+            else:
+                target[:] = cells
 
     def _copy_moved(self, master: Costmap, window: Window, target: np.ndarray) -> None:
         rows, columns = (np.arange(part.start, part.stop) for part in window)

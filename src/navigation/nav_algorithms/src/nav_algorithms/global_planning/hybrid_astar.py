@@ -7,6 +7,7 @@ they were reached best, and curves that are tried from there to the goal.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ from nav_algorithms.global_planning.potential import spread
 from nav_algorithms.global_planning.search import search
 
 TIGHT = 20.0  # as many cells does one count, in the estimate, that is within the inscribed radius
+LARGE = 1_000_000  # cells; on such a map a way is looked for in the surroundings first
+AROUND = 20.0      # m of surroundings, about start and goal
 
 
 @dataclass(frozen=True)
@@ -50,10 +53,35 @@ def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.nd
     `footprint` (K, 2), m, is free at each of them; where it seems to touch something at the start,
     as much smaller as it must be to fit there. The same input gives the same path: what bounds the
     time is a number of steps, not a clock. When they are used up, the best path so far counts.
+    On a large costmap a path near start and goal counts, though a shorter one may lead far away.
     """
     start, goal = np.array(start, float), np.array(goal, float)
-    footprint = footprints.shrunk_to_fit(_known(costmap, settings),
-                                         np.ascontiguousarray(footprint, float), start)
+    footprint = np.ascontiguousarray(footprint, float)
+    for part in _parts(costmap, start, goal):
+        path = _plan_on(part, start, goal, footprint, settings)
+        if path is not None:
+            return path
+    return None
+
+
+def _parts(costmap: Costmap, start: np.ndarray, goal: np.ndarray) -> Iterator[Costmap]:
+    """The surroundings of a large costmap, then all of it: its far ends cost seconds and GB."""
+    if costmap.cells.size > LARGE:
+        ends = costmap.cells_of(np.stack((start[:2], goal[:2])))
+        if costmap.contains(ends).all():
+            margin = int(AROUND / costmap.resolution)
+            low = np.maximum(ends.min(axis=0) - margin, 0)
+            row, column = np.minimum(ends.max(axis=0) + margin + 1, costmap.cells.shape)
+            origin = np.array(costmap.origin) + low[::-1] * costmap.resolution
+            yield Costmap(costmap.cells[low[0]:row, low[1]:column], costmap.resolution,
+                          tuple(origin.tolist()))
+    yield costmap
+
+
+def _plan_on(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
+             settings: HybridAstarSettings) -> np.ndarray | None:
+    """As `plan`, on all of the costmap."""
+    footprint = footprints.shrunk_to_fit(_known(costmap, settings), footprint, start)
     if footprint is None or not costmap.contains(costmap.cells_of(goal[:2])):
         return None
     s = settings
@@ -105,4 +133,3 @@ def _driven(start: np.ndarray, goal: np.ndarray, pieces: np.ndarray, step: float
     path[-1] = goal
     path[:, 2] = (path[:, 2] + np.pi) % (2 * np.pi) - np.pi
     return path
-

@@ -132,7 +132,7 @@ def rollouts(cells, resolution, origin_x, origin_y, free_radii, circumscribed, f
         if not on_the_spot:
             last = min(steps, max(int(np.ceil(goal_range / (speed * dt))), 1))
         braked = sim_time
-        if on_the_spot:
+        if on_the_spot and acceleration[2] > 0.0:
             braked = min(abs(sample[2]) / acceleration[2] + stop_time, sim_time)
         now = sample.copy() if at_once else velocity.copy()
         poses[0] = pose

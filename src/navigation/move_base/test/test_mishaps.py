@@ -1,0 +1,147 @@
+"""What must not go wrong with it when something in move_base goes wrong; no master."""
+
+import math
+import threading
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import rospy
+from geometry_msgs.msg import PoseStamped, Quaternion
+from move_base_msgs.msg import MoveBaseGoal
+
+from move_base import goals, services
+from move_base.base import Base
+from move_base.node import MoveBase
+from move_base.planning import Planning
+from move_base.services import Services
+from move_base.state_machine import State, StateMachine
+from move_base.watch import Watch
+from nav_algorithms.costmap.costs import LETHAL, Costmap
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch):
+    """ROS time without a node."""
+    monkeypatch.setattr(rospy, "get_time", time.monotonic)
+    monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time.from_sec(time.monotonic()))
+
+
+@pytest.fixture
+def lines(monkeypatch):
+    """What is logged as a warning or an error."""
+    found = []
+    for name in ("logerr_throttle", "logwarn_throttle"):
+        monkeypatch.setattr(rospy, name, lambda _period, text, *values: found.append(
+            text % values if values else text))
+    monkeypatch.setattr(rospy, "logerr", lambda text, *values: found.append(text % values))
+    return found
+
+
+def pose(x=1.0, y=2.0, frame="map"):
+    """A goal, looking along x."""
+    message = PoseStamped()
+    message.header.frame_id = frame
+    message.pose.position.x, message.pose.position.y = x, y
+    message.pose.orientation = Quaternion(0, 0, 0, 1)
+    return message
+
+
+def test_the_robot_stands_when_a_cycle_fails():
+    """actionlib aborts the goal; nobody else would take the last velocity back."""
+    ended = []
+    node = MoveBase.__new__(MoveBase)
+    node._values = {"shutdown_costmaps": False}
+    node._navigator = SimpleNamespace(end=lambda: ended.append(True))
+
+    def fails(_goal):
+        raise ZeroDivisionError
+
+    node._pursue = fails
+    with pytest.raises(ZeroDivisionError):
+        node._execute(MoveBaseGoal(pose()))
+    assert ended == [True]
+
+
+@pytest.fixture
+def ends_threads(monkeypatch):
+    """Those that go on until the node ends."""
+    ended = threading.Event()
+    monkeypatch.setattr(rospy, "is_shutdown", ended.is_set)
+    yield
+    ended.set()
+    for thread in threading.enumerate():
+        if thread.name == "planner":
+            thread.join(5.0)
+
+
+@pytest.mark.usefixtures("ends_threads")
+def test_a_planner_that_fails_has_no_path_and_is_asked_again(lines):
+    """The thread that plans must go on; else every later goal would wait for ever."""
+    machine, asked, again = StateMachine(), [], threading.Event()
+
+    def plan(_goal):
+        asked.append(True)
+        if len(asked) == 1:
+            raise ValueError("a planner's own fault")
+        again.set()
+        return np.zeros((2, 3))
+
+    planning = Planning(machine, plan, lambda: 0.01)
+    planning.begin(machine.begin(time.monotonic()), pose())
+    assert again.wait(5.0)
+    end = time.monotonic() + 5.0
+    while machine.state is State.PLANNING and time.monotonic() < end:
+        time.sleep(0.01)
+    assert planning.take_path() is not None and "a planner's own fault" in lines[0]
+
+
+@pytest.mark.parametrize("place", [(math.nan, 0.0), (0.0, math.inf)])
+def test_a_goal_that_is_nowhere_has_no_place(lines, place):
+    """In whatever frame."""
+    assert goals.in_frame(pose(*place), "map", None) is None
+    assert "is nowhere" in lines[0]
+
+
+def test_make_plan_frees_what_lies_within_the_clearing_radius(monkeypatch):
+    """To each side, and no farther, as upstream."""
+    monkeypatch.setattr(services.rospy, "Service", lambda *_: None)
+    costmap = Costmap(np.full((41, 41), LETHAL, np.uint8), 0.1, (0.0, 0.0))
+    planned_on = []
+    fixed = SimpleNamespace(
+        global_frame="map", footprint=None, is_ready=lambda: True,
+        robot_pose=lambda: np.array([2.05, 2.05, 0.0]),
+        snapshot=lambda: Costmap(costmap.cells.copy(), 0.1, (0.0, 0.0)))
+    planner = SimpleNamespace(plan=lambda snapshot, *_: planned_on.append(snapshot))
+    found = Services((fixed, fixed), None, lambda: planner,
+                     lambda: {"make_plan_clear_costmap": True}, lambda: False, 0.5)
+    found._make_plan(SimpleNamespace(start=PoseStamped(), goal=pose(), tolerance=0.0))
+    rows, columns = np.nonzero(planned_on[0].cells != LETHAL)
+    assert {(rows.min(), rows.max()), (columns.min(), columns.max())} == {(15, 25)}
+
+
+def test_odometry_may_end_a_limit_while_it_is_applied():
+    """Of move_slow_and_clear: it ends on odometry's thread."""
+    base = Base.__new__(Base)
+    base._closed, told = False, []
+    base._tell_guard, base._publish = lambda _driven: None, told.append
+    limits = [(0.1, 1.0)]
+    type_of_base = type("Ending", (Base,), {"_limits": property(
+        lambda _self: limits.pop() if limits else None)})
+    base.__class__ = type_of_base
+    base.drive(np.array([0.2, 0.0, 0.2]))
+    assert told[0] == pytest.approx(np.array([0.1, 0.0, 0.1]))
+
+
+@pytest.mark.parametrize(("odometry", "scan", "drives"), [
+    (1000.0, 0.1, False), (1.05, -999.0, False), (1.05, -0.05, True), (0.2, 0.1, False)])
+def test_what_was_heard_before_the_clock_was_set_back_is_old(odometry, scan, drives):
+    """At 1 s after 1000 s; what another thread heard just now may be a little ahead."""
+    costmap = SimpleNamespace(global_frame="map", robot_pose=lambda: np.zeros(3),
+                              is_ready=lambda: True, is_current=lambda: True,
+                              silences=lambda: {"LaserScan on /scan": scan})
+    base = SimpleNamespace(odom_topic="/odom", heard=rospy.Time.from_sec(odometry))
+    complaints = SimpleNamespace(missing=lambda *_, **__: None, present=lambda _what: None)
+    assert Watch((costmap, costmap), base, None, complaints).can_drive(
+        1.0, 0.6, False) is drives
