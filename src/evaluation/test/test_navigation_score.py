@@ -25,6 +25,7 @@ from evaluation.navigation.score import (
     localisation,
     pose_errors,
     score_mapping,
+    seen_of,
 )
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
@@ -145,6 +146,18 @@ def test_each_fault_of_a_mapping_round_is_a_line(ground):
               r"mapping: wheel touched something at 1\.0 s, \(1\.0, 2\.0\)")
     for fault, text in zip(faults, wanted, strict=True):
         assert re.fullmatch(text, fault), fault
+
+
+def test_what_was_not_looked_at_is_not_called_right(ground):
+    """On a machine that is too busy."""
+    records = records_of(round_of(ground)[:6])
+    records.truth = [(9 * number, *pose) for number, (_, *pose) in enumerate(records.truth)]
+    part = Navigation([way()], [], seen_of(records), 1.0, localisation(None, np.zeros((1, 2))),
+                      PACE)
+    assert [fault for fault in part.faults if "nobody looked for 9.0 s" in fault] == part.faults
+    records.truth = [(99.0, 0.0, 0.0, 0.0)]
+    with pytest.raises(RunError, match="too busy"):
+        score_mapping(ground, ground.walls, records, ANGLES, 3.0, [way()], PACE)
 
 
 def test_a_goal_that_is_only_called_reached_is_a_fault():

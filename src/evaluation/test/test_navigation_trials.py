@@ -68,6 +68,8 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
         ([made(n, outcome="late" if n == 0 else "reached") for n in range(10)], False),
         ([made(), crossed(outcome="contact")], False),
         ([made(), crossed(outcome="walked into")], True),
+        ([made(), crossed(outcome="late")], False),
+        ([made(), *[crossed(n, outcome="late" if n == 0 else "reached") for n in range(20)]], True),
     ],
 )
 def test_limits(drives, good):

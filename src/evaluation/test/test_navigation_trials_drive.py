@@ -102,6 +102,11 @@ def test_a_drive_that_takes_too_long_is_late():
     assert found.outcome == "late" and found.time == pytest.approx(driving.LIMIT, abs=0.2)
 
 
+def test_a_goal_that_was_called_reached_from_afar_was_not():
+    found, _ = driving.past_person(FakeRig(limit=15.0, person=True), draw_crossing(4))
+    assert found.outcome == "called reached" and found.why.startswith("from 1.")
+
+
 def test_a_simulator_that_hangs_is_no_late_robot(monkeypatch):
     monkeypatch.setattr(driving, "SILENCE", 0.05)
     monkeypatch.setattr(FakeRig, "samples", lambda _self, wait: time.sleep(wait) or [])

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from evaluation.course_run.failure import RunError
 from evaluation.mapping.map_agreement import MapAgreement, map_agreement
 from evaluation.mapping.trajectory_error import TrajectoryError, trajectory_error
 from evaluation.mapping.true_map import visible_walls
@@ -19,6 +20,7 @@ MOST_ATE = 0.05  # m
 LEAST_AGREEMENT = 0.95  # share
 MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees, mean error of localisation
 MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees, beside a goal that is called reached
+MOST_UNSEEN = 1.0  # s, simulated, between two looks; it drives 26 cm meanwhile
 POSE_STEP = 10  # every so many poses are asked what the laser saw from there
 
 
@@ -68,8 +70,8 @@ class Mapping:
                             ("seen walls on the map", self.agreement.walls_found)):
             if share < LEAST_AGREEMENT:
                 found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
-        return found + _way_faults("way-point", self.ways) + _contact_faults("mapping",
-                                                                             self.contacts)
+        return (found + _way_faults("way-point", self.ways)
+                + _contact_faults("mapping", self.contacts, self.seen))
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ class Navigation:
             found.append(f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
                          f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°")
         return (found + _way_faults("goal", self.ways)
-                + _contact_faults("on the way to the goals", self.contacts))
+                + _contact_faults("on the way to the goals", self.contacts, self.seen))
 
 
 @dataclass
@@ -123,8 +125,14 @@ class Result:
 
 def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles: np.ndarray,
                   reach: float, ways: list[Way], pace: Pace) -> Mapping:
-    """The map against the walls that a laser with these beams (rad) and reach (m) could see."""
+    """The map against the walls that a laser with these beams (rad) and reach (m) could see.
+
+    Raises RunError where true and believed poses of the same moments were never seen.
+    """
     believed, true = records.pairs()
+    if not len(true):
+        raise RunError("mapping: the true pose was seen too seldom to judge the map by: this "
+                       "machine is too busy; PACE=0.5 may help")
     trajectory = trajectory_error(believed, true)
     seen = visible_walls(ground.walls, true[::POSE_STEP], angles, reach)
     agreement = map_agreement(built, ground.walls, seen, trajectory.alignment)
@@ -166,9 +174,13 @@ def _way_faults(what: str, ways: list[Way]) -> list[str]:
     return found
 
 
-def _contact_faults(when: str, contacts: list[Contact]) -> list[str]:
-    return [f"{when}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
-            for each in contacts]
+def _contact_faults(when: str, contacts: list[Contact], seen: Seen) -> list[str]:
+    found = [f"{when}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
+             for each in contacts]
+    if seen.unseen > MOST_UNSEEN:
+        found.append(f"{when}: nobody looked for {seen.unseen:.1f} s whether it touches something, "
+                     f"more than {MOST_UNSEEN:g} s: this machine is too busy")
+    return found
 
 
 def _cm(length: float) -> str:

@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 
 from evaluation.yards.results import CROSSINGS, REACHED, YARDS, Drive
 
-COLOURS = {REACHED: "#1b6ca8", "contact": "#c0392b", "walked into": "#8e44ad",
-           "given up": "#c9782f", "late": "#7a8b99"}  # fmt: skip
+COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
+           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}  # fmt: skip
 DOTS_PER_INCH, PANEL_WIDTH, PANEL_HEIGHT = 110, 6.5, 3.4  # inches
 
 # Set, what is along, across, and their values.

@@ -54,6 +54,10 @@ class Judge:
             self.path.append((self.time, *sample.robot))
         self._look(sample)
 
+    def off(self, place: Place) -> float:
+        """m that the robot was from a place at last; inf before the first sample."""
+        return math.inf if self._last is None else math.dist(self._last.robot[:2], place[:2])
+
     def _look(self, sample: Sample) -> None:
         air = clearance(sample.robot, self._cylinders, self._radius)
         self.to_obstacles = min(self.to_obstacles, air)

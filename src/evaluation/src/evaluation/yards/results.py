@@ -11,9 +11,9 @@ from pathlib import Path
 from evaluation.course_run.failure import RunError
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
-REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE = (
-    "reached", "contact", "walked into", "given up", "late")
-LEAST_SHARE = 0.95  # of the yards
+REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
+    "reached", "contact", "walked into", "given up", "late", "called reached")
+LEAST_SHARE = 0.95  # of the yards, and of the crossings but for those that persons ended
 BEST, WORST = 4.0, 8.0  # times the shortest time between which BARN's score falls
 
 
@@ -101,10 +101,13 @@ def _summary(name: str, drives: list[Drive]) -> Summary:
 
 
 def passed(drives: Sequence[Drive]) -> bool:
-    """Enough yards crossed, and nobody touched by the robot."""
-    yards = [drive.reached for drive in drives if drive.set == YARDS]
+    """Enough goals reached, and nobody touched by the robot; who stands still touches nobody."""
     touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in drives)
-    return not touched and (not yards or sum(yards) >= LEAST_SHARE * len(yards))
+    counted = [drive for drive in drives if drive.outcome != WALKED_INTO]
+    return not touched and all(
+        sum(reached) >= LEAST_SHARE * len(reached)
+        for reached in ([d.reached for d in counted if d.set == name]
+                        for name in (YARDS, CROSSINGS)))
 
 
 def table(summaries: Sequence[Summary]) -> str:

@@ -1,0 +1,12 @@
+#!/usr/bin/env python3
+"""Has amcl find, find again and keep track of the waffle in the house (--help)."""
+
+import signal
+import sys
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
+
+from evaluation.localisation.main import main  # noqa: E402
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,144 @@
+"""What became of the trials: one by one, as a table, and as report.json."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
+RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees, at most, of a pose that counts as right
+HOLD = 20.0  # s, simulated, that it must stay right for
+LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, by when it must be right
+LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
+MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # in the mean, while it is tracked
+MOST_CPU = 30.0  # percent of a core
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One robot that had to be found; m, s simulated, degrees."""
+
+    set: str
+    number: int
+    start: tuple[float, float, float]  # in the world; rad
+    took: float | None  # until it was right and stayed so; None: it was not, or not for long
+    off: float  # at the end
+    off_deg: float
+    touched: int
+
+    @property
+    def right(self) -> bool:
+        """In time?"""
+        return self.took is not None and self.took <= LIMITS[self.set]
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """A long drive from a known pose; m, s simulated, degrees."""
+
+    time: float
+    driven: float
+    off: float  # in the mean
+    off_deg: float
+    largest_off: float
+    largest_off_deg: float
+
+    @property
+    def passed(self) -> bool:
+        """Within the limits?"""
+        return self.off <= MOST_OFF and self.off_deg <= MOST_OFF_DEG
+
+
+@dataclass(frozen=True)
+class Load:
+    """What amcl's process used; s."""
+
+    particles: int
+    simulated: float
+    wall: float
+    percent: float  # of one core: s used in 100 simulated s
+
+    @property
+    def passed(self) -> bool:
+        """Within the limit?"""
+        return self.percent <= MOST_CPU
+
+
+@dataclass
+class Results:
+    """All of a run, or as much as there was before it ended."""
+
+    trials: list[Trial] = field(default_factory=list)
+    tracking: Tracking | None = None
+    load: Load | None = None
+
+    def of(self, kind: str) -> list[Trial]:
+        """The trials of one set."""
+        return [trial for trial in self.trials if trial.set == kind]
+
+    @property
+    def passed(self) -> bool:
+        """Is all that was tried within the limits?"""
+        shares = all(sum(trial.right for trial in self.of(kind)) >= share * len(self.of(kind))
+                     for kind, share in LEAST_SHARES.items())
+        return shares and all(part.passed for part in (self.tracking, self.load) if part)
+
+
+def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
+    """From which of the times (N,), s, on all errors (N, 2), m and rad, are small to the end."""
+    if not len(times):
+        return None
+    wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))
+    first = wrong[-1] + 1 if len(wrong) else 0
+    return float(times[first]) if first < len(times) else None
+
+
+def trial_line(trial: Trial) -> str:
+    """One on one line."""
+    found = "not found" if trial.took is None else f"found after {trial.took:.1f} s"
+    late = "" if trial.right or trial.took is None else ", too late"
+    return (f"{trial.set} {trial.number}: {found}{late}, at the end {trial.off * 100:.1f} cm and "
+            f"{trial.off_deg:.1f}° off")
+
+
+def table(results: Results) -> str:
+    """A row for each thing that was tried, with its limit."""
+    rows = [("", "found", "wanted", "")]
+    for kind, share in LEAST_SHARES.items():
+        trials = results.of(kind)
+        if trials:
+            took = [trial.took for trial in trials if trial.right]
+            median = f"in {np.median(took):.1f} s (median)" if took else ""
+            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s",
+                         f"{sum(trial.right for trial in trials)} of {len(trials)}",
+                         f"{share:.0%}", median))
+    if results.tracking:
+        found = results.tracking
+        rows.append((f"tracking, {found.time:.0f} s",
+                     f"{found.off * 100:.1f} cm, {found.off_deg:.1f}°",
+                     f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
+                     f"largest {found.largest_off * 100:.1f} cm, {found.largest_off_deg:.1f}°"))
+    if results.load:
+        found = results.load
+        rows.append((f"amcl with {found.particles} particles", f"{found.percent:.0f} % of a core",
+                     f"{MOST_CPU:.0f} %", f"real time x{found.simulated / found.wall:.2f}"))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+                     .rstrip() for row in rows)
+
+
+def write_report(results: Results, path: Path) -> None:
+    """All there is, with the limits it is held against."""
+    values = {
+        "passed": results.passed,
+        "limits": {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
+                   "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
+                   "cpu": MOST_CPU},
+        "trials": [{**asdict(trial), "right": trial.right} for trial in results.trials],
+        "tracking": asdict(results.tracking) if results.tracking else None,
+        "load": asdict(results.load) if results.load else None,
+    }
+    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,179 @@
+"""The running simulator with the waffle, map_server and amcl: what trials do with them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import rospy
+from dynamic_reconfigure.msg import Config, IntParameter
+from dynamic_reconfigure.srv import Reconfigure
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import (
+    GetPhysicsProperties,
+    SetModelState,
+    SetPhysicsProperties,
+    SetPhysicsPropertiesRequest,
+)
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from std_srvs.srv import Empty
+
+from evaluation.bench import simulator
+from evaluation.bench.cpu import processes
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.launch import Launched
+from evaluation.localisation.options import Options
+from evaluation.navigation.ground import Ground
+from evaluation.navigation.progress import Progress
+from evaluation.navigation.watch import MAP, ROBOT, Watch
+from evaluation.yards.rig import pose_message
+
+START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
+LOOK_PERIOD = 0.05  # s, wall
+FENCE = 0.8  # m ahead of the robot
+TRUE, ENCODER = ("<odometrySource>world<", "<odometrySource>encoder<")
+TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36, as rviz sends them
+
+
+class Rig:
+    """Made once a run; all of its calls may raise RunError."""
+
+    def __init__(self, options: Options, ground: Ground, launched: Launched, map_file: str,
+                 progress: Progress):
+        self._launched, self._ground, self._progress = launched, ground, progress
+        launched.start_roscore()
+        self.watch = Watch(launched.master_uri)
+        launched.start("localisation", [
+            "roslaunch", "evaluation", "localisation.launch", f"map_file:={map_file}",
+            f"world_name:={options.house.world_path}", f"model:={options.house.model}",
+            f"seed:={options.seed}", f"real_time_factor:={options.real_time_factor:g}"])
+        self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
+        self._wait("the simulator", lambda: _answers(simulator.simulated_time))
+        self._start, self._by_wheels = options.house.start, None
+        self.use_odometry(by_wheels=True)
+        self.watch.start()
+        self._wait("the robot in the simulator", lambda: self.watch.records.truth)
+        self._wait("the map and amcl", lambda: self.watch.map is not None
+                   and self._told.get_num_connections() and self.watch.records.believed)
+
+    @property
+    def now(self) -> float:
+        """s, simulated."""
+        return self.watch.records.now
+
+    @property
+    def may_go_on(self) -> bool:
+        """Whether the robot, going straight on, stays on the map: it ends where the house does."""
+        truth = self.watch.records.truth
+        if not truth:
+            return True
+        _, x, y, yaw = truth[-1]
+        point = np.array([x + FENCE * np.cos(yaw), y + FENCE * np.sin(yaw)])
+        walls = self._ground.walls
+        return bool(walls.contains(walls.cells_of(point)))
+
+    def use_odometry(self, by_wheels: bool) -> None:
+        """A new robot, if need be: with the wheels' odometry, or the true one, as TurtleBot3's.
+
+        The true one would tell amcl whereto the robot is carried.
+        """
+        if self._by_wheels == by_wheels:
+            return
+        urdf = self._wait("the robot's description",
+                          lambda: rospy.get_param("/robot_description", ""))
+        if TRUE not in urdf:
+            raise RunError(f"/robot_description has no {TRUE}/odometrySource>: a kidnapped robot's "
+                           "odometry must not know of it")
+        if self._by_wheels is not None:
+            simulator.delete(ROBOT)
+        simulator.spawn_urdf(ROBOT, urdf.replace(TRUE, ENCODER) if by_wheels else urdf, "/",
+                             *self._start[:2])
+        self._by_wheels = by_wheels
+        self.watch.feelers = self._ground.feelers(urdf)
+
+    def put(self, place: np.ndarray) -> None:
+        """The robot stands at a pose (3,) in the world; its wheels know nothing of it."""
+        state = ModelState(model_name=ROBOT, pose=pose_message(tuple(place.tolist())),
+                           reference_frame="world")
+        self._call("/gazebo/set_model_state", SetModelState, state)
+        self.watch.begin()
+        self._wait("the robot in its place", lambda: self.watch.records.truth and np.linalg.norm(
+            self.watch.records.true_pose[:2] - place[:2]) < 0.2)
+
+    def tell(self, place: np.ndarray) -> None:
+        """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id = MAP
+        message.header.stamp = rospy.Time.from_sec(self.now)
+        message.pose.pose = pose_message(tuple(place.tolist()))
+        message.pose.covariance = [TOLD_VARIANCES.get(k, 0.0) for k in range(36)]
+        self._told.publish(message)
+
+    def forget(self) -> None:
+        """The robot may be anywhere."""
+        self._call("/global_localization", Empty)
+
+    def look(self, part: str, what: str) -> None:
+        """Waits a little, checks that all goes on, shows how things stand."""
+        before, began = self.now, time.monotonic()
+        while True:
+            time.sleep(LOOK_PERIOD)
+            self._launched.check(self.now)
+            if self.now > before:
+                break
+            if time.monotonic() - began > STILL_LIMIT:
+                raise RunError(f"no news of the robot for {STILL_LIMIT:.0f} s: the simulator hangs",
+                               self._launched.tail())
+        self._progress.show(part, what, self.watch.records)
+
+    def set_pace(self, factor: float) -> None:
+        """So many simulated seconds a second."""
+        now = self._call("/gazebo/get_physics_properties", GetPhysicsProperties)
+        self._call("/gazebo/set_physics_properties", SetPhysicsProperties,
+                   SetPhysicsPropertiesRequest(now.time_step, factor / now.time_step, now.gravity,
+                                               now.ode_config))
+
+    def set_particles(self, count: int) -> None:
+        """amcl has so many, never fewer."""
+        names = "min_particles", "max_particles"
+        answer = self._call("/amcl/set_parameters", Reconfigure,
+                            Config(ints=[IntParameter(name, count) for name in names]))
+        taken = {each.name: each.value for each in answer.config.ints}
+        if any(taken.get(name) != count for name in names):
+            raise RunError(f"amcl does not take {count} for {' and '.join(names)}")
+
+    @staticmethod
+    def cpu() -> float:
+        """s of processor time of amcl since its start."""
+        return sum(process.cpu for process in processes() if process.name == "amcl")
+
+    def _wait(self, what: str, condition: Callable[[], object]) -> object:
+        until = time.monotonic() + START_LIMIT
+        while not (value := condition()):
+            self._launched.check(None)
+            self._progress.status(f"waiting for {what}")
+            if time.monotonic() > until:
+                raise RunError(f"{what} was not there within {START_LIMIT:.0f} s",
+                               self._launched.tail())
+            time.sleep(LOOK_PERIOD)
+        return value
+
+    @staticmethod
+    def _call(name: str, kind: type, *arguments: object) -> object:
+        try:
+            rospy.wait_for_service(name, STILL_LIMIT)
+            answer = rospy.ServiceProxy(name, kind)(*arguments)
+        except simulator.FAILURES as error:
+            raise RunError(f"service {name}: {error}") from error
+        if not getattr(answer, "success", True):
+            raise RunError(f"service {name}: {answer.status_message}")
+        return answer
+
+
+def _answers(question: Callable[[], object]) -> bool:
+    try:
+        question()
+    except RunError:
+        return False
+    return True
