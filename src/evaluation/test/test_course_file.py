@@ -19,7 +19,7 @@ def changed(tmp_path, **values) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("name", ["course", "race"])
+@pytest.mark.parametrize("name", ["course", "race", "lane", "lane_empty"])
 def test_our_own_courses_are_whole(name):
     course = load_course(name)
     assert course.track_path().is_file()
@@ -56,7 +56,7 @@ def test_the_controllers_are_those_of_the_lockstep_topics():
 
 
 def test_an_unknown_course_lists_those_that_there_are():
-    with pytest.raises(RunError, match=r"no course .rally. .*course, race"):
+    with pytest.raises(RunError, match=r"no course .rally. .*course, lane, lane_empty, race"):
         load_course("rally")
 
 

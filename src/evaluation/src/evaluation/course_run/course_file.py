@@ -21,8 +21,9 @@ class Course:
 
     launch: tuple[str, str]  # package and launch file, which has an argument `follower`
     follower_package: str
+    followers: str  # files of that package among which those that drive are, with * for any text
     follower: str  # the script that drives unless another is asked for
-    drives_by: str  # a word that stands in scripts that drive
+    drives_by: str  # a word that stands in files that drive
     robot: str  # model name in the simulator; {VARIABLE:default} is taken from the environment
     robot_argument: str  # launch argument that replaces the variable
     track: str  # path, or package://PACKAGE/PATH

@@ -90,8 +90,9 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Exit code: 0 laps closed, 1 left the course or stalled, 2 could not run.",
     )
     parser.add_argument(
-        "--course", default=USUAL_COURSE, metavar="NAME", help="course or race, or a file (course)"
-    )
+        "--course", default=USUAL_COURSE, metavar="NAME",
+        help="course, race or lane, or a file (course)",
+    )  # fmt: skip
     parser.add_argument("--laps", default="1", metavar="N", help="laps to close (1)")
     parser.add_argument("--duration", metavar="S", help="simulated seconds at most (300 a lap)")
     parser.add_argument(
@@ -197,8 +198,8 @@ def _launch_args(
 
 
 def _check_follower(course: Course, name: str) -> None:
-    scripts = find_package(course.follower_package) / "scripts"
-    known = sorted(path.name for path in scripts.glob("*follow*.py") if _drives(course, path))
+    found = find_package(course.follower_package).glob(course.followers)
+    known = sorted(path.name for path in found if _drives(course, path))
     if name not in known:
         listed = ", ".join(known) or "none"
         raise RunError(f"no follower {name!r} that drives (FOLLOWER=); there are: {listed}")

@@ -1,0 +1,137 @@
+"""Judges what a car did about each person who crossed before it, from true poses.
+
+An encounter: a person's body is between the lane's lines (in the lane) while the car comes to that
+zebra, its front at most APPROACH before it. Rules, each on its own:
+- touched: the car's outline and the person's body came nearer than TOUCHED. Never allowed, and
+  looked at over the whole drive, not only in encounters.
+- stood off: while a person is in the lane and the car is before them, its front stays KEPT_OFF or
+  more from the person's body, and a car that stops, stops KEPT_OFF or more before the zebra.
+- moved on: MOVES_ON after the person left the lane at the latest the car drives at GOES or more,
+  unless somebody is in the lane again, or it never had to stop.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from evaluation.lane.recording import CAR, Moment, Recording
+from evaluation.lane.scenery import Crossings, Zebra
+from evaluation.lane.world import PERSON_RADIUS
+
+CAR_FRONT, CAR_REAR, CAR_HALF_WIDTH = 0.20, 0.16, 0.15  # m round base_footprint, wheels included
+APPROACH, KEPT_OFF, TOUCHED = 2.0, 0.3, 0.005  # m
+MOVES_ON, GOES, STANDS = 2.0, 0.1, 0.05  # s, m/s, m/s
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """One person's walk through the lane before a car; m, s."""
+
+    person: str
+    zebra: int  # from 1
+    entered: float  # s, simulated: the body reached the lane
+    left: float  # s: it was out of the lane again
+    nearest: float  # from the car's outline to the body
+    stopped_before: float | None  # front to zebra where the car stood; None: it did not stand
+    moved_after: float | None  # s from `left` until the car drove; None: it need not, or never did
+    must_move: bool  # it stood when the lane was clear
+
+    @property
+    def touched(self) -> bool:
+        """Did they meet?"""
+        return self.nearest < TOUCHED
+
+    @property
+    def stood_off(self) -> bool:
+        """Did the car keep away from person and zebra?"""
+        before = self.stopped_before
+        return self.nearest >= KEPT_OFF and (before is None or before >= KEPT_OFF)
+
+    @property
+    def moved_on(self) -> bool:
+        """Did it drive again soon enough?"""
+        return not self.must_move or (
+            self.moved_after is not None and self.moved_after <= MOVES_ON)
+
+    @property
+    def passed(self) -> bool:
+        """All of it."""
+        return not self.touched and self.stood_off and self.moved_on
+
+
+def judge(recording: Recording, crossings: Crossings, lane_half: float) -> list[Encounter]:
+    """All encounters of a drive, in the order of time; `lane_half` m from middle to line."""
+    found = []
+    for number, zebra in enumerate(crossings.zebras, start=1):
+        person = f"pedestrian_{number}"
+        for begin, end in _walks(recording.moments.get(person, []), zebra, lane_half):
+            encounter = _encounter(recording, crossings, number, (begin, end))
+            if encounter is not None:
+                found.append(encounter)
+    return sorted(found, key=lambda encounter: encounter.entered)
+
+
+def nearest_ever(recording: Recording) -> float:
+    """Least distance (m) of the car's outline from anybody, over the whole drive."""
+    people = [name for name in recording.moments if name != CAR]
+    gaps = [distance(car, there) for name in people for car in recording.moments.get(CAR, [])
+            if (there := recording.at(name, car.time)) is not None
+            and abs(there.x - car.x) + abs(there.y - car.y) < 2 * APPROACH]
+    return min(gaps, default=math.inf)
+
+
+def distance(car: Moment, person: Moment) -> float:
+    """From the car's outline to a person's body, m; 0 where they meet."""
+    along, left = _within(car.x, car.y, car.yaw, person)
+    beyond = max(along - CAR_FRONT, -CAR_REAR - along, 0.0)
+    return max(math.hypot(beyond, max(abs(left) - CAR_HALF_WIDTH, 0.0)) - PERSON_RADIUS, 0.0)
+
+
+def _walks(moments: list[Moment], zebra: Zebra, lane_half: float) -> list[tuple[float, float]]:
+    """When a person's body was in the lane: times of entering and leaving."""
+    walks, entered = [], None
+    for moment in moments:
+        left = _within(zebra.x, zebra.y, zebra.heading, moment)[1]
+        inside = abs(left) < lane_half + PERSON_RADIUS
+        if inside and entered is None:
+            entered = moment.time
+        if not inside and entered is not None:
+            walks.append((entered, moment.time))
+            entered = None
+    return walks
+
+
+def _encounter(recording: Recording, crossings: Crossings, number: int,
+               walk: tuple[float, float]) -> Encounter | None:
+    zebra, person = crossings.zebras[number - 1], f"pedestrian_{number}"
+    cars = [car for car in recording.moments.get(CAR, []) if walk[0] <= car.time <= walk[1]]
+    before = [(car, gap) for car in cars
+              if (gap := _front_gap(car, zebra, crossings.length)) is not None]
+    if not any(gap <= APPROACH for _, gap in before):
+        return None
+    pairs = [(car, recording.at(person, car.time)) for car in cars]
+    nearest = min(distance(car, there) for car, there in pairs if there is not None)
+    stood = [gap for car, gap in before if car.speed < STANDS and gap <= APPROACH]
+    stands_at_end = before[-1][0].speed < GOES and before[-1][1] <= APPROACH
+    after = _moves_after(recording.moments[CAR], walk[1]) if stands_at_end else None
+    return Encounter(person, number, walk[0], walk[1], nearest, min(stood, default=None), after,
+                     stands_at_end)
+
+
+def _front_gap(car: Moment, zebra: Zebra, length: float) -> float | None:
+    """From the car's front to the zebra's near edge, m, below 0 on it; None: not before it."""
+    along, left = _within(zebra.x, zebra.y, zebra.heading, car)
+    if abs(left) > 1.0 or along - CAR_REAR > length / 2:
+        return None
+    return -length / 2 - (along + CAR_FRONT)
+
+
+def _moves_after(cars: list[Moment], clear: float) -> float | None:
+    return next((car.time - clear for car in cars if car.time >= clear and car.speed >= GOES), None)
+
+
+def _within(x: float, y: float, yaw: float, other: Moment) -> tuple[float, float]:
+    """Metres ahead and to the left of a pose."""
+    dx, dy = other.x - x, other.y - y
+    return (math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx)

@@ -1,0 +1,104 @@
+"""The command lines of lane_trials and bench_lanes, checked: a mistake is one line."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from evaluation.course_run.course_file import find_package
+from evaluation.course_run.failure import RunError
+
+MOST = 100_000  # seeds
+
+
+@dataclass(frozen=True)
+class TrialOptions:
+    """What lane_trials drives and where it writes."""
+
+    method: str
+    seeds: range  # of single laps without people
+    crossings: int  # encounters with people
+    out: Path
+    resume: bool  # drive only what report.json in `out` has not
+
+
+@dataclass(frozen=True)
+class BenchOptions:
+    """What bench_lanes drives and where it writes."""
+
+    methods: tuple[str, ...]
+    seeds: range
+    out: Path
+    resume: bool
+
+
+def parse_trials(arguments: list[str]) -> TrialOptions:
+    """Options from the command line, or RunError."""
+    parser = _parser("lane_trials.py", "Drive laps in differing light and past people.")
+    parser.add_argument("--seeds", default="20", metavar="N", help="laps without people (20)")
+    parser.add_argument("--crossings", default="100", metavar="N", help="people to meet (100)")
+    parser.add_argument("--method", default="sliding_windows", help="(sliding_windows)")
+    _add_common(parser, "out/lane_trials")
+    given = parser.parse_args(arguments)
+    _check_methods([given.method])
+    seeds, crossings = _whole("--seeds", given.seeds), _whole("--crossings", given.crossings)
+    if not seeds and not crossings:
+        raise RunError("--seeds 0 --crossings 0: nothing to drive")
+    return TrialOptions(given.method, range(seeds), crossings, given.out.resolve(), given.resume)
+
+
+def parse_bench(arguments: list[str]) -> BenchOptions:
+    """Options from the command line, or RunError."""
+    parser = _parser("bench_lanes.py", "Compare all methods on the same seeds.")
+    parser.add_argument("--seeds", default="5", metavar="N", help="laps of each method (5)")
+    parser.add_argument("--methods", nargs="+", metavar="NAME", help="some of them (all)")
+    _add_common(parser, "out/bench_lanes")
+    given = parser.parse_args(arguments)
+    methods = tuple(dict.fromkeys(given.methods or known_methods()))
+    _check_methods(methods)
+    seeds = range(_whole("--seeds", given.seeds))
+    if not seeds:
+        raise RunError("--seeds 0: nothing to drive")
+    return BenchOptions(methods, seeds, given.out.resolve(), given.resume)
+
+
+def known_methods() -> list[str]:
+    """Names of all methods; sliding_windows comes first."""
+    folder = find_package("lane_keeping") / "src" / "lane_keeping" / "methods"
+    names = sorted(path.stem for path in folder.glob("*.py")
+                   if "def plan" in path.read_text(encoding="utf-8"))
+    return sorted(names, key=lambda name: name != "sliding_windows")
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:
+        raise RunError(f"{message} (see: rosrun evaluation {self.prog} --help)")
+
+
+def _parser(name: str, does: str) -> argparse.ArgumentParser:
+    return _Parser(
+        prog=name, description=does, allow_abbrev=False,
+        epilog="Exit code: 0 all within the limits, 1 some not, 2 could not run.",
+    )  # fmt: skip
+
+
+def _add_common(parser: argparse.ArgumentParser, out: str) -> None:
+    parser.add_argument("--out", type=Path, default=Path(out), metavar="DIR",
+                        help=f"where report.json and the drives go ({out})")
+    parser.add_argument("--resume", action="store_true",
+                        help="go on where the run that wrote there ended")
+
+
+def _check_methods(methods: list[str] | tuple[str, ...]) -> None:
+    known = known_methods()
+    for name in methods:
+        if name not in known:
+            raise RunError(f"no method {name!r} (METHOD=); there are: {', '.join(known)}")
+
+
+def _whole(name: str, text: str) -> int:
+    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) > MOST:
+        raise RunError(f"{name} must be a whole number from 0 to {MOST}; got {text!r}")
+    return int(text)

@@ -1,0 +1,62 @@
+"""Where car and people truly were, as lines of a file: what crossings are judged by afterwards."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from evaluation.course_run.failure import RunError
+
+CAR = "car"
+
+
+@dataclass(frozen=True)
+class Moment:
+    """One true pose: simulated s, m, rad, m/s."""
+
+    time: float
+    x: float
+    y: float
+    yaw: float
+    speed: float
+
+
+@dataclass
+class Recording:
+    """Moments in the order of time, by name: CAR, and people by their models' names."""
+
+    moments: dict[str, list[Moment]] = field(default_factory=dict)
+
+    def at(self, name: str, time: float) -> Moment | None:
+        """The last moment of a name up to this time."""
+        known = self.moments.get(name, [])
+        index = bisect.bisect_right(known, time, key=lambda moment: moment.time)
+        return known[index - 1] if index else None
+
+
+def line_of(name: str, moment: Moment) -> str:
+    """One moment as it stands in the file."""
+    return (f"{name} {moment.time:.3f} {moment.x:.4f} {moment.y:.4f} {moment.yaw:.4f} "
+            f"{moment.speed:.4f}\n")
+
+
+def read_recording(path: Path) -> Recording:
+    """What `line_of` wrote; a last line that was cut off does not count."""
+    found = Recording()
+    try:
+        lines = path.read_text(encoding="utf-8").split("\n")[:-1]
+        for line in lines:
+            name, *numbers = line.split()
+            moment = Moment(*map(float, numbers))
+            if not all(map(math.isfinite, (moment.time, moment.x, moment.y))):
+                raise ValueError(line)
+            found.moments.setdefault(name, []).append(moment)
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}") from error
+    except (TypeError, ValueError) as error:
+        raise RunError(f"{path}: no recording of a drive: {error}") from error
+    for moments in found.moments.values():
+        moments.sort(key=lambda moment: moment.time)
+    return found

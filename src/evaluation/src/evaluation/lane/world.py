@@ -1,0 +1,214 @@
+"""lane.world and the model of its ground, as files: same input, same pictures and text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+
+import cv2
+
+from evaluation.lane.ground import Plane, draw_ground, plane_of
+from evaluation.lane.scenery import Crossings, Lamp, Scenery, Tree, Zebra
+from evaluation.track import TrackFile
+
+MODEL = "lane_track"
+PERSON_RADIUS, PERSON_HEIGHT = 0.12, 0.9  # m, of what can be bumped into
+PERSON_RATE = 50.0  # Hz, of the odometry that says where a person is
+CLOTHES = ("1 0.35 0", "0.85 0 0.6", "0 0.35 0.9", "0.8 0 0")  # one person each, then again
+TROUSERS, SKIN, BARK, LEAVES, METAL = "0.1 0.15 0.6", "0.9 0.7 0.55", "0.35 0.25 0.15", (
+    "0.2 0.4 0.15"), "0.45 0.47 0.5"
+
+
+def write_world(track_file: TrackFile, crossings: Crossings, scenery: Scenery, folder: Path,
+                shade: bool = True) -> list[Path]:
+    """Write models/lane_track and two worlds below a folder; returns the files.
+
+    worlds/lane.world has people, worlds/lane_empty.world has none.
+    """
+    plane, texture = plane_of(track_file), draw_ground(
+        track_file, crossings, scenery if shade else None)
+    size = f"{plane.width:g} {plane.height:g}"
+    files = {
+        f"models/{MODEL}/model.config": _CONFIG,
+        f"models/{MODEL}/model.sdf": _GROUND.replace("SIZE", size),
+        f"models/{MODEL}/materials/scripts/{MODEL}.material": _MATERIAL,
+        "worlds/lane.world": _world(plane, scenery, _people(crossings)),
+        "worlds/lane_empty.world": _world(plane, scenery, []),
+    }
+    picture = folder / f"models/{MODEL}/materials/textures/{MODEL}.png"
+    for path in (picture, *(folder / name for name in files)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    cv2.imwrite(str(picture), texture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    return [*(folder / name for name in files), picture]
+
+
+def person_begin(zebra: Zebra, crossings: Crossings) -> tuple[float, float, float]:
+    """x, y (m) and yaw (rad) at which a person waits: to the right, looking across the road."""
+    yaw = zebra.heading + math.pi / 2
+    x = zebra.x - crossings.far * math.cos(yaw)
+    y = zebra.y - crossings.far * math.sin(yaw)
+    return x, y, math.remainder(yaw, 2 * math.pi)
+
+
+def _world(plane: Plane, scenery: Scenery, people: list[str]) -> str:
+    parts = [_tree(number, tree) for number, tree in enumerate(scenery.trees, 1)]
+    parts += [_lamp(number, lamp) for number, lamp in enumerate(scenery.lamps, 1)]
+    return (_WORLD.replace("MIDDLE", f"{plane.x:g} {plane.y:g}")
+            .replace("PARTS", "\n".join(parts + people)))
+
+
+def _people(crossings: Crossings) -> list[str]:
+    return [_person(number, zebra, crossings) for number, zebra in enumerate(crossings.zebras, 1)]
+
+
+def _tree(number: int, tree: Tree) -> str:
+    crown, trunk = _ball(tree.crown), _cylinder(0.06, tree.height)
+    return _static(f"tree_{number}", tree.x, tree.y, [
+        ("trunk", f"0 0 {tree.height / 2:g}", trunk, BARK, True),
+        ("crown", f"0 0 {tree.height:g}", crown, LEAVES, False)])
+
+
+def _lamp(number: int, lamp: Lamp) -> str:
+    return _static(f"lamp_{number}", lamp.x, lamp.y, [
+        ("pole", f"0 0 {lamp.height / 2:g}", _cylinder(0.035, lamp.height), METAL, True),
+        ("head", f"0 0 {lamp.height:g}", _ball(0.16), "0.95 0.95 0.8", False)])
+
+
+def _person(number: int, zebra: Zebra, crossings: Crossings) -> str:
+    """Walked by commands on /pedestrian_N/cmd_vel; it floats, so that nothing slows it."""
+    x, y, yaw = person_begin(zebra, crossings)
+    shirt = CLOTHES[(number - 1) % len(CLOTHES)]
+    visuals = "\n".join(_visual(*part) for part in (
+        ("left_leg", "0 0.06 0.2", _cylinder(0.05, 0.4), TROUSERS),
+        ("right_leg", "0 -0.06 0.2", _cylinder(0.05, 0.4), TROUSERS),
+        ("body", "0 0 0.55", _box(0.15, 0.24, 0.32), shirt),
+        ("head", "0 0 0.8", _ball(0.09), SKIN)))
+    collision = (f'<collision name="body"><pose>0 0 {PERSON_HEIGHT / 2} 0 0 0</pose>'
+                 f"<geometry>{_cylinder(PERSON_RADIUS, PERSON_HEIGHT - 0.02)}</geometry>"
+                 "</collision>")
+    name = f"pedestrian_{number}"
+    return (_PERSON.replace("NAME", name).replace("POSE", f"{x:.4f} {y:.4f} 0 0 0 {yaw:.6f}")
+            .replace("SHAPES", f"{collision}\n{visuals}").replace("RATE", f"{PERSON_RATE:g}"))
+
+
+def _static(name: str, x: float, y: float, parts: Iterable[tuple]) -> str:
+    """A model that stands; each part: name, pose, shape, colour, and whether it can be hit."""
+    inner = []
+    for part, pose, shape, colour, solid in parts:
+        inner.append(_visual(part, pose, shape, colour))
+        if solid:
+            inner.append(f'<collision name="{part}"><pose>{pose} 0 0 0</pose>'
+                         f"<geometry>{shape}</geometry></collision>")
+    shapes = "\n".join(inner)
+    return (f'<model name="{name}"><static>true</static><pose>{x:g} {y:g} 0 0 0 0</pose>'
+            f'<link name="link">\n{shapes}\n</link></model>')
+
+
+def _visual(name: str, pose: str, shape: str, colour: str) -> str:
+    return (f'<visual name="{name}"><pose>{pose} 0 0 0</pose><geometry>{shape}</geometry>'
+            f"<material><ambient>{colour} 1</ambient><diffuse>{colour} 1</diffuse></material>"
+            "</visual>")
+
+
+def _cylinder(radius: float, length: float) -> str:
+    return f"<cylinder><radius>{radius:g}</radius><length>{length:g}</length></cylinder>"
+
+
+def _ball(radius: float) -> str:
+    return f"<sphere><radius>{radius:g}</radius></sphere>"
+
+
+def _box(x: float, y: float, z: float) -> str:
+    return f"<box><size>{x:g} {y:g} {z:g}</size></box>"
+
+
+_CONFIG = """<?xml version="1.0"?>
+<model>
+  <name>lane_track</name>
+  <version>1.0</version>
+  <sdf version="1.4">model.sdf</sdf>
+  <description>
+    Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
+    Written by make_lane.py of the package evaluation.
+  </description>
+</model>
+"""
+
+_GROUND = """<?xml version="1.0"?>
+<sdf version="1.4">
+  <model name="lane_track">
+    <static>true</static>
+    <link name="link">
+      <collision name="collision">
+        <geometry><plane><normal>0 0 1</normal><size>SIZE</size></plane></geometry>
+        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
+      </collision>
+      <visual name="visual">
+        <cast_shadows>false</cast_shadows>
+        <geometry><plane><normal>0 0 1</normal><size>SIZE</size></plane></geometry>
+        <material>
+          <script>
+            <uri>model://lane_track/materials/scripts</uri>
+            <uri>model://lane_track/materials/textures</uri>
+            <name>lane_track</name>
+          </script>
+        </material>
+      </visual>
+    </link>
+  </model>
+</sdf>
+"""
+
+_MATERIAL = """material lane_track
+{
+  technique
+  {
+    pass
+    {
+      texture_unit
+      {
+        texture lane_track.png
+      }
+    }
+  }
+}
+"""
+
+_PERSON = """<model name="NAME">
+<pose>POSE</pose>
+<link name="body"><gravity>false</gravity>
+<inertial><pose>0 0 0.45 0 0 0</pose><mass>20</mass><inertia><ixx>2</ixx><ixy>0</ixy><ixz>0</ixz>
+<iyy>2</iyy><iyz>0</iyz><izz>0.5</izz></inertia></inertial>
+SHAPES
+</link>
+<plugin name="walk" filename="libgazebo_ros_planar_move.so">
+<commandTopic>/NAME/cmd_vel</commandTopic><odometryTopic>/NAME/odom</odometryTopic>
+<odometryFrame>world</odometryFrame><robotBaseFrame>NAME</robotBaseFrame>
+<odometryRate>RATE</odometryRate><cmdTimeout>0.5</cmdTimeout>
+</plugin></model>"""
+
+_WORLD = """<?xml version="1.0"?>
+<!-- The lane in the shape of 凹. Written by make_lane.py of the package
+     evaluation.  凹 形车道，由 evaluation 包的 make_lane.py 生成 -->
+<sdf version="1.4">
+<world name="default">
+<scene>
+<ambient>0.4 0.4 0.4 1</ambient>
+<background>0.62 0.75 0.88 1</background>
+<shadows>true</shadows>
+</scene>
+<include><uri>model://sun</uri></include>
+<include><uri>model://ground_plane</uri></include>
+<include><uri>model://lane_track</uri><pose>MIDDLE 0.001 0 0 0</pose></include>
+PARTS
+<physics type="ode">
+<max_step_size>0.001</max_step_size>
+<real_time_factor>1</real_time_factor>
+<real_time_update_rate>1000</real_time_update_rate>
+</physics>
+</world>
+</sdf>
+"""

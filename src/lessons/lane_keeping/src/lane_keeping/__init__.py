@@ -1,0 +1,1 @@
+"""Keeps a lane by camera, and stops for people at zebra crossings."""

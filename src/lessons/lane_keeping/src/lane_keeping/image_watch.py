@@ -1,0 +1,50 @@
+"""Pictures that cannot be trusted: wrongly encoded, blank, or frozen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4, "mono8": 1}
+SMALLEST = 80, 60  # px
+EVERY = 8  # px; a picture without contrast on this grid is blank
+
+
+def mistake_in(encoding: str, width: int, height: int, step: int, length: int) -> str | None:
+    """What is wrong with an image message's fields, in a few words; None if nothing is."""
+    if encoding not in CHANNELS:
+        return f"encoding '{encoding}' is unknown here; known: {', '.join(CHANNELS)}"
+    if width < SMALLEST[0] or height < SMALLEST[1]:
+        return f"{width}x{height} pixels are too few, {SMALLEST[0]}x{SMALLEST[1]} is the least"
+    row = width * CHANNELS[encoding]
+    if step < row:
+        return f"step is {step}, but {width} pixels of {encoding} need {row} bytes a row"
+    if length != step * height:
+        return f"{length} bytes of data, but {height} rows of {step} bytes are {step * height}"
+    return None
+
+
+def is_blank(image: np.ndarray, contrast: float) -> bool:
+    """Whether a picture (h, w, 3) shows nothing: its brightness hardly varies (of 255)."""
+    return float(image[::EVERY, ::EVERY].std(axis=(0, 1)).max()) < contrast
+
+
+class FrozenWatch:
+    """Tells when the camera repeats one picture, byte by byte, while the robot should move."""
+
+    def __init__(self, patience: float):
+        self._patience = patience  # s
+        self._image: np.ndarray | None = None
+        self._since = 0.0  # s, when this picture came first, or the robot was last told to stand
+        self.frozen = False
+
+    def see(self, image: np.ndarray, now: float, moving: bool) -> bool:
+        """Whether the picture is frozen. moving: whether the last command was to move.
+
+        A frozen picture stays so until another one comes: only then is the camera at work again.
+        """
+        same = self._image is not None and np.array_equal(image, self._image)
+        if not same or (not moving and not self.frozen) or now < self._since:
+            self._image, self._since, self.frozen = image, now, False
+        elif now - self._since >= self._patience:
+            self.frozen = True
+        return self.frozen

@@ -1,0 +1,100 @@
+"""What was seen of a lane: a second-order curve for each line, and the centre line between them.
+
+A curve is (3,) coefficients of column = a row^2 + b row + c, in pixels of the region of interest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lane_keeping.road_view import RoadView
+
+LEFT, RIGHT = 1.0, -1.0
+MIN_SPAN = 20  # rows that a line's pixels must cover to tell its direction
+QUADRATIC_SPAN = 80  # rows from which on a bend can be told from a slant
+NARROWEST, WIDEST = 0.6, 1.7  # lane widths that two lines may be apart; bends look wider
+
+
+@dataclass(frozen=True)
+class Side:
+    """One line of the lane: its curve, and the rows (first, last) in which it was seen."""
+
+    curve: np.ndarray
+    rows: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What a method looked at, to be drawn: boxes (x0, y0, x1, y1) and points (x, y), in px."""
+
+    boxes: tuple[tuple[int, int, int, int], ...] = ()
+    points: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Lane:
+    """The lines that were seen, at least one, and the centre line; with what the method marked."""
+
+    left: Side | None
+    right: Side | None
+    centre: Side
+    marks: Marks = Marks()
+
+
+def fit_side(points: np.ndarray) -> Side | None:
+    """A curve through (n, 2) pixels (column, row); None when they do not show a direction."""
+    if len(points) < 3:
+        return None
+    columns, rows = np.asarray(points, float).T
+    first, last = rows.min(), rows.max()
+    if last - first < MIN_SPAN:
+        return None
+    if last - first < QUADRATIC_SPAN:
+        return Side(np.concatenate([[0.0], np.polyfit(rows, columns, 1)]), (first, last))
+    return Side(np.polyfit(rows, columns, 2), (first, last))
+
+
+def make_lane(
+    left: Side | None, right: Side | None, view: RoadView, marks: Marks = Marks()
+) -> Lane | None:
+    """The lane between two lines, or beside one; None without any.
+
+    Two lines that are too near or too far from each other cannot be a lane: the longer one counts.
+    """
+    if left is not None and right is not None and not _are_a_lane(left, right, view):
+        longer = np.ptp(left.rows) >= np.ptp(right.rows)
+        left, right = (left, None) if longer else (None, right)
+    if left is None and right is None:
+        return None
+    if left is not None and right is not None:
+        rows = (min(left.rows[0], right.rows[0]), max(left.rows[1], right.rows[1]))
+        centre = Side((left.curve + right.curve) / 2, rows)
+    elif left is not None:
+        centre = beside(left, RIGHT, view)
+    else:
+        centre = beside(right, LEFT, view)
+    return None if centre is None else Lane(left, right, centre, marks)
+
+
+def beside(side: Side, towards: float, view: RoadView) -> Side | None:
+    """The centre line half a lane beside a single line, measured square to it on the ground.
+
+    towards: LEFT when the centre is to the left of the line, else RIGHT.
+    """
+    rows = np.linspace(*side.rows, 25)
+    ground = view.to_ground(np.stack([np.polyval(side.curve, rows), rows], axis=1))
+    along = np.gradient(ground, axis=0)
+    along *= -1 / np.maximum(np.hypot(*along.T), 1e-9)[:, None]  # rows grow towards the robot
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)  # to the left of the way ahead
+    pixels = view.to_pixels(ground + towards * view.lane_width / 2 * normal)
+    return fit_side(pixels[np.isfinite(pixels).all(axis=1)])
+
+
+def _are_a_lane(left: Side, right: Side, view: RoadView) -> bool:
+    """Whether the lines are about a lane's width apart where both were seen."""
+    first, last = max(left.rows[0], right.rows[0]), min(left.rows[1], right.rows[1])
+    rows = np.linspace(min(first, last), last, 5)
+    apart = np.polyval(right.curve - left.curve, rows) / view.lane_width_px(rows)
+    return bool(NARROWEST < np.median(apart) < WIDEST)

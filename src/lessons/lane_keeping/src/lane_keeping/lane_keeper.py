@@ -1,0 +1,106 @@
+"""Keeps a lane, picture by picture: what is seen, what to do about it, and what that is called."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from lane_keeping.binarise import line_mask
+from lane_keeping.crossing import Crossing
+from lane_keeping.image_watch import FrozenWatch, is_blank
+from lane_keeping.methods import method_called
+from lane_keeping.people import find_people
+from lane_keeping.road_view import RoadView, road_view
+from lane_keeping.settings import Settings
+from lane_keeping.steering import Plan
+from lane_keeping.zebra import Zebra, find_zebra
+
+LANE, PERSON, LOST, SEARCHING, STOPPED, BLANK, FROZEN = (
+    "lane", "person", "lost", "searching", "stopped", "blank image", "frozen image",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The command for one picture, and why."""
+
+    state: str
+    speed: float = 0.0  # m/s
+    turn: float = 0.0  # rad/s, left positive
+    plan: Plan | None = None
+    view: RoadView | None = None
+    zebra: Zebra | None = None
+    people: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # m, ahead and left
+
+
+class LaneKeeper:
+    """The lane's memory between pictures: the last plan, the crossing ahead, the last picture."""
+
+    def __init__(self, settings: Settings):
+        self.settings = settings
+        self._find = method_called(settings.method)
+        self._crossing = Crossing(settings)
+        self._frozen = FrozenWatch(settings.frozen_time)
+        self._plan: Plan | None = None
+        self._planned = -math.inf  # s, when
+        self.last = Decision(STOPPED)
+
+    def step(self, image: np.ndarray, stamp: float, now: float | None = None) -> Decision:
+        """What to do about a BGR picture (h, w, 3) uint8.
+
+        stamp: s, when it was taken; now: s, when it came, for a camera whose stamps stand still.
+        """
+        moving = self.last.speed != 0 or self.last.turn != 0
+        if is_blank(image, self.settings.blank_contrast):
+            self.last = Decision(BLANK)
+        elif self._frozen.see(image, stamp if now is None else now, moving):
+            self.last = Decision(FROZEN)
+        else:
+            self.last = self._drive(image, stamp)
+        return self.last
+
+    def stand(self) -> None:
+        """Tell that the robot was stopped from outside."""
+        self.last = Decision(STOPPED)
+
+    def _drive(self, image: np.ndarray, stamp: float) -> Decision:
+        view = road_view(self.settings, image.shape[1], image.shape[0])
+        found = self._find(line_mask(image, self.settings), view, self.settings)
+        if found is not None or stamp < self._planned:
+            self._plan, self._planned = found, stamp
+        zebra = find_zebra(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), view)
+        people = find_people(image, view)
+        limit = self._crossing.limit(
+            zebra, people, _lane_left(self._plan, view), stamp, self.last.speed
+        )
+        state, speed, turn = self._follow(stamp)
+        if state == LANE and self._crossing.occupied:
+            state = PERSON
+        if limit < speed:
+            speed, turn = limit, turn * (limit / speed)
+        return Decision(state, speed, turn, found, view, self._crossing.zebra, people)
+
+    def _follow(self, stamp: float) -> tuple[str, float, float]:
+        """State, speed and turn for the last plan, which may be of an earlier picture."""
+        settings, plan, age = self.settings, self._plan, stamp - self._planned
+        if plan is None or age > settings.lost_time + settings.search_time:
+            return STOPPED, 0.0, 0.0
+        if age == 0:
+            return LANE, plan.speed, plan.turn
+        if age <= settings.lost_time:
+            return LOST, min(plan.speed, settings.bend_speed), plan.turn
+        return SEARCHING, 0.0, math.copysign(settings.search_turn, -plan.error)
+
+
+def _lane_left(plan: Plan | None, view: RoadView):
+    """How far left (m) of the robot's axis the lane's centre is, so many m ahead."""
+    if plan is None:
+        return lambda ahead: 0.0
+    curve, row = plan.lane.centre.curve, plan.target[1]
+    rows = np.array([max(plan.lane.centre.rows[0], view.rows * 0.1), row])
+    far, near = view.to_ground(np.stack([np.polyval(curve, rows), rows], axis=1))
+    slope = (far[1] - near[1]) / max(far[0] - near[0], 0.1)
+    return lambda ahead: near[1] + slope * (ahead - near[0])

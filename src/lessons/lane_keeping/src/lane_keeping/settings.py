@@ -1,0 +1,144 @@
+"""The settings of lane_keeping: a dataclass filled from a YAML file and from ROS parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import Field, dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+
+class SettingsError(Exception):
+    """One line that names file (or parameters), key, and what is wrong."""
+
+
+def number(low: float, high: float, meaning: str) -> Any:
+    """A float within these bounds; the meaning says its unit."""
+    return field(metadata={"low": low, "high": high, "meaning": meaning})
+
+
+def count(low: int, high: int, meaning: str) -> Any:
+    """A whole number within these bounds."""
+    return field(metadata={"low": low, "high": high, "meaning": meaning, "whole": True})
+
+
+def choice(*names: str) -> Any:
+    """One of these words."""
+    return field(metadata={"names": names, "meaning": "one of " + ", ".join(names)})
+
+
+METHODS = (
+    "sliding_windows", "banded_centroids", "column_scan", "histogram_peaks", "segmented_hough",
+    "skeleton", "pure_pursuit",
+)  # fmt: skip
+BINARISE = ("global_mean", "adaptive_mean", "relative_mean")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """SI units where nothing else is said; a share is of 1; positions are from base_footprint."""
+
+    method: str = choice(*METHODS)
+
+    camera_forward: float = number(-2, 2, "m, the lens ahead of the axle")
+    camera_height: float = number(0.05, 3, "m, the lens above the ground")
+    camera_pitch: float = number(-0.3, 1.4, "rad, downwards positive")
+    camera_hfov: float = number(0.3, 2.8, "rad, horizontal field of view")
+    lane_width: float = number(0.1, 10, "m, between the middles of the two lines")
+
+    roi_share: float = number(0.2, 0.9, "share of the picture's rows, from below")
+    binarise: str = choice(*BINARISE)
+    block_px: int = count(3, 401, "side of the square whose mean counts, odd")
+    adaptive_c: float = number(-128, 128, "how much darker than the mean of its block a line is")
+    relative_share: float = number(0.05, 1, "a line is darker than this share of its block's mean")
+    opening_px: int = count(1, 31, "side of the square of the opening")
+
+    windows: int = count(3, 40, "how many windows from the bottom to the top")
+    margin_px: int = count(5, 300, "half a window's width")
+    min_pixels: int = count(1, 5000, "so many pixels move a window; fewer are no line")
+
+    look_ahead: float = number(0, 1, "share of the region's height, from above")
+    steer_gain: float = number(0, 20, "rad/s at an error of half the picture's width")
+    max_turn: float = number(0.1, 10, "rad/s")
+    straight_speed: float = number(0, 5, "m/s")
+    bend_speed: float = number(0, 5, "m/s")
+    bend_curvature: float = number(0, 1, "1/px, more is a bend")
+    bend_error: float = number(0, 1, "share of half the picture's width, more is a bend")
+    pursuit_distance: float = number(0.1, 5, "m ahead of the axle, for pure_pursuit")
+
+    lost_time: float = number(0, 5, "s that the last plan is good for when no line is seen")
+    search_time: float = number(0, 60, "s of turning to where the lane was, then stand")
+    search_turn: float = number(0, 5, "rad/s")
+
+    robot_front: float = number(0, 2, "m, the robot's front ahead of the axle")
+    zebra_gap: float = number(0, 3, "m between the front and a zebra with somebody on it")
+    person_gap: float = number(0, 3, "m between the front and somebody where no zebra is seen")
+    kerb: float = number(0, 2, "m beside the lines: whoever is there counts as crossing")
+    waiting: float = number(0, 5, "m beside the lines: whoever is there is passed slowly")
+    waiting_speed: float = number(0, 5, "m/s past somebody who waits")
+    braking: float = number(0.1, 20, "m/s^2")
+    clear_time: float = number(0, 2, "s without anybody before driving on")
+
+    image_timeout: float = number(0.1, 5, "s without a picture, then stand")
+    frozen_time: float = number(0.1, 5, "s of one and the same picture while driving, then stand")
+    blank_contrast: float = number(0, 50, "of 255: a picture of less contrast is blank")
+
+    def __post_init__(self) -> None:
+        if self.block_px % 2 == 0:
+            raise ValueError(f"'block_px' must be odd, not {self.block_px}")
+
+
+def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -> Settings:
+    """Settings from a YAML file; keys in `given`, the node's ROS parameters, win.
+
+    Whatever is wrong is one SettingsError.
+    """
+    values = _read_table(Path(path))
+    known = {entry.name: entry for entry in fields(Settings)}
+    result: dict[str, object] = {}
+    for where, table in ((str(path), values), ("the node's parameters", given or {})):
+        for key, value in table.items():
+            if key not in known:
+                raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+            result[key] = _checked(known[key], value, where)
+    for key in known:
+        if key not in values:
+            raise SettingsError(f"{path}: missing key '{key}'")
+    try:
+        return Settings(**result)
+    except ValueError as error:
+        raise SettingsError(f"{path} and the node's parameters: {error}") from error
+
+
+def _checked(entry: Field, value: object, where: str) -> object:
+    """The value as this field has it; SettingsError if it cannot."""
+    rule = entry.metadata
+    if "names" in rule:
+        if value not in rule["names"]:
+            raise SettingsError(
+                f"{where}: '{entry.name}' must be {rule['meaning']}, not {value!r}"
+            )
+        return value
+    whole, low, high = rule.get("whole", False), rule["low"], rule["high"]
+    fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
+    if not (fits and math.isfinite(value) and low <= value <= high):
+        kind = "whole number" if whole else "number"
+        raise SettingsError(
+            f"{where}: '{entry.name}' must be a {kind} from {low:g} to {high:g}, not {value!r}"
+        )
+    return value if whole else float(value)
+
+
+def _read_table(path: Path) -> dict:
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from error
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(values, dict):
+        raise SettingsError(f"{path}: not a table of 'key: value' lines")
+    return values

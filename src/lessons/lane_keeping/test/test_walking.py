@@ -1,0 +1,56 @@
+"""How people cross: when they set off, that they look, and that a seed repeats a walk."""
+
+import numpy as np
+from lane_keeping.walking import Crossing, Habits, Stage, Walker
+
+CROSSING = Crossing(x=2.0, y=1.0, heading=0.0, length=0.8, kerb=0.85, far=1.4)
+PERIOD = 1 / 30  # s
+NEAR_EDGE = 1.6  # m, x
+
+
+def walk(car, habits=Habits(), seed=0, seconds=30.0):
+    """Times and places (m left of the lane) of a person; car: function of time to x, y, speed."""
+    walker, left, track = Walker(CROSSING, habits, np.random.default_rng(seed)), -1.4, []
+    for time in np.arange(0, seconds, PERIOD):
+        left += walker.step(time, (CROSSING.x, CROSSING.y + left), car(time)) * PERIOD
+        track.append((time, left, walker.stage))
+    return track
+
+
+def standing(front, speed=0.0):
+    """A car whose front is so far before the zebra."""
+    return lambda _time: (NEAR_EDGE - front - 0.2, 1.0, speed)
+
+
+def test_people_walk_to_and_fro_when_no_car_comes():
+    track = walk(lambda _time: None)
+    places = [left for _, left, _ in track]
+    assert max(places) >= 1.4 and min(places[200:]) < 0.0
+    assert max(np.abs(np.diff(places))) <= 1.2 * PERIOD + 1e-9
+
+
+def test_nobody_steps_out_close_before_a_car_that_drives():
+    track = walk(standing(0.5, speed=0.8))
+    assert max(left for _, left, _ in track) < -0.85 + 0.05
+    assert track[-1][2] is Stage.LOOKING
+
+
+def test_people_cross_before_a_car_that_stands_or_is_far_or_has_passed():
+    for car in (standing(0.4), standing(3.0, 0.8), standing(-1.5, 0.8),
+                lambda _time: (1.0, 9.0, 0.8)):
+        assert max(left for _, left, _ in walk(car)) > 1.3
+
+
+def test_nobody_steps_out_onto_a_car_that_stands_on_the_zebra():
+    assert max(left for _, left, _ in walk(standing(-0.3))) < 0
+
+
+def test_with_near_people_wait_for_a_car():
+    habits = Habits(near=3.0)
+    assert {stage for *_, stage in walk(standing(4.0, 0.5), habits)} == {Stage.WAITING}
+    assert max(left for _, left, _ in walk(standing(0.9, 0.0), habits)) > 1.3
+
+
+def test_a_seed_repeats_its_walks():
+    assert walk(standing(2.0), seed=4) == walk(standing(2.0), seed=4)
+    assert walk(standing(2.0), seed=4) != walk(standing(2.0), seed=5)
