@@ -2,5 +2,5 @@
 # Lists the Makefile's verbs.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 echo "usage: make VERB"
-sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' "$root/Makefile" | expand -t 21
+sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' "$root/Makefile" | expand -t 23
 echo "Then, in each new terminal: source devel/setup.bash"

@@ -1,0 +1,1 @@
+"""The shipped detector: pictures with known boxes, a small network, its training, its score."""

@@ -1,0 +1,5 @@
+"""What the shipped detector tells apart, in the order of the network's outputs."""
+
+from __future__ import annotations
+
+CLASSES = ("person", "cylinder", "cone", "stop sign", "traffic light")

@@ -1,0 +1,99 @@
+"""Which cell answers for which box, and what a wrong answer costs.
+
+Cells within a box compete for it by the root of their class score times the sixth power of their
+overlap; the ten best answer for it, each with as much confidence as its box is good.
+"""
+
+from __future__ import annotations
+
+import math
+
+import torch
+from torch.nn import functional
+
+ANSWERING = 10  # cells for one box
+SCORE_POWER, OVERLAP_POWER = 0.5, 6.0
+SMALLEST_REACH = 5.0  # px: cells this near to a box's middle may answer for it, however small it is
+BOX_WEIGHT, CLASS_WEIGHT = 5.0, 1.0
+TINY = 1e-9
+
+
+def detection_loss(
+    boxes: torch.Tensor, logits: torch.Tensor, centres: torch.Tensor, truth: torch.Tensor
+) -> torch.Tensor:
+    """Mean cost of a batch.
+
+    boxes (b, n, 4), logits (b, n, c), centres (n, 2) px; truth (b, m, 6): class, left, top, right,
+    bottom, counts; rows of nothing have class -1.
+    """
+    wanted = (truth[..., 0] >= 0) & (truth[..., 5] > 0)
+    near = _near(centres, truth[..., 1:5])
+    owner, quality = _assign(boxes.detach(), logits.detach(), near & wanted[..., None], truth)
+    answers = owner >= 0
+    target = torch.zeros_like(logits)
+    label = truth[..., 0].clamp(min=0).long().gather(1, owner.clamp(min=0))
+    target.scatter_(2, label[..., None], (quality * answers)[..., None])
+    # What hardly shows is neither to be found nor wrong to find.
+    hardly = (near & ((truth[..., 0] >= 0) & (truth[..., 5] == 0))[..., None]).any(1)
+    weight = (answers | ~hardly).float()
+    cost = functional.binary_cross_entropy_with_logits(logits, target, reduction="none").sum(2)
+    total = target.sum().clamp(min=1.0)
+    class_cost = (cost * weight).sum() / total
+    if not answers.any():
+        return CLASS_WEIGHT * class_cost
+    true_boxes = truth[..., 1:5].gather(1, owner.clamp(min=0)[..., None].expand(-1, -1, 4))
+    overlap = complete_overlap(boxes[answers], true_boxes[answers])
+    box_cost = ((1 - overlap) * quality[answers]).sum() / total
+    return BOX_WEIGHT * box_cost + CLASS_WEIGHT * class_cost
+
+
+def _near(centres: torch.Tensor, boxes: torch.Tensor) -> torch.Tensor:
+    """(b, m, n): whether a cell's middle is in a box, or very near to its middle."""
+    x, y = centres[:, 0], centres[:, 1]
+    middle = (boxes[..., :2] + boxes[..., 2:]) / 2
+    reach = ((boxes[..., 2:] - boxes[..., :2]) / 2).clamp(min=SMALLEST_REACH)
+    return ((x - middle[..., :1]).abs() < reach[..., :1]) & (
+        (y - middle[..., 1:]).abs() < reach[..., 1:])
+
+
+def _assign(
+    boxes: torch.Tensor, logits: torch.Tensor, near: torch.Tensor, truth: torch.Tensor
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """(b, n) index of the box that a cell answers for, -1: none; and how sure it should be."""
+    overlap = plain_overlap(truth[:, :, None, 1:5], boxes[:, None]) * near
+    label = truth[..., 0].clamp(min=0).long()
+    scores = logits.sigmoid().transpose(1, 2).gather(
+        1, label[..., None].expand(-1, -1, boxes.shape[1]))
+    merit = scores**SCORE_POWER * overlap**OVERLAP_POWER * near + TINY * near
+    best = merit.topk(ANSWERING, dim=2)
+    chosen = torch.zeros_like(merit).scatter_(2, best.indices, best.values) > 0
+    # A cell that several boxes want answers for the one that it overlaps most.
+    claim = torch.where(chosen, overlap, torch.full_like(overlap, -1.0))
+    most, owner = claim.max(1)
+    owner = torch.where(most >= 0, owner, torch.full_like(owner, -1))
+    merit = merit * chosen
+    peak = merit.amax(2, keepdim=True).clamp(min=TINY)
+    sure = merit / peak * (overlap * chosen).amax(2, keepdim=True)
+    return owner, sure.gather(1, owner.clamp(min=0)[:, None]).squeeze(1)
+
+
+def plain_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
+    """Intersection over union of boxes (..., 4) of left, top, right, bottom."""
+    low, high = torch.maximum(a[..., :2], b[..., :2]), torch.minimum(a[..., 2:], b[..., 2:])
+    common = (high - low).clamp(min=0).prod(-1)
+    areas = (a[..., 2:] - a[..., :2]).prod(-1) + (b[..., 2:] - b[..., :2]).prod(-1)
+    return common / (areas - common + 1e-7)
+
+
+def complete_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
+    """Overlap less what middles and shapes are apart: CIoU, of a known gradient also when 0."""
+    overlap = plain_overlap(a, b)
+    low, high = torch.minimum(a[..., :2], b[..., :2]), torch.maximum(a[..., 2:], b[..., 2:])
+    diagonal = ((high - low) ** 2).sum(-1) + 1e-7
+    apart = (((a[..., :2] + a[..., 2:]) - (b[..., :2] + b[..., 2:])) ** 2).sum(-1) / 4
+    size_a, size_b = a[..., 2:] - a[..., :2], b[..., 2:] - b[..., :2]
+    turn = torch.atan(size_a[..., 0] / (size_a[..., 1] + 1e-7)) - torch.atan(
+        size_b[..., 0] / (size_b[..., 1] + 1e-7))
+    shape = 4 / math.pi**2 * turn**2
+    weight = (shape / (shape - overlap + 1 + 1e-7)).detach()
+    return overlap - apart / diagonal - weight * shape

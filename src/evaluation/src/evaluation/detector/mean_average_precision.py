@@ -1,0 +1,93 @@
+"""Mean average precision: how well boxes that were found agree with the true ones.
+
+Of each class all boxes found in all pictures are taken in the order of their scores. One is right
+if it overlaps a true box of its class, which no surer one has taken, by at least `overlap`; what
+overlaps a box that does not count is left out. The area under precision over recall, precision
+made to fall only, is the class's average precision; the mean of the classes is the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a detector found in one picture."""
+
+    boxes: np.ndarray  # (n, 4) left, top, right, bottom, px
+    scores: np.ndarray  # (n,) 0..1
+    classes: np.ndarray  # (n,) int
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What is in one picture."""
+
+    boxes: np.ndarray  # (n, 4) as above
+    classes: np.ndarray  # (n,) int
+    counts: np.ndarray  # (n,) bool; false: neither to be found nor wrong to find
+
+
+def overlaps(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n, m) intersection over union of boxes (n, 4) and (m, 4)."""
+    low = np.maximum(first[:, None, :2], second[None, :, :2])
+    high = np.minimum(first[:, None, 2:], second[None, :, 2:])
+    common = np.clip(high - low, 0, None).prod(axis=2)
+    areas = [(boxes[:, 2:] - boxes[:, :2]).prod(axis=1) for boxes in (first, second)]
+    return common / np.maximum(areas[0][:, None] + areas[1][None] - common, 1e-9)
+
+
+def average_precision(
+    found: Sequence[Found], truth: Sequence[Truth], label: int, overlap: float = 0.5
+) -> float:
+    """Of one class over all pictures, 0..1; nan if there is nothing of it to be found."""
+    scores, right, total = [], [], 0
+    for seen, real in zip(found, truth, strict=True):
+        of_class, wanted = seen.classes == label, real.classes == label
+        total += int((wanted & real.counts).sum())
+        hits = _hits(seen.boxes[of_class], seen.scores[of_class], real.boxes[wanted],
+                     real.counts[wanted], overlap)
+        scores.append(seen.scores[of_class][hits >= 0])
+        right.append(hits[hits >= 0])
+    if total == 0:
+        return float("nan")
+    order = np.argsort(-np.concatenate(scores), kind="stable")
+    return _area(np.concatenate(right)[order], total)
+
+
+def mean_average_precision(
+    found: Sequence[Found], truth: Sequence[Truth], classes: int, overlap: float = 0.5
+) -> float:
+    """Over the classes of which there is something to be found."""
+    each = [average_precision(found, truth, label, overlap) for label in range(classes)]
+    return float(np.nanmean(each))
+
+
+def _hits(boxes: np.ndarray, scores: np.ndarray, real: np.ndarray, counts: np.ndarray,
+          overlap: float) -> np.ndarray:
+    """(n,) 1: right, 0: wrong, -1: left out; in the order in which they came."""
+    hits = np.zeros(len(boxes), int)
+    common = overlaps(boxes, real)
+    free = counts.copy()
+    for index in np.argsort(-scores, kind="stable"):
+        candidates = np.where(free, common[index], 0.0)
+        if len(real) and candidates.max() >= overlap:
+            free[candidates.argmax()] = False
+            hits[index] = 1
+        elif len(real) and np.where(counts, 0.0, common[index]).max() >= overlap:
+            hits[index] = -1
+    return hits
+
+
+def _area(right: np.ndarray, total: int) -> float:
+    """Under precision over recall, for hits (1) and misses (0) from the surest on."""
+    if not len(right):
+        return 0.0
+    hits = np.cumsum(right)
+    precision = hits / np.arange(1, len(right) + 1)
+    falling = np.maximum.accumulate(precision[::-1])[::-1]
+    return float((falling * right).sum() / total)

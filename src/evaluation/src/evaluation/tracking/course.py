@@ -1,0 +1,33 @@
+"""The tracking lesson as course_run's parts know a course: launch file, robot, topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evaluation.course_run.course_file import Course
+
+PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
+PAGE, PID = TRACKERS = ("visual_tracker.py", "visual_tracker_pid.py")
+CONTROLLER = "car_controller"
+
+
+@dataclass(frozen=True)
+class TrackingCourse(Course):
+    """Commands go to /cmd_vel by a remap, so that their topic does not name the controller."""
+
+    def controller_names(self) -> set[str]:
+        return {CONTROLLER}
+
+
+COURSE = TrackingCourse(
+    launch=(PACKAGE, LAUNCH), follower_package=PACKAGE,
+    followers="scripts/visual_tracker*.py", follower=PID, drives_by="cmd_vel",
+    robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",
+    camera="/camera/image_raw", camera_info="/camera/camera_info", commands="/cmd_vel",
+    odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0,
+)  # fmt: skip
+
+
+def annotated_topic(tracker: str) -> str:
+    """Where the tracker shows what it sees."""
+    return f"/{tracker.removesuffix('.py')}/annotated"

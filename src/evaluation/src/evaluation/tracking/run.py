@@ -1,0 +1,146 @@
+"""One drive: world and start of the seed, everything brought up, watched, and ended again."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import yaml
+
+from evaluation.course_run.course_file import find_package
+from evaluation.course_run.failure import RunError
+from evaluation.course_run.launch import Launched
+from evaluation.course_run.observer import Observer
+from evaluation.course_run.status_line import StatusLine
+from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, annotated_topic
+from evaluation.tracking.film import Film
+from evaluation.tracking.options import Options
+from evaluation.tracking.scene import STANDING, STATIC, draw_scene
+from evaluation.tracking.score import Task, TrackScorer
+from evaluation.tracking.sdf import world_text
+
+LOOK_PERIOD = 0.05   # s, wall
+START_AWAY = 1.5     # m from the standing cylinder, at least
+START_REACH = 4.0    # m from the room's middle, along x and along y
+ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
+LONGEST = 120.0      # s, simulated, to reach a cylinder that stands
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where the car begins; m, rad."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+def draw_start(kind: str, seed: int) -> Start:
+    """Anywhere in the room for a cylinder that stands; in the middle, facing it, if it walks."""
+    if kind != STATIC:
+        return Start(0.0, 0.0, 0.0)
+    random = np.random.default_rng(seed)
+    while True:
+        x, y = random.uniform(-START_REACH, START_REACH, 2)
+        if math.dist((x, y), STANDING) >= START_AWAY:
+            return Start(float(x), float(y), float(random.uniform(-math.pi, math.pi)))
+
+
+def wanted_distance(tracker: str) -> float | None:
+    """m, as the lesson's parameter file says; None for the tracker that drives up to it."""
+    if tracker == PAGE:
+        return None
+    path = find_package(PACKAGE) / "config" / "tracking_params.yaml"
+    return float(yaml.safe_load(path.read_text(encoding="utf-8"))[PID.removesuffix(".py")][
+        "wanted_distance"])
+
+
+class TrackRun:
+    """One drive and what was seen of it."""
+
+    def __init__(self, options: Options, progress: StatusLine):
+        self.options, self.progress = options, progress
+        self.scene = draw_scene(options.scene, options.seed)
+        self.start = draw_start(options.scene, options.seed)
+        wanted = wanted_distance(options.tracker)
+        self.drive = TrackScorer(Task(self.scene.way, self.scene.hidden, wanted, options.keep,
+                                      LONGEST))
+        self.film = Film(options.out / "run.mp4", annotated_topic(options.tracker), self.scene,
+                         self.drive, options.fast)
+        self.world = options.out / f"{options.scene}-{options.seed}.world"
+        self.wall = 0.0  # s, from the first sample to the last
+        self.frames = 0, 0  # images and commands
+        self._observer: Observer | None = None
+
+    def bring_up(self, launched: Launched) -> None:
+        """Start everything and wait until the car's first pose is there."""
+        options = self.options
+        self.world.write_text(world_text(self.scene), encoding="utf-8")
+        self.progress.status("starting roscore")
+        launched.start_roscore()
+        self._observer = Observer(launched.master_uri, COURSE.robot, COURSE,
+                                  lockstep=options.fast)
+        launched.start("roslaunch", ["roslaunch", PACKAGE, LAUNCH, *self._arguments()])
+        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+        self._observer.start()
+        if options.video:
+            self.film.start()
+        until = time.monotonic() + options.startup_timeout
+        while not self._take():
+            launched.check(None)
+            missing = self._observer.missing
+            self.progress.status(f"waiting for {missing}")
+            if time.monotonic() > until:
+                limit = f"{options.startup_timeout:.0f} s"
+                raise RunError(f"{missing} was not there within {limit}", launched.tail())
+
+    def watch(self, launched: Launched) -> None:
+        """Returns when nothing more is to be seen."""
+        began = heard = time.monotonic()
+        while not self.drive.over:
+            if self._take():
+                heard = time.monotonic()
+            now = self.drive.samples[-1].time
+            self.progress.update(now, self._line)
+            launched.check(now)
+            if time.monotonic() - heard > self.options.stuck_timeout:
+                raise RunError(f"simulated time has stood still at {now:.1f} s: the simulator is"
+                               " paused or hangs")
+        self.wall = time.monotonic() - began
+
+    def end(self) -> None:
+        """Film and ask no more."""
+        self.film.stop()
+        if self._observer is not None:
+            if self.drive.samples:
+                self.frames = self._observer.count(self.drive.samples[-1].time)
+            self._observer.stop()
+
+    def _arguments(self) -> list[str]:
+        options, start = self.options, self.start
+        found = ["gui:=false", f"world_name:={self.world}", f"tracker:={options.tracker}",
+                 f"x_pos:={start.x:.6f}", f"y_pos:={start.y:.6f}", f"yaw:={start.yaw:.6f}",
+                 f"seed:={options.seed}"]
+        if options.fast:
+            found += ["paused:=true", "real_time_factor:=0", "pub_clock_frequency:=30",
+                      f"lockstep:={','.join(COURSE.lockstep)}",
+                      f"lockstep_timeout:={ANSWER_LIMIT:g}"]
+        return found
+
+    def _take(self) -> int:
+        arrivals = self._observer.samples(LOOK_PERIOD)
+        for _, sample in arrivals:
+            if not self.drive.over or not self.drive.samples:
+                self.drive.add(sample)
+        return len(arrivals)
+
+    def _line(self) -> str:
+        drive, now = self.drive, self.drive.samples[-1].time
+        if drive.task.wanted is None:
+            what = f"{drive.errors[-1]:.2f} m from the cylinder"
+        else:
+            what = f"{drive.errors[-1] * 100:+.0f} cm beside {drive.task.wanted:g} m"
+        return (f"simulated {now:.1f} s | {drive.distance:.2f} m | {what}"
+                f" | real time x{self.progress.factor:.2f}")

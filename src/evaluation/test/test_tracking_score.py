@@ -1,0 +1,156 @@
+"""The rules of a drive after the cylinder, on made-up samples with known answers."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from evaluation.course_run.failure import RunError
+from evaluation.lap import Sample
+from evaluation.tracking.options import parse_options
+from evaluation.tracking.scene import KINDS
+from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
+from evaluation.tracking.sdf import RADIUS
+from evaluation.tracking.trials import SETS, main, summarize, table
+
+STANDS = np.array([(0.0, 5.0, 0.0)])
+WALKS = np.array([(0.0, 5.0, 0.0), (1000.0, 5.0, 0.0)])  # a walk that does not get on
+WANTED = 1.2
+
+
+def drive(task, distance_at, seconds=200.0):
+    """A car that faces the cylinder from a distance (camera to axis, m) that is a function of s."""
+    scorer = TrackScorer(task)
+    for time in np.arange(0, seconds, 0.1):
+        if scorer.over:
+            break
+        scorer.add(Sample(float(time), 5.0 - distance_at(time) - CAMERA_X, 0.0, 0.0))
+    return scorer
+
+
+def test_kept():
+    scorer = drive(Task(WALKS, (), WANTED), lambda time: max(3 - time, WANTED + 0.1))
+    assert (scorer.outcome, scorer.good) == ("kept", True)
+    assert scorer.approach == pytest.approx(1.5, abs=0.11)
+    assert scorer.elapsed == pytest.approx(61.6, abs=0.2)
+    assert scorer.judged_errors(3.0) == pytest.approx(0.1)
+
+
+def test_one_sample_too_far_is_enough():
+    scorer = drive(Task(WALKS, (), WANTED),
+                   lambda time: WANTED + (0.31 if 20 < time < 20.15 else 0))
+    assert (scorer.outcome, scorer.good) == ("distance not kept", False)
+    assert scorer.left_at == pytest.approx(20.1, abs=0.1)
+
+
+def test_not_reached_in_time():
+    scorer = drive(Task(WALKS, (), WANTED), lambda time: 3.0)
+    assert (scorer.outcome, scorer.good) == ("not reached", False)
+    assert scorer.elapsed == pytest.approx(20.1, abs=0.2)
+
+
+def test_a_standing_one_is_given_the_whole_time_and_then_5_s():
+    scorer = drive(Task(STANDS, (), WANTED, limit=60), lambda time: 3.0 if time < 50 else WANTED)
+    assert scorer.good
+    assert scorer.elapsed == pytest.approx(55.1, abs=0.2)
+    assert not drive(Task(STANDS, (), WANTED, limit=40), lambda time: 3.0).good
+
+
+def test_reaching_is_10_cm_before_it():
+    offset = PARTS[0, 0] - CAMERA_X
+    scorer = drive(Task(STANDS, (), None), lambda time: 3.0 - 0.2 * time)
+    assert scorer.outcome == "reached"
+    assert scorer.least_gap == pytest.approx(0.09, abs=0.02)
+    last = 5.0 - scorer.samples[-1].x - CAMERA_X
+    assert last - offset - RADIUS < 0.1
+
+
+@pytest.mark.parametrize(("place", "yaw", "gap"), [
+    ((5 - 0.15 - 0.2 - 0.5, 0.0), 0.0, 0.5),       # its front
+    ((5 + 0.15 + 0.2 + 0.5, 0.0), 0.0, 0.5),       # its back
+    ((5.0, 0.15 + 0.2 + 0.4), 0.0, 0.4),           # a wheel
+    ((5 - 0.15 - 0.3, -0.11 - 0.4), 0.0, 0.3),     # a corner, 0.5 m from the axis
+    ((5 - 0.15 - 0.2 - 0.5, 0.0), math.pi, 0.5),
+])  # fmt: skip
+def test_the_gap_is_that_of_the_cars_outline(place, yaw, gap):
+    scorer = TrackScorer(Task(STANDS, (), WANTED))
+    scorer.add(Sample(0.0, *place, yaw))
+    assert scorer.least_gap == pytest.approx(gap, abs=1e-9)
+
+
+def hidden_drive(back_at):
+    """Away while it is hidden at 10 s, back so many s after the hood's rising at 13 s."""
+    return drive(Task(WALKS, (10.0,), WANTED),
+                 lambda time: 2.5 if 11 < time < 13 + back_at else WANTED)
+
+
+def test_found_again():
+    scorer = hidden_drive(4.0)
+    assert (scorer.outcome, scorer.good) == ("kept", True)
+    assert scorer.hidings[0].found_after == pytest.approx(4.0, abs=0.15)
+    assert scorer.elapsed < 25
+
+
+def test_found_too_late_or_only_for_a_moment():
+    assert hidden_drive(10.5).outcome == "not found again"
+    assert hidden_drive(50).outcome == "not found again"
+    scorer = drive(Task(WALKS, (10.0,), WANTED),
+                   lambda time: WANTED if time < 11 or 15 < time < 16 else 2.5)
+    assert scorer.outcome == "not found again"
+
+
+def test_near_but_turned_away_is_not_found():
+    scorer = TrackScorer(Task(WALKS, (10.0,), WANTED))
+    for time in np.arange(0, 60, 0.1):
+        yaw = 0.0 if time < 10 else math.pi
+        x = 5.0 - WANTED - CAMERA_X * math.cos(yaw)
+        scorer.add(Sample(float(time), x, 0.0, yaw))
+    assert scorer.hidings[0].found_after is None
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["--scene", "dark"], KINDS[0]), (["--tracker", "mine.py"], "visual_tracker.py"),
+    (["--seed", "-1"], "whole number"), (["--seed", "x"], "whole number"),
+    (["--keep", "0"], "seconds"), (["--speed", "1"], "--help"),
+])  # fmt: skip
+def test_mistakes_are_one_line_that_says_what_to_type(words, said):
+    with pytest.raises(RunError, match=said) as raised:
+        parse_options(words)
+    assert "\n" not in str(raised.value)
+
+
+def report(seed, good, hidden=()):
+    return {"seed": seed, "good": good, "approach_s": 1.0 if good else None, "rms_error_m": 0.1,
+            "max_error_m": 0.2, "max_error_settled_m": 0.15, "least_gap_m": 0.5, "outcome": "kept",
+            "real_time_factor": 1.0, "hidden": [{"begin_s": 1, "found_after_s": s} for s in hidden]}
+
+
+def test_summaries():
+    sets = {kind.name: kind for kind in SETS}
+    assert summarize(sets["follow"], [report(0, True), report(1, True)]).passed
+    one_bad = summarize(sets["follow"], [report(0, True), report(1, False)])
+    assert (one_bad.good, one_bad.cases, one_bad.passed, one_bad.failed_seeds) == (1, 2, False, [1])
+    hidden = [report(seed, True, (2.0, 9.0)) for seed in range(9)]
+    assert summarize(sets["hidden"], [*hidden, report(9, False, (11.0, None))]).passed  # 18 of 20
+    assert not summarize(sets["hidden"], [*hidden[1:], report(8, False, (3.0, None)),
+                                          report(9, False, (11.0, None))]).passed
+    summary = summarize(sets["hidden"], [*hidden, report(9, False, (11.0, 12.0))])
+    assert "18 of 20" in table([summary])
+
+
+@pytest.mark.parametrize(("good", "code"), [(True, 0), (False, 1)])
+def test_trials_go_on_from_what_is_there_and_count(tmp_path, capsys, good, code):
+    for seed in (0, 1):
+        folder = tmp_path / "stand" / str(seed)
+        folder.mkdir(parents=True)
+        (folder / "report.json").write_text(json.dumps(report(seed, good)))
+    words = ["--sets", "stand", "--seeds", "2", "--resume", "--out", str(tmp_path)]
+    assert main(words) == code
+    assert f"{2 * good} of 2" in capsys.readouterr().out
+    assert json.loads((tmp_path / "report.json").read_text())["summaries"][0]["cases"] == 2
+
+
+def test_no_drives_are_refused(capsys):
+    assert main(["--seeds", "0"]) == 2
+    assert "nothing to drive" in capsys.readouterr().err

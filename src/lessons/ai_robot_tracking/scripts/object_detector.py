@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Finds things in the pictures of a topic with a YOLO network.  用 YOLO 网络检测图像里的物体。
+
+rosrun ai_robot_tracking object_detector.py image:=/camera/image_raw [_model:=FILE.onnx]
+"""
+
+import os
+import sys
+import time
+
+import rospy
+from ai_robot_tracking.detection.decoding import nothing
+from ai_robot_tracking.detection.messages import PictureError, detections_of, image_of, rgb_of
+from ai_robot_tracking.detection.model import Model, ModelError
+from ai_robot_tracking.detection.newest import Newest
+from ai_robot_tracking.detection.picture import annotated
+from ai_robot_tracking.detection.settings import LIMITS, SettingsError, read_settings
+from sensor_msgs.msg import Image
+from vision_msgs.msg import Detection2DArray, VisionInfo
+
+PACKAGE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..")
+KEYS = {*LIMITS, "model", "image", "config", "class_names"}
+COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
+BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
+
+
+class ObjectDetector:
+    """Takes the newest picture, asks the network, publishes what it found."""
+
+    def __init__(self, model, settings):
+        self.model, self.settings = model, settings
+        self.pictures = Newest()
+        self.topic = rospy.resolve_name(rospy.get_param("~image", "image"))
+        self.detections = rospy.Publisher("~detections", Detection2DArray, queue_size=1)
+        self.annotated = rospy.Publisher("~annotated", Image, queue_size=1)
+        self.info = rospy.Publisher("~vision_info", VisionInfo, queue_size=1, latch=True)
+        self.publish_names()
+        rospy.Subscriber(self.topic, Image, self.pictures.put, queue_size=1, buff_size=BUFFER)
+
+    def publish_names(self):
+        """Class n is number n of the list in the parameter that VisionInfo names."""
+        parameter = rospy.resolve_name("~class_names")
+        rospy.set_param(parameter, self.model.names)
+        info = VisionInfo(method=f"YOLO {self.model.layout}, {self.model.path.name}",
+                          database_location=parameter, database_version=1)
+        info.header.stamp = rospy.Time.now()
+        self.info.publish(info)
+
+    def run(self):
+        """Until the node is told to end; only the newest picture counts."""
+        heard, told = time.monotonic(), time.monotonic()
+        while not rospy.is_shutdown():
+            message = self.pictures.take(0.2)
+            now = time.monotonic()
+            if message is not None:
+                heard = now
+                self.work(message)
+                if self.settings.max_rate > 0:  # wall time: it is the machine that is spared
+                    time.sleep(max(0.0, 1 / self.settings.max_rate - (time.monotonic() - now)))
+            elif now - heard > QUIET_TIME:
+                rospy.logwarn_throttle(COMPLAINT_TIME, f"no picture on {self.topic} for "
+                                       f"{now - heard:.0f} s; see: rostopic hz {self.topic}")
+            if now - told > SKIP_TIME:
+                told = now
+                self.tell_skipped()
+
+    def work(self, message):
+        """One picture; what cannot be read is said and left out."""
+        try:
+            rgb = rgb_of(message)
+        except PictureError as error:
+            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: {error}; left out")
+            return
+        if (rgb == rgb[0, 0]).all():
+            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: the picture is one colour all "
+                                   "over; is something in front of the camera?")
+            found = nothing()
+        else:
+            found = self.model.detect(rgb, self.settings.confidence, self.settings.iou)
+        self.detections.publish(detections_of(found, message.header))
+        if self.annotated.get_num_connections():
+            picture = annotated(rgb, found, self.model.names)
+            self.annotated.publish(image_of(picture, message.header))
+
+    def tell_skipped(self):
+        """One line, if pictures came faster than they could be looked at."""
+        taken, skipped = self.pictures.counts()
+        if skipped:
+            rospy.loginfo(f"{skipped} of {taken + skipped} pictures skipped in {SKIP_TIME:.0f} s: "
+                          f"looked at {taken / SKIP_TIME:.1f} a second, always the newest")
+
+
+def main():
+    """Exit code 1, with one line, if the model or a parameter is no good."""
+    rospy.init_node("object_detector")
+    given = rospy.get_param("~", {})
+    config = given.get("config", os.path.join(PACKAGE, "config/detector_params.yaml"))
+    path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
+    try:
+        for key in sorted(set(given) - KEYS):
+            raise SettingsError(f"unknown parameter ~{key}; known: {', '.join(sorted(KEYS))}")
+        settings = read_settings(config, {key: given[key] for key in LIMITS if key in given})
+        model = Model(os.path.expanduser(str(path)), settings.threads)
+    except (ModelError, SettingsError) as error:
+        rospy.logfatal(str(error))
+        return 1
+    detector = ObjectDetector(model, settings)
+    rospy.loginfo(f"looking for {', '.join(model.names)} on {detector.topic}"[:200])
+    detector.run()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""Boxes out of what YOLO networks put out: pure functions on arrays.
+
+Two layouts are known, for a picture and C classes:
+- v5: (1, N, 5 + C), a row a candidate: middle x, middle y, width, height in px of the input, how
+  sure it is that something is there, and C class scores; what counts is the product of the two.
+- v8: (1, 4 + C, N), a column a candidate: the same four, and C class scores, which count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+V5, V8 = "v5", "v8"
+MOST_CANDIDATES = 3000  # the surest; more cost time and never matter
+
+
+@dataclass(frozen=True)
+class Detections:
+    """What was found in one picture, the surest first."""
+
+    boxes: np.ndarray  # (n, 4) float, left, top, right, bottom, px
+    scores: np.ndarray  # (n,) float, 0..1
+    classes: np.ndarray  # (n,) int
+
+    def __len__(self) -> int:
+        return len(self.scores)
+
+
+def layout_of(shape: tuple[int, ...], class_count: int | None) -> tuple[str, int]:
+    """Layout and number of classes of an output of that shape; ValueError if it is neither.
+
+    Without a known number of classes, the longer of the two axes is taken for the candidates.
+    """
+    if len(shape) != 3 or shape[0] != 1:
+        raise ValueError(f"its output has shape {shape}")
+    if class_count is None:
+        layout, width = (V8, shape[1]) if shape[1] < shape[2] else (V5, shape[2])
+        count = width - (4 if layout == V8 else 5)
+        if count < 1:
+            raise ValueError(f"its output has shape {shape}")
+        return layout, count
+    fits = [layout for layout, width, extra in ((V8, shape[1], 4), (V5, shape[2], 5))
+            if width == extra + class_count]
+    if not fits:
+        raise ValueError(f"its output has shape {shape}, and its names are {class_count}")
+    return fits[0], class_count
+
+
+def decode(output: np.ndarray, layout: str, confidence: float, iou: float) -> Detections:
+    """Boxes in px of the network's input, from one raw output (1, ., .) float.
+
+    Kept is what scores above `confidence` (0..1) and does not overlap a surer box of its class by
+    more than `iou` (0..1). Candidates that are not finite or have no area are left out.
+    """
+    table = output[0].T if layout == V8 else output[0]
+    if layout == V8:
+        scores = table[:, 4:]
+    else:
+        table = table[table[:, 4] > confidence]  # a product is never larger than its factor
+        scores = table[:, 5:] * table[:, 4:5]
+    if not len(table):
+        return nothing()
+    classes = scores.argmax(axis=1)
+    best = scores[np.arange(len(scores)), classes]
+    kept = (best > confidence) & np.isfinite(best) & np.isfinite(table[:, :4]).all(axis=1)
+    kept &= (table[:, 2] > 0) & (table[:, 3] > 0)
+    rows = np.flatnonzero(kept)
+    rows = rows[np.argsort(-best[rows], kind="stable")][:MOST_CANDIDATES]
+    boxes, best, classes = corners(table[rows, :4]), best[rows], classes[rows]
+    chosen = suppress(boxes, classes, iou)
+    return Detections(boxes[chosen], best[chosen].astype(float), classes[chosen])
+
+
+def nothing() -> Detections:
+    """Of a picture in which nothing was found."""
+    return Detections(np.empty((0, 4)), np.empty(0), np.empty(0, int))
+
+
+def corners(boxes: np.ndarray) -> np.ndarray:
+    """(n, 4) float64 left, top, right, bottom from middle x, middle y, width, height."""
+    boxes = boxes.astype(float)
+    half = boxes[:, 2:] / 2
+    return np.concatenate([boxes[:, :2] - half, boxes[:, :2] + half], axis=1)
+
+
+def suppress(boxes: np.ndarray, classes: np.ndarray, iou: float) -> np.ndarray:
+    """Rows (k,) to keep of boxes (n, 4) that come surest first: one for each thing of a class."""
+    areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+    alive, kept = np.arange(len(boxes)), []
+    while len(alive):
+        first, others = alive[0], alive[1:]
+        kept.append(first)
+        low = np.maximum(boxes[first, :2], boxes[others, :2])
+        high = np.minimum(boxes[first, 2:], boxes[others, 2:])
+        common = np.clip(high - low, 0, None).prod(axis=1)
+        shared = common > iou * (areas[first] + areas[others] - common)
+        alive = others[~(shared & (classes[others] == classes[first]))]
+    return np.array(kept, int)

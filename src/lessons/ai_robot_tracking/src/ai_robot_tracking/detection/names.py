@@ -1,0 +1,93 @@
+"""What class numbers mean: from a YAML file beside the network, or from what its export holds."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+DATA_KEYS = {"names", "imgsz", "nc", "path", "train", "val", "test", "download"}  # of YOLO's own
+
+
+class NamesError(Exception):
+    """A file or an entry that names classes is wrong; one line that says where."""
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """What the YAML file beside a model says; None where it says nothing."""
+
+    names: list[str] | None
+    input_size: tuple[int, int] | None  # height, width, px
+
+
+def read_sidecar(model: Path) -> Sidecar:
+    """Of MODEL.yaml, if there is one; NamesError names file and key."""
+    path = model.with_suffix(".yaml")
+    if not path.is_file():
+        return Sidecar(None, None)
+    try:
+        table = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise NamesError(f"{path}: cannot be read: {_first_line(error)}") from None
+    if not isinstance(table, dict):
+        raise NamesError(f"{path}: not a table; write for example: names: [person, cone]")
+    for key in table:
+        if key not in DATA_KEYS:
+            known = ", ".join(sorted(DATA_KEYS))
+            raise NamesError(f"{path}: unknown key '{key}'; known: {known}")
+    names = checked_names(table["names"], f"{path}: names") if "names" in table else None
+    size = checked_size(table["imgsz"], f"{path}: imgsz") if "imgsz" in table else None
+    if names and "nc" in table and table["nc"] != len(names):
+        raise NamesError(f"{path}: nc is {table['nc']}, but there are {len(names)} names")
+    return Sidecar(names, size)
+
+
+def names_of_export(text: str | None) -> list[str] | None:
+    """Of the entry `names` in an ONNX file's metadata, as YOLO's exports write it."""
+    if text is None:
+        return None
+    return checked_names(_literal(text, "its names"), "its names")
+
+
+def size_of_export(text: str | None) -> tuple[int, int] | None:
+    """Of the entry `imgsz` in an ONNX file's metadata."""
+    return None if text is None else checked_size(_literal(text, "its imgsz"), "its imgsz")
+
+
+def checked_names(value: object, where: str) -> list[str]:
+    """Names as a list, from a list or a table of numbers from 0 on."""
+    if isinstance(value, dict):
+        if set(value) != set(range(len(value))):
+            raise NamesError(f"{where}: the numbers must be 0 to {len(value) - 1}")
+        value = [value[number] for number in range(len(value))]
+    if not isinstance(value, list) or not value:
+        raise NamesError(f"{where}: must be a list, for example [person, cone]")
+    for name in value:
+        if not isinstance(name, str) or not name:
+            raise NamesError(f"{where}: {name!r} is no name; write it in quotes")
+    return value
+
+
+def checked_size(value: object, where: str) -> tuple[int, int]:
+    """Height and width from one number or two."""
+    sides = [value, value] if isinstance(value, int) else value
+    right = isinstance(sides, list | tuple) and len(sides) == 2 and all(
+        isinstance(side, int) and not isinstance(side, bool) and 32 <= side <= 4096
+        for side in sides)
+    if not right:
+        raise NamesError(f"{where}: must be [height, width] in px, each 32 to 4096")
+    return sides[0], sides[1]
+
+
+def _literal(text: str, where: str) -> object:
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        raise NamesError(f"{where}: {text[:60]!r} is neither a list nor a table") from None
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]

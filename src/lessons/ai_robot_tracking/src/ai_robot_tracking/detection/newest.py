@@ -1,0 +1,39 @@
+"""A place for one thing: what comes later replaces it, and what nobody took is counted."""
+
+from __future__ import annotations
+
+import threading
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Newest(Generic[T]):
+    """Between a thread that gets pictures and one that is slower."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._item: T | None = None
+        self._skipped = self._taken = 0
+
+    def put(self, item: T) -> None:
+        """Leave the newest; the one before is skipped if it is still here."""
+        with self._changed:
+            self._skipped += self._item is not None
+            self._item = item
+            self._changed.notify()
+
+    def take(self, timeout: float) -> T | None:
+        """The newest, once; None if none comes within `timeout` wall s."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._item is not None, timeout)
+            item, self._item = self._item, None
+            self._taken += item is not None
+            return item
+
+    def counts(self) -> tuple[int, int]:
+        """How many were taken and how many skipped since this was last asked."""
+        with self._changed:
+            counts = self._taken, self._skipped
+            self._taken = self._skipped = 0
+            return counts

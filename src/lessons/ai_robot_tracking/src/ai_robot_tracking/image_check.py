@@ -1,0 +1,60 @@
+"""Whether a camera's image can be driven by: rightly encoded, not blank, not frozen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}  # encodings with colour that are read
+FROZEN_TIME = 0.5  # s of the same picture under way
+
+
+class BadImage(ValueError):
+    """One line that says what is wrong with an image."""
+
+
+def decode(encoding: str, width: int, height: int, step: int, data: bytes) -> np.ndarray:
+    """The picture (height, width, 3), uint8, BGR, of a sensor_msgs/Image's fields.
+
+    Raises BadImage where encoding and sizes do not fit each other.
+    """
+    channels = CHANNELS.get(encoding)
+    if channels is None:
+        raise BadImage(f"encoding '{encoding}' has no colours that this node reads; it reads "
+                       f"{', '.join(CHANNELS)}")
+    row = width * channels
+    if width == 0 or height == 0:
+        raise BadImage(f"it is empty: {width} x {height} px")
+    if step < row:
+        raise BadImage(f"encoding '{encoding}' needs {row} bytes for a row of {width} px, but step "
+                       f"is {step}")
+    if len(data) != step * height:
+        raise BadImage(f"{height} rows of {step} bytes are {step * height} bytes, but there are "
+                       f"{len(data)}")
+    rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, :row]
+    picture = rows.reshape(height, width, channels)[:, :, :3]
+    return np.ascontiguousarray(picture if encoding.startswith("bgr") else picture[:, :, ::-1])
+
+
+class ImageCheck:
+    """Looks at one picture after the other."""
+
+    def __init__(self) -> None:
+        self._last: np.ndarray | None = None
+        self._same_since = 0.0  # s
+        self._frozen = False
+
+    def look(self, picture: np.ndarray, time: float, moving: bool) -> None:
+        """`picture` (rows, columns, 3) came at this time, s; `moving`: the robot was told to move.
+
+        Raises BadImage for one that is all of one colour, and for one that has stayed the same to
+        the byte for FROZEN_TIME in which the robot should have moved, until another one comes.
+        """
+        if self._last is None or not np.array_equal(picture, self._last):
+            self._last, self._same_since, self._frozen = picture, time, False
+        elif not moving and not self._frozen:
+            self._same_since = time  # who stands sees the same
+        if (picture == picture[0, 0]).all():
+            raise BadImage("it is blank: every pixel has the same colour")
+        self._frozen = self._frozen or time - self._same_since >= FROZEN_TIME
+        if self._frozen:
+            raise BadImage("it is frozen: the same picture again and again while the robot moves")

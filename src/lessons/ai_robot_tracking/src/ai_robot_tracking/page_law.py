@@ -1,0 +1,58 @@
+"""The tutorial's law: turn in proportion to the error in pixels, one of three speeds.
+
+It never stops before the target: it drives up to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ai_robot_tracking.red_target import Blob, Colour, find_blobs, red_mask
+from ai_robot_tracking.settings import number
+
+
+@dataclass(frozen=True)
+class PageSettings:
+    """Section visual_tracker of the parameter file."""
+
+    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
+    hue_high: float = number(0, 180, "0..180")
+    saturation_low: float = number(0, 255, "0..255")
+    value_low: float = number(0, 255, "0..255")
+    least_radius: float = number(0, 1000, "px; a smaller blob is no target")
+    turn_gain: float = number(0, 1, "rad/s for each px beside the middle")
+    straight_error: float = number(0, 2000, "px; within it the target is ahead")
+    near_radius: float = number(0, 2000, "px")
+    far_radius: float = number(0, 2000, "px")
+    fast_speed: float = number(0, 2, "m/s, with the target ahead and near_radius or larger")
+    far_speed: float = number(0, 2, "m/s, with the target smaller than far_radius")
+    slow_speed: float = number(0, 2, "m/s, else")
+    search_turn: float = number(0, 5, "rad/s, without a target")
+    image_timeout: float = number(0.05, 60, "s without a fresh image until it stands")
+
+    @property
+    def colour(self) -> Colour:
+        """The mask's bounds."""
+        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
+
+
+def largest_blob(picture: np.ndarray, settings: PageSettings) -> Blob | None:
+    """The largest red thing in a BGR picture (rows, columns, 3), or None."""
+    blobs = find_blobs(red_mask(picture, settings.colour), settings.least_radius)
+    return blobs[0] if blobs else None
+
+
+def page_command(blob: Blob | None, width: int, settings: PageSettings) -> tuple[float, float]:
+    """Speed (m/s) and turn (rad/s, left positive) in a picture so wide (px)."""
+    if blob is None:
+        return 0.0, settings.search_turn
+    error = blob.column - width / 2  # px, positive on the right
+    if abs(error) < settings.straight_error and blob.radius > settings.near_radius:
+        speed = settings.fast_speed
+    elif blob.radius < settings.far_radius:
+        speed = settings.far_speed
+    else:
+        speed = settings.slow_speed
+    return speed, -settings.turn_gain * error

@@ -1,0 +1,143 @@
+"""What both trackers share: images in, commands out, and standing still whenever that is safer."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cv_bridge
+import numpy as np
+import rospkg
+import rospy
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import Image
+from std_msgs.msg import Bool
+
+from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
+from ai_robot_tracking.settings import Settings, SettingsError, load_settings
+
+CHECK_PERIOD = 0.1   # s
+WARNING_PERIOD = 5   # s
+FLUSH_TIME = 0.2     # s, wall: rospy sends from threads of its own, which end with the process
+Command = tuple[float, float]  # m/s; rad/s, left positive
+
+
+def read_settings(kind: type[Settings], section: str) -> Settings:
+    """From the section of config/tracking_params.yaml, or of the file in the parameter ~config.
+
+    The node's other parameters win over the file. If they do not fit, one line ends the program.
+    """
+    given = dict(rospy.get_param("~", {}))
+    folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
+    try:
+        path = Path(str(given.pop("config", folder / "tracking_params.yaml")))
+        return load_settings(kind, path, section, given)
+    except SettingsError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(1)
+
+
+class TrackerNode:
+    """One command on cmd_vel for each image of camera/image_raw; zero where an image is no good.
+
+    `drive(picture, time)` gets BGR (rows, columns, 3) and s, and says what to do; `mark(picture)`
+    draws what was seen, for ~annotated; `halt()` is called when the robot is made to stand.
+    """
+
+    def __init__(self, image_timeout: float, drive: Callable[[np.ndarray, float], Command],
+                 mark: Callable[[np.ndarray, Command], None],
+                 halt: Callable[[], None] = lambda: None):
+        self.image_timeout = image_timeout
+        self._drive, self._mark, self._halt = drive, mark, halt
+        self._lock = threading.Lock()  # images, e-stop and timer come on threads of their own
+        self._check, self._bridge = ImageCheck(), cv_bridge.CvBridge()
+        self._told: Command = (0.0, 0.0)
+        self._stopped, self._waiting = False, True
+        self._stamp, self._fresh = rospy.Time(), rospy.get_time()
+        self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        self._annotated = rospy.Publisher("~annotated", Image, queue_size=1)
+        rospy.Subscriber("e_stop", Bool, self._take_stop, queue_size=1)
+        self._images = rospy.Subscriber("camera/image_raw", Image, self._take_image, queue_size=1,
+                                        buff_size=2**24)
+        self._timer = rospy.Timer(rospy.Duration(CHECK_PERIOD), self._check_images, reset=True)
+        rospy.on_shutdown(self._end)
+
+    @property
+    def lock(self) -> threading.Lock:
+        """To hold while what `drive` uses is changed."""
+        return self._lock
+
+    def _take_image(self, message: Image) -> None:
+        with self._lock:
+            if self._is_old(message.header.stamp):
+                return  # the time-out goes on
+            self._stamp, self._fresh = message.header.stamp, rospy.get_time()
+            self._waiting = False
+            picture = self._look(message)
+            command = (0.0, 0.0)
+            if picture is not None and not self._stopped:
+                command = self._drive(picture, message.header.stamp.to_sec())
+            else:
+                self._halt()
+            self._send(command)
+        if picture is not None and self._annotated.get_num_connections() > 0:
+            picture = picture.copy()
+            self._mark(picture, command)
+            self._annotated.publish(self._bridge.cv2_to_imgmsg(picture, "bgr8", message.header))
+
+    def _is_old(self, stamp: rospy.Time) -> bool:
+        """Sent before, or before the last one; but much older is time that began anew."""
+        return bool(stamp) and rospy.Duration() <= self._stamp - stamp < rospy.Duration(1.0)
+
+    def _look(self, message: Image) -> np.ndarray | None:
+        """The picture, or None and a warning where it is not to be driven by."""
+        try:
+            picture = decode(message.encoding, message.width, message.height, message.step,
+                             message.data)
+            self._check.look(picture, rospy.get_time(), self._told != (0.0, 0.0))
+        except BadImage as error:
+            rospy.logwarn_throttle(WARNING_PERIOD, "standing: bad image on %s: %s",
+                                   self._images.resolved_name, error)
+            return None
+        return picture
+
+    def _check_images(self, _event: Any) -> None:
+        """Stand still when images stop coming."""
+        with self._lock:
+            if rospy.get_time() < self._fresh:
+                self._fresh = rospy.get_time()  # time began anew
+            if rospy.get_time() - self._fresh <= self.image_timeout:
+                return
+            rospy.logwarn_throttle(WARNING_PERIOD, "standing: no fresh image on %s for %g s",
+                                   self._images.resolved_name, self.image_timeout)
+            if not self._waiting:
+                self._waiting = True
+                self._halt()
+            self._send((0.0, 0.0))
+
+    def _take_stop(self, message: Bool) -> None:
+        """True: stand until false comes, whatever is seen."""
+        with self._lock:
+            if message.data != self._stopped:
+                rospy.logwarn("e-stop: standing" if message.data else "e-stop is over")
+            self._stopped = message.data
+            if self._stopped:
+                self._halt()
+                self._send((0.0, 0.0))
+
+    def _send(self, command: Command) -> None:
+        message = Twist()
+        message.linear.x, message.angular.z = self._told = command
+        self._commands.publish(message)
+
+    def _end(self) -> None:
+        """Leave the robot standing: no image starts it again."""
+        self._timer.shutdown()
+        self._images.unregister()
+        with self._lock:
+            self._send((0.0, 0.0))
+        time.sleep(FLUSH_TIME)

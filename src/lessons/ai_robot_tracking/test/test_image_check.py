@@ -1,0 +1,58 @@
+"""Images that must not be driven by, each with its own words."""
+
+import numpy as np
+import pytest
+from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
+from drawn_room import cylinder, room
+
+PICTURE = cylinder(1.2, 0.0)
+ROWS, COLUMNS = PICTURE.shape[:2]
+
+
+def test_colours_come_as_bgr_whatever_was_sent():
+    step = COLUMNS * 3
+    sent = {"bgr8": PICTURE, "rgb8": PICTURE[:, :, ::-1]}
+    for encoding, picture in sent.items():
+        assert (decode(encoding, COLUMNS, ROWS, step, picture.tobytes()) == PICTURE).all()
+    four = np.dstack([PICTURE, np.full((ROWS, COLUMNS), 255, np.uint8)])
+    assert (decode("bgra8", COLUMNS, ROWS, 4 * COLUMNS, four.tobytes()) == PICTURE).all()
+
+
+def test_rows_may_be_padded():
+    padded = np.zeros((ROWS, COLUMNS * 3 + 8), np.uint8)
+    padded[:, :-8] = PICTURE.reshape(ROWS, -1)
+    assert (decode("bgr8", COLUMNS, ROWS, padded.shape[1], padded.tobytes()) == PICTURE).all()
+
+
+@pytest.mark.parametrize(("encoding", "width", "step", "data", "said"), [
+    ("mono8", COLUMNS, COLUMNS, b"\1" * (ROWS * COLUMNS), "mono8"),
+    ("nonsense", COLUMNS, COLUMNS * 3, PICTURE.tobytes(), "nonsense"),
+    ("bgr8", COLUMNS, COLUMNS, b"\1" * (ROWS * COLUMNS), "step"),
+    ("bgr8", COLUMNS, COLUMNS * 3, PICTURE.tobytes()[:-1], "bytes"),
+    ("bgr8", 0, 0, b"", "empty"),
+])  # fmt: skip
+def test_sizes_that_do_not_fit(encoding, width, step, data, said):
+    with pytest.raises(BadImage, match=said):
+        decode(encoding, width, ROWS, step, data)
+
+
+def test_blank():
+    check = ImageCheck()
+    with pytest.raises(BadImage, match="blank"):
+        check.look(np.full((ROWS, COLUMNS, 3), 90, np.uint8), 0.0, moving=False)
+    check.look(room(), 0.1, moving=False)
+
+
+def test_frozen_only_if_the_robot_should_move():
+    check = ImageCheck()
+    for tick in range(40):  # standing sees the same, for ever
+        check.look(PICTURE.copy(), tick / 30, moving=False)
+    since = 40 / 30
+    for tick in range(14):
+        check.look(PICTURE.copy(), since + tick / 30, moving=True)
+    with pytest.raises(BadImage, match="frozen"):
+        check.look(PICTURE.copy(), since + 0.6, moving=True)
+    with pytest.raises(BadImage, match="frozen"):  # it stands now; that proves nothing
+        check.look(PICTURE.copy(), since + 2.0, moving=False)
+    check.look(room(), since + 2.1, moving=False)
+    check.look(PICTURE, since + 2.2, moving=True)
