@@ -15,6 +15,7 @@ pytestmark = pytest.mark.processes
 HERE = Path(__file__).resolve().parent
 LESSONS = HERE.parent
 SCENARIOS = yaml.safe_load((HERE / "lesson_commands.yaml").read_text(encoding="utf-8"))
+ELSEWHERE = SCENARIOS.pop("tested elsewhere")
 PACKAGES = sorted(manifest.parent.name for manifest in LESSONS.glob("*/package.xml"))
 FENCE = re.compile(r"^```bash\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:rosrun \S+|roslaunch \S+ \S+\.launch)\b[^`…]*)`")
@@ -49,7 +50,14 @@ def test_the_list_types_every_command_of_the_readme(package):
     english, chinese = (commands_in(LESSONS / package / name)
                         for name in ("README.md", "README.zh-CN.md"))
     assert english == chinese
-    assert english <= typed_in(package)
+    here = {command for command in english
+            if not any(re.fullmatch(row["match"], command) for row in ELSEWHERE)}
+    assert here <= typed_in(package)
+
+
+@pytest.mark.parametrize("row", ELSEWHERE, ids=lambda row: row["match"])
+def test_what_tests_a_command_elsewhere_is_there(row):
+    assert (LESSONS.parents[1] / row["by"]).is_file()
 
 
 def environment(folder: Path, port: int) -> dict[str, str]:

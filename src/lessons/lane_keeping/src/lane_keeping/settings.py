@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
 from pathlib import Path
@@ -124,7 +123,7 @@ def _checked(entry: Field, value: object, where: str) -> object:
         return value
     whole, low, high = rule.get("whole", False), rule["low"], rule["high"]
     fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
-    if not (fits and math.isfinite(value) and low <= value <= high):
+    if not (fits and low <= value <= high):
         kind = "whole number" if whole else "number"
         raise SettingsError(
             f"{where}: '{entry.name}' must be a {kind} from {low:g} to {high:g}, not {value!r}"
@@ -137,7 +136,8 @@ def _read_table(path: Path) -> dict:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
+        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
         raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     if not isinstance(values, dict):
         raise SettingsError(f"{path}: not a table of 'key: value' lines")

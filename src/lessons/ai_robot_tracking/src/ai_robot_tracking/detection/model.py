@@ -68,7 +68,7 @@ class Model:
     def _checked_input(self) -> tuple[str, type]:
         inputs = self._session.get_inputs()
         shape = inputs[0].shape if inputs else []
-        if len(inputs) != 1 or len(shape) != 4 or shape[1] not in (3, None) or _fixed(
+        if len(inputs) != 1 or len(shape) != 4 or _fixed(shape[1]) not in (3, None) or _fixed(
                 shape[0]) not in (1, None):
             said = " and ".join(str(one.shape) for one in inputs) or "nothing"
             raise ModelError(f"{self.path}: takes {said}, not one picture (1, 3, height, width); "
@@ -108,8 +108,10 @@ class Model:
 
 
 def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
-    if path.is_dir() or not path.exists():
-        reason = "is a folder" if path.is_dir() else "there is no such file"
+    if not path.is_file():  # nor a pipe or a device: they may never end
+        reason = "there is no such file"
+        if path.exists():
+            reason = "is a folder" if path.is_dir() else "is no regular file"
         raise ModelError(f"{path}: {reason}; give the path of an .onnx file")
     if path.suffix.lower() in (".pt", ".pth"):
         raise ModelError(f"{path}: is for PyTorch; export it: yolo export model={path.name} "

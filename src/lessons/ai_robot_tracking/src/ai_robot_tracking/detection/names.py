@@ -8,6 +8,8 @@ from pathlib import Path
 
 import yaml
 
+from ai_robot_tracking.detection.settings import NOT_READ
+
 DATA_KEYS = {"names", "imgsz", "nc", "path", "train", "val", "test", "download"}  # of YOLO's own
 
 
@@ -30,7 +32,7 @@ def read_sidecar(model: Path) -> Sidecar:
         return Sidecar(None, None)
     try:
         table = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+    except NOT_READ as error:
         raise NamesError(f"{path}: cannot be read: {_first_line(error)}") from None
     if not isinstance(table, dict):
         raise NamesError(f"{path}: not a table; write for example: names: [person, cone]")
@@ -85,7 +87,7 @@ def checked_size(value: object, where: str) -> tuple[int, int]:
 def _literal(text: str, where: str) -> object:
     try:
         return ast.literal_eval(text)
-    except (ValueError, SyntaxError, MemoryError, RecursionError):
+    except (TypeError, ValueError, SyntaxError, MemoryError, RecursionError):
         raise NamesError(f"{where}: {text[:60]!r} is neither a list nor a table") from None
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import yaml
+
+
+# Of a file that is not there or no YAML; a date of month 13 is a ValueError, `!!timestamp x` an
+# AttributeError.
+NOT_READ = (OSError, ValueError, AttributeError, RecursionError, yaml.YAMLError)
 
 
 class SettingsError(Exception):
@@ -31,7 +35,7 @@ def read_settings(path: Path | str, given: dict[str, object]) -> Settings:
     """The file's numbers with those of `given` (ROS parameters) in their place."""
     try:
         table = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+    except NOT_READ as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise SettingsError(f"{path}: cannot be read: {reason}") from None
     if not isinstance(table, dict):
@@ -52,8 +56,7 @@ def _checked(value: object, key: str, where: str) -> float:
     lowest, highest = LIMITS[key]
     whole = isinstance(lowest, int)
     kinds = (int,) if whole else (int, float)
-    if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value) or not (
-            lowest <= value <= highest):
+    if isinstance(value, bool) or not isinstance(value, kinds) or not lowest <= value <= highest:
         what = "a whole number" if whole else "a number"
         raise SettingsError(f"{where} must be {what} from {lowest:g} to {highest:g}, not {value!r}")
     return value if whole else float(value)
