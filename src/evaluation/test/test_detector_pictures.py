@@ -11,7 +11,9 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from evaluation.detector.classes import CLASSES
+from evaluation.detector.dataset import INPUT_HEIGHT, INPUT_WIDTH, holds, read_sets, write_set
 from evaluation.detector.drawing import draw_picture, draw_stage
+from evaluation.detector.main import main
 from evaluation.detector.solids import Thing, bar, box, coloured
 from evaluation.detector.staging import Stage
 from evaluation.detector.things import MAKERS
@@ -96,3 +98,20 @@ def test_each_thing_stands_on_the_floor_and_is_seen(renderer, label):
                         surroundings=(box((60.0, 60.0, 0.1), (0, 0, -9.0), FLOOR.material),))
         (found,) = draw_stage(renderer, stage, 100 + seed).labels
         assert CLASSES[int(found[0])] == label and found[5] == 1
+
+
+def test_a_damaged_set_is_drawn_again_and_never_read(tmp_path):
+    path = tmp_path / "train-1000000.npz"
+    write_set(path, [(np.zeros((INPUT_HEIGHT, INPUT_WIDTH, 3), np.uint8), np.zeros((1, 6)))], 7)
+    assert holds(path, 1) and len(read_sets(tmp_path, "train")) == 1
+    path.write_bytes(path.read_bytes()[:-40])
+    assert not holds(path, 1)
+    with pytest.raises(OSError, match=r"train-1000000\.npz: no set of pictures"):
+        read_sets(tmp_path, "train")
+
+
+@pytest.mark.parametrize("option", [["--pictures", "0"], ["--pictures", "\u0663"],
+                                    ["--seed", "-1"], ["--seed", "x"]])
+def test_a_number_that_is_none_is_one_line(option, capsys):
+    assert main(["train", "folder", "model.onnx", *option]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

@@ -18,6 +18,7 @@ from evaluation.lane.results import (
     write_report,
 )
 from evaluation.lane.scenery import load_crossings
+from evaluation.lane.trials import main
 
 CROSSINGS = load_crossings()
 FIRST = CROSSINGS.zebras[0]  # heading east, so metres along it are metres of x
@@ -146,6 +147,20 @@ def test_a_report_is_gone_on_with(tmp_path):
     (tmp_path / "report.json").write_text("{}")
     with pytest.raises(RunError, match="no report of lane trials"):
         read_drives(tmp_path / "report.json")
+
+
+@pytest.mark.parametrize("nearest, clear", [(0.6, True), (0.003, False), (None, False)])
+def test_who_was_touched_outside_of_encounters_counts_too(nearest, clear):
+    plain = from_report(REPORT, "skeleton", 1, draw(1), people=True)
+    assert type(plain)(**{**vars(plain), "nearest_person": nearest}).kept_clear is clear
+
+
+def test_going_on_with_another_method_is_refused(tmp_path, capsys):
+    write_report([from_report(REPORT, "skeleton", 0, draw(0), people=False)],
+                 tmp_path / "report.json")
+    arguments = ["--seeds", "1", "--crossings", "0", "--resume", "--out", str(tmp_path)]
+    assert main(arguments) == 2
+    assert "report.json: is of METHOD=skeleton" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("arguments, said", [

@@ -8,6 +8,7 @@ import os
 import sys
 import time
 
+import rosgraph
 import rospy
 from ai_robot_tracking.detection.decoding import nothing
 from ai_robot_tracking.detection.messages import PictureError, detections_of, image_of, rgb_of
@@ -15,22 +16,25 @@ from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
 from ai_robot_tracking.detection.picture import annotated
 from ai_robot_tracking.detection.settings import LIMITS, SettingsError, read_settings
+from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
 from vision_msgs.msg import Detection2DArray, VisionInfo
 
 PACKAGE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..")
-KEYS = {*LIMITS, "model", "image", "config", "class_names"}
+TEXTS = ("model", "image", "config")
+KEYS = {*LIMITS, *TEXTS, "class_names"}
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
+TICK = 0.2  # s, wall: nothing waits for longer, or Ctrl-C would
 BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
 
 
 class ObjectDetector:
     """Takes the newest picture, asks the network, publishes what it found."""
 
-    def __init__(self, model, settings):
+    def __init__(self, model, settings, topic):
         self.model, self.settings = model, settings
         self.pictures = Newest()
-        self.topic = rospy.resolve_name(rospy.get_param("~image", "image"))
+        self.topic = topic
         self.detections = rospy.Publisher("~detections", Detection2DArray, queue_size=1)
         self.annotated = rospy.Publisher("~annotated", Image, queue_size=1)
         self.info = rospy.Publisher("~vision_info", VisionInfo, queue_size=1, latch=True)
@@ -48,21 +52,27 @@ class ObjectDetector:
 
     def run(self):
         """Until the node is told to end; only the newest picture counts."""
-        heard, told = time.monotonic(), time.monotonic()
+        heard = told = due = time.monotonic()
         while not rospy.is_shutdown():
-            message = self.pictures.take(0.2)
+            message = self.next_picture(due)
             now = time.monotonic()
             if message is not None:
                 heard = now
                 self.work(message)
                 if self.settings.max_rate > 0:  # wall time: it is the machine that is spared
-                    time.sleep(max(0.0, 1 / self.settings.max_rate - (time.monotonic() - now)))
-            elif now - heard > QUIET_TIME:
+                    due = now + 1 / self.settings.max_rate
+            elif now - max(heard, due) > QUIET_TIME:
                 rospy.logwarn_throttle(COMPLAINT_TIME, f"no picture on {self.topic} for "
                                        f"{now - heard:.0f} s; see: rostopic hz {self.topic}")
             if now - told > SKIP_TIME:
+                self.tell_skipped(now - told)
                 told = now
-                self.tell_skipped()
+
+    def next_picture(self, due):
+        """The newest picture, not before `due` (wall s), or None after a TICK or two."""
+        rest = due - time.monotonic()
+        time.sleep(min(max(rest, 0.0), TICK))
+        return self.pictures.take(TICK) if rest <= TICK else None
 
     def work(self, message):
         """One picture; what cannot be read is said and left out."""
@@ -82,29 +92,38 @@ class ObjectDetector:
             picture = annotated(rgb, found, self.model.names)
             self.annotated.publish(image_of(picture, message.header))
 
-    def tell_skipped(self):
-        """One line, if pictures came faster than they could be looked at."""
+    def tell_skipped(self, span):
+        """One line, if in these s pictures came faster than they could be looked at."""
         taken, skipped = self.pictures.counts()
         if skipped:
-            rospy.loginfo(f"{skipped} of {taken + skipped} pictures skipped in {SKIP_TIME:.0f} s: "
-                          f"looked at {taken / SKIP_TIME:.1f} a second, always the newest")
+            rospy.loginfo(f"{skipped} of {taken + skipped} pictures skipped in {span:.0f} s: "
+                          f"looked at {taken / span:.1f} a second, always the newest")
 
 
 def main():
     """Exit code 1, with one line, if the model or a parameter is no good."""
     rospy.init_node("object_detector")
     given = rospy.get_param("~", {})
-    config = given.get("config", os.path.join(PACKAGE, "config/detector_params.yaml"))
-    path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
+    for key in load_command_line_node_params(sys.argv):
+        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
     try:
         for key in sorted(set(given) - KEYS):
             raise SettingsError(f"unknown parameter ~{key}; known: {', '.join(sorted(KEYS))}")
-        settings = read_settings(config, {key: given[key] for key in LIMITS if key in given})
-        model = Model(os.path.expanduser(str(path)), settings.threads)
+        for key in TEXTS:
+            if not isinstance(given.get(key, ""), str):
+                raise SettingsError(f"~{key} must be a name, not {given[key]!r}")
+        topic = rospy.resolve_name(given.get("image") or "image")
+        if not rosgraph.names.is_legal_name(topic):
+            raise SettingsError(f"'{topic}' can be no topic; see: rostopic list")
+        config = given.get("config") or os.path.join(PACKAGE, "config/detector_params.yaml")
+        path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
+        numbers = {key: given[key] for key in LIMITS if key in given}
+        settings = read_settings(os.path.expanduser(config), numbers)
+        model = Model(os.path.expanduser(path), settings.threads)
     except (ModelError, SettingsError) as error:
         rospy.logfatal(str(error))
         return 1
-    detector = ObjectDetector(model, settings)
+    detector = ObjectDetector(model, settings, topic)
     rospy.loginfo(f"looking for {', '.join(model.names)} on {detector.topic}"[:200])
     detector.run()
     return 0

@@ -42,8 +42,8 @@ class SimpleController:
     def send(self, speed, turn, duration):
         message, rate = Twist(), rospy.Rate(RATE_HZ, reset=True)
         message.linear.x, message.angular.z = speed, turn
-        until = rospy.get_time() + duration
-        while rospy.get_time() < until and not rospy.is_shutdown():
+        begun = rospy.get_time()
+        while 0 <= rospy.get_time() - begun < duration and not rospy.is_shutdown():
             self.publisher.publish(message)  # again and again: an old command is forgotten
             try:
                 rate.sleep()

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """object_detector.py on a topic of drawn pictures: what it publishes, skips, says and refuses."""
 
+import signal
 import subprocess
 import sys
 import tempfile
@@ -107,14 +108,41 @@ class Detector(unittest.TestCase):
         with tempfile.NamedTemporaryFile(suffix=".onnx") as file:
             file.write(b"no network")
             file.flush()
-            done = subprocess.run(
-                ["rosrun", "ai_robot_tracking", "object_detector.py", "__name:=second",
-                 f"_model:={file.name}"], capture_output=True, text=True, timeout=60, check=False)
+            said = self.refused(f"_model:={file.name}")
+        self.assertIn("is damaged, or no ONNX file", said)
+        self.assertTrue(Path(file.name).name in said)
+        self.assertFalse(rospy.has_param("/second/model"), "it would stay for the next run")
+
+    def test_a_number_for_a_name_ends_the_node_with_one_line(self):
+        self.assertIn("~config must be a name, not 5", self.refused("_config:=5"))
+
+    def test_a_name_that_is_no_topic_ends_the_node_with_one_line(self):
+        self.assertIn("'/my camera' can be no topic", self.refused("_image:=my camera"))
+
+    def refused(self, argument):
+        done = subprocess.run(
+            ["rosrun", "ai_robot_tracking", "object_detector.py", "__name:=second", argument],
+            capture_output=True, text=True, timeout=60, check=False)
         self.assertNotEqual(done.returncode, 0)
         said = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         self.assertEqual(len(said), 1, said)
-        self.assertIn("is damaged, or no ONNX file", said[0])
-        self.assertTrue(Path(file.name).name in said[0])
+        return said[0]
+
+    def test_a_low_rate_does_not_keep_ctrl_c_waiting(self):
+        network = Path(__file__).resolve().parent / "detection_data" / "patches_v8.onnx"
+        node = subprocess.Popen(
+            ["rosrun", "ai_robot_tracking", "object_detector.py", "__name:=slow",
+             "_max_rate:=0.01", f"_model:={network}", f"image:={TOPIC}"])
+        heard = []
+        subscriber = rospy.Subscriber("/slow/detections", Detection2DArray, heard.append)
+        try:
+            self.repeat(picture(401), lambda: heard, "an answer at a low rate")
+            node.send_signal(signal.SIGINT)
+            self.assertEqual(node.wait(timeout=10), 0)
+        finally:
+            subscriber.unregister()
+            node.kill()
+            node.wait()
 
 
 def picture(second, patch=None):

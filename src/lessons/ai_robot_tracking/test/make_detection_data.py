@@ -32,6 +32,11 @@ def main() -> None:
     write_network("puts_out_maps", fixed, maps, fixed, names)
     odd = [*tables("v8")[:-1], *padded()]
     write_network("odd_table", fixed, odd, [1, 9, cells], names)
+    free[1] = "channels"
+    write_network("patches_free", free, tables("v8"), [1, 6, cells], names)
+    one = {"names": "{0: 'red'}"}
+    write_network("after_nms", fixed, chosen(), [1, cells, 6], one)
+    write_network("too_large", [1, 3, 100000, 100000], chosen(), [1, cells, 6], one)
 
 
 def write_outputs() -> None:
@@ -73,6 +78,12 @@ def tables(layout):
 def padded():
     """A table of neither layout for two classes."""
     return [node("Concat", ["boxes", "sure", "boxes"], "output0", axis=1)]
+
+
+def chosen():
+    """What an export with NMS in it puts out: boxes, score, class. It looks at no picture."""
+    return [node("Concat", ["boxes", "sure", "sure"], "columns", axis=1),
+            node("Transpose", ["columns"], "output0", perm=[0, 2, 1])]
 
 
 def constants():

@@ -48,6 +48,13 @@ def test_nothing_above_the_confidence_is_nothing_found(stored):
         assert len(found) == 0 and found.boxes.shape == (0, 4)
 
 
+def test_what_is_not_finite_is_left_out_without_a_word(recwarn):
+    table = np.array([[[50, 50, 20, 20, np.inf, 0.0], [50, 50, 20, 20, 3e38, 3e38],
+                       [np.nan, 50, 20, 20, 0.9, 0.9], [90, 50, 20, 20, 0.9, 0.9]]], np.float32)
+    found = decode(table, V5, 0.25, 0.5)
+    assert found.boxes.tolist() == [[80, 40, 100, 60]] and not recwarn.list
+
+
 @pytest.mark.parametrize("shape, classes, expected", [
     ((1, 25200, 85), 80, (V5, 80)),
     ((1, 84, 8400), 80, (V8, 80)),

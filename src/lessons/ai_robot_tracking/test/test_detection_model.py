@@ -1,5 +1,6 @@
 """Networks in files: both layouts find what is there; what is no network is one clear line."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 from ai_robot_tracking.detection.messages import PictureError, rgb_of
 from ai_robot_tracking.detection.model import Model, ModelError
+from ai_robot_tracking.detection.names import NamesError, names_of_export
 from ai_robot_tracking.detection.newest import Newest
 from ai_robot_tracking.detection.picture import annotated
 from ai_robot_tracking.detection.settings import SettingsError, read_settings
@@ -42,6 +44,17 @@ def test_without_names_classes_have_numbers():
     assert Model(DATA / "patches_v5.onnx").names == ["class 0", "class 1"]
 
 
+def test_all_sides_of_the_input_may_be_free():
+    assert Model(DATA / "patches_free.onnx").names == ["red", "blue"]
+
+
+@pytest.mark.parametrize("text", ["{[]: 1}", "{{}}", "[" * 5000, "__import__('os')", "{0: 'a'",
+                                  "\0", "7"])
+def test_names_in_an_export_are_read_as_data_alone(text):
+    with pytest.raises(NamesError, match=r"^its names: "):
+        names_of_export(text)
+
+
 def test_a_yaml_beside_the_model_wins(tmp_path):
     path = Path(shutil.copy(DATA / "patches_v8.onnx", tmp_path))
     path.with_suffix(".yaml").write_text("nc: 2\nnames: [rot, blau]\n")
@@ -58,6 +71,9 @@ def test_a_yaml_beside_the_model_wins(tmp_path):
     ("nc: 3\nnames: [a, b]", "nc is 3, but there are 2 names"),
     ("imgsz: [0, 9]", "imgsz: must be [height, width]"),
     ("names: [a, b", "cannot be read"),
+    ("names: 2026-13-45", "cannot be read: month must be in 1..12"),
+    ("names: !!timestamp x", "cannot be read"),
+    ("[" * 5000, "cannot be read"),
     ("7", "not a table"),
 ])
 def test_a_wrong_yaml_is_named(text, said, tmp_path):
@@ -70,6 +86,8 @@ def test_a_wrong_yaml_is_named(text, said, tmp_path):
     ("takes_a_table", "takes [1, 10], not one picture (1, 3, height, width)"),
     ("puts_out_maps", "puts out [1, 3, 64, 64], not YOLO's one table"),
     ("odd_table", "its output has shape (1, 9, 16), and its names are 2"),
+    ("after_nms", "its output has shape (1, 16, 6): boxes that NMS has chosen"),
+    ("too_large", "takes 100000x100000 px, more than 4096"),
 ])
 def test_a_network_of_another_kind_is_refused(name, said):
     assert said in complaint(DATA / f"{name}.onnx")
@@ -95,6 +113,8 @@ def test_every_cut_of_a_file_is_refused(tmp_path):
 def test_missing_files_folders_and_torch_files_are_told(tmp_path):
     assert "there is no such file" in complaint(tmp_path / "none.onnx")
     assert "is a folder" in complaint(tmp_path)
+    os.mkfifo(tmp_path / "pipe.onnx")  # to read it would wait for ever
+    assert "is no regular file" in complaint(tmp_path / "pipe.onnx")
     (tmp_path / "best.pt").write_bytes(b"PK")
     assert "yolo export model=best.pt format=onnx" in complaint(tmp_path / "best.pt")
 
@@ -143,6 +163,8 @@ def test_settings_come_from_the_file_and_the_node_wins():
     ("confidance: 0.3", "unknown key 'confidance'"),
     ("confidence: 1.5", "confidence must be a number from 0 to 1, not 1.5"),
     ("iou: high", "iou must be a number from 0 to 1, not 'high'"),
+    ("threads: 1" + "0" * 400, "threads must be a whole number from 1 to 64"),
+    ("iou: 2026-13-45", "cannot be read: month must be in 1..12"),
     ("threads: 1.5", "threads must be a whole number from 1 to 64"),
     ("max_rate: .nan", "max_rate must be a number from 0 to 1000, not nan"),
 ])

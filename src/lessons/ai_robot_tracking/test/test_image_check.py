@@ -43,6 +43,14 @@ def test_blank():
     check.look(room(), 0.1, moving=False)
 
 
+def test_frozen_after_the_clock_was_set_back():
+    check = ImageCheck()
+    check.look(PICTURE, 100.0, moving=True)
+    check.look(PICTURE.copy(), 3.0, moving=True)
+    with pytest.raises(BadImage, match="frozen"):
+        check.look(PICTURE.copy(), 3.6, moving=True)
+
+
 def test_frozen_only_if_the_robot_should_move():
     check = ImageCheck()
     for tick in range(40):  # standing sees the same, for ever

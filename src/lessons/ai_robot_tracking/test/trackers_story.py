@@ -111,6 +111,7 @@ class TrackersStory(unittest.TestCase):
         said, _ = node.communicate(timeout=LIMIT)
         self.assertEqual(node.returncode, 1)
         self.assertIn("unknown key 'kp_trun'", said)
+        self.assertFalse(rospy.has_param("/mistyped/kp_trun"), "it would stay for the next run")
         self.assertNotIn("Traceback", said)
 
 

@@ -18,7 +18,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from lane_keeping import lane_keeper
 from lane_keeping.annotate import annotate
-from lane_keeping.image_watch import mistake_in
+from lane_keeping.image_watch import mistake_in, picture_of
 from lane_keeping.settings import SettingsError, load_settings
 from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
@@ -58,12 +58,14 @@ class LaneKeeping:
 
     def take_image(self, msg):
         with self.lock:
+            if rospy.is_shutdown():
+                return  # it waited for the lock while stop() held it: no command after the last one
             self.arrival = rospy.get_time()
             mistake = mistake_in(msg.encoding, msg.width, msg.height, msg.step, len(msg.data))
             if mistake:
                 self.distrust("bad image", f"{mistake}, standing still  图像格式不对，停车")
                 return
-            image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
+            image = picture_of(msg.encoding, msg.width, msg.height, msg.step, msg.data)
             decision = self.keeper.step(image, msg.header.stamp.to_sec(), self.arrival)
             self.send(decision.speed, decision.turn)
         self.say(decision.state, WARNINGS.get(decision.state))
@@ -98,7 +100,9 @@ class LaneKeeping:
     def check_images(self, _event):
         with self.lock:
             late = rospy.get_time() - self.arrival
-            if late > self.settings.image_timeout:
+            if late < 0:
+                self.arrival = rospy.get_time()  # time began anew
+            elif late > self.settings.image_timeout:
                 self.distrust("no image", "no picture, standing still  没有图像，停车")
 
     def send(self, speed, turn):
@@ -116,14 +120,25 @@ class LaneKeeping:
                 time.sleep(0.1)  # s, on the wall: simulated time may stand still
 
 
+def read_parameters(given):
+    """Settings and whether there is a window, from the node's parameters; or SettingsError."""
+    numbers = dict(given)
+    path, window = numbers.pop("config", "") or CONFIG, numbers.pop("window", True)
+    if not isinstance(path, str):
+        raise SettingsError(f"the node's parameters: 'config' must be a file, not {path!r}")
+    if window not in (True, False):
+        raise SettingsError(f"the node's parameters: 'window' must be true or "
+                            f"false, not {window!r}")
+    return load_settings(os.path.expanduser(path), numbers), bool(window)
+
+
 def main():
     rospy.init_node("lane_keeping")
     given = rospy.get_param("~", {})
     for key in load_command_line_node_params(sys.argv):
         rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
-    path, window = given.pop("config", CONFIG), given.pop("window", True)
     try:
-        node = LaneKeeping(load_settings(path, given), window)
+        node = LaneKeeping(*read_parameters(given))
     except SettingsError as error:
         rospy.logfatal("%s", error)
         sys.exit(1)

@@ -21,11 +21,14 @@ import yaml
 from geometry_msgs.msg import Twist
 from lane_keeping.walking import Crossing, Habits, Walker
 from nav_msgs.msg import Odometry
+from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import CameraInfo
 
 LATEST = 0.022  # s: places come at 50 Hz; an older one is not the last before a picture
 PATIENCE = 0.1  # s, wall, to wait for it
-KEYS = {"length", "half_width", "kerb", "far", "zebras"}
+MEASURES, PLACE = ("length", "half_width", "kerb", "far"), ("x", "y", "heading")
+PARAMETERS = ("crossings", "near", "seed")
+MOST = 1e6  # of any number
 
 
 class Place:
@@ -80,22 +83,50 @@ def read_crossings(path):
     """The crossings of a YAML file; exits with one line if it is none."""
     try:
         values = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-        unknown = sorted(set(values) ^ KEYS)
-        if unknown:
-            raise ValueError(f"key {unknown[0]!r} is missing or unknown")
-        common = (values["length"], values["kerb"], values["far"])
-        return [Crossing(zebra["x"], zebra["y"], zebra["heading"], *common)
-                for zebra in values["zebras"]]
-    except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
+        zebras = values.pop("zebras", ()) if isinstance(values, dict) else ()
+        length, _, kerb, far = numbers(values, MEASURES, "")
+        return [Crossing(*numbers(zebra, PLACE, f"zebra {count}: "), length, kerb, far)
+                for count, zebra in enumerate(zebras, start=1)]
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError,
+            yaml.YAMLError) as error:
         raise SystemExit(f"pedestrians: {path}: {' '.join(str(error).split())}") from error
+
+
+def numbers(table, keys, where):
+    """The values of these keys as floats; ValueError if it has others, or one is no number."""
+    wrong = sorted(set(table if isinstance(table, dict) else ()) ^ set(keys), key=str)
+    if wrong:
+        raise ValueError(f"{where}key '{wrong[0]}' is missing or unknown")
+    for key in keys:
+        value = table[key]
+        if type(value) not in (int, float) or not -MOST < value < MOST:
+            raise ValueError(f"{where}'{key}' must be a number, not {value!r}")
+    return [float(table[key]) for key in keys]
+
+
+def read_parameters(given):
+    """The file of the crossings, `near` (m) and the seed; exits with one line if one is wrong."""
+    for key in given:
+        if key not in PARAMETERS:
+            raise SystemExit(f"pedestrians: unknown parameter ~{key}; known: "
+                             f"{', '.join(PARAMETERS)}")
+    near, seed = given.get("near", 0.0), given.get("seed", 0)
+    if type(near) not in (int, float) or not 0 <= near < MOST:
+        raise SystemExit(f"pedestrians: ~near must be a number from 0 on, m, not {near!r}")
+    if type(seed) is not int or seed < 0:
+        raise SystemExit(f"pedestrians: ~seed must be a whole number from 0 on, not {seed!r}")
+    package = Path(rospkg.RosPack().get_path("lane_keeping"))
+    path = str(given.get("crossings") or package / "config" / "crossings.yaml")
+    return path, float(near), seed
 
 
 def main():
     rospy.init_node("pedestrians")
-    package = Path(rospkg.RosPack().get_path("lane_keeping"))
-    path = rospy.get_param("~crossings", str(package / "config" / "crossings.yaml"))
-    habits = Habits(near=float(rospy.get_param("~near", 0.0)))
-    Pedestrians(read_crossings(path), habits, int(rospy.get_param("~seed", 0)))
+    given = rospy.get_param("~", {})
+    for key in load_command_line_node_params(sys.argv):
+        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+    path, near, seed = read_parameters(given)
+    Pedestrians(read_crossings(path), Habits(near=near), seed)
     rospy.spin()
 
 

@@ -125,6 +125,28 @@ def test_time_that_is_set_back_is_no_trouble():
     assert (decision.state, decision.speed) == (lane_keeper.LANE, SETTINGS.straight_speed)
 
 
+@pytest.mark.parametrize("stamp", [0.0, 7.0])
+def test_a_camera_whose_stamps_stand_still_does_not_let_it_drive_without_a_lane(stamp):
+    keeper, bare = LaneKeeper(SETTINGS), draw(SETTINGS, sides=())
+    assert keeper.step(draw(SETTINGS), stamp, now=5.0).state == lane_keeper.LANE
+    for frame in range(1, 20):
+        decision = keeper.step(np.roll(bare, frame, axis=1), stamp, now=5.0 + frame * FRAME)
+        assert decision.state != lane_keeper.LANE
+    assert decision.speed == 0
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("hfov", [0.3, 1.4])
+def test_a_camera_that_looks_up_is_no_trouble(method, hfov, recwarn):
+    up = replace(SETTINGS, method=method, camera_pitch=-0.3, camera_hfov=hfov)
+    keeper, image = LaneKeeper(up), np.full((240, 320, 3), 150, np.uint8)
+    for frame, half in enumerate((slice(0, 160), slice(150, 170), slice(280, 320))):
+        picture = image.copy()
+        picture[:, half] = 20
+        annotate(picture, keeper.step(picture, 1 + frame * FRAME))
+    assert not recwarn.list
+
+
 def test_drawing_leaves_every_state_drawn_in_little_time():
     image = draw(SETTINGS, zebra=(1.0, 1.8), people=[Person(1.4, 0.0)])
     spent = []

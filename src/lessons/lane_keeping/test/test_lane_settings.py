@@ -36,6 +36,7 @@ def test_every_method_has_a_file_and_every_file_is_a_method():
     ({"speeed": 1}, "unknown key 'speeed'; known: method, "),
     ({"method": "magic"}, "'method' must be one of sliding_windows, "),
     ({"windows": 9.5}, "'windows' must be a whole number from 3 to 40, not 9.5"),
+    ({"steer_gain": 10**400}, "'steer_gain' must be a number from 0 to 20, not 1000"),
     ({"steer_gain": "much"}, "'steer_gain' must be a number from 0 to 20, not 'much'"),
     ({"max_turn": float("nan")}, "'max_turn' must be a number from 0.1 to 10, not nan"),
     ({"straight_speed": True}, "'straight_speed' must be a number from 0 to 5, not True"),
@@ -68,3 +69,12 @@ def test_parameters_win():
     assert (settings.method, settings.steer_gain) == ("skeleton", 3.0)
     with pytest.raises(SettingsError, match="the node's parameters: unknown key 'gain'"):
         load_settings(FILES[0], {"gain": 3})
+
+
+@pytest.mark.parametrize("text", ["windows: 2026-13-45", "windows: !!timestamp x", "[" * 5000])
+def test_what_yaml_itself_trips_over_is_one_line(tmp_path, text):
+    path = tmp_path / "odd.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SettingsError, match="no YAML") as caught:
+        load_settings(path)
+    assert "\n" not in str(caught.value) and str(path) in str(caught.value)

@@ -54,3 +54,12 @@ def test_with_near_people_wait_for_a_car():
 def test_a_seed_repeats_its_walks():
     assert walk(standing(2.0), seed=4) == walk(standing(2.0), seed=4)
     assert walk(standing(2.0), seed=4) != walk(standing(2.0), seed=5)
+
+
+def test_people_walk_again_after_the_clock_was_set_back():
+    walker = Walker(CROSSING, Habits(), np.random.default_rng(0))
+    walker.step(500.0, (CROSSING.x, CROSSING.y - 1.4), None)
+    walker.step(500.1, (CROSSING.x, CROSSING.y + 1.5), None)
+    speeds = [walker.step(time, (CROSSING.x, CROSSING.y - 1.4), None)
+              for time in np.arange(0, 9, PERIOD)]
+    assert any(speeds)

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 from ai_robot_tracking.detection.letterbox import letterbox
 
 INPUT_WIDTH, INPUT_HEIGHT = 320, 256  # px
+DAMAGED = (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, BadZipFile)
 PICTURE, CLASS, BOX, COUNTS = 0, 1, slice(2, 6), 6  # columns of labels
 SHARD = 500  # pictures in one file
 TRAIN_FIRST, CHECK_FIRST, TEST_FIRST = 1_000_000, 2_000_000, 3_000_000  # seeds; sets never meet
@@ -50,25 +52,32 @@ def write_set(path: Path, pictures: list[tuple[np.ndarray, np.ndarray]], first: 
 
 
 def holds(path: Path, count: int) -> bool:
-    """Whether the file is there, with so many pictures."""
-    if not path.exists():
+    """Whether the file is there and whole, with so many pictures."""
+    try:
+        with np.load(path) as file:
+            return int(file["count"]) == count
+    except DAMAGED:
         return False
-    with np.load(path) as file:
-        return int(file["count"]) == count
 
 
 def read_sets(folder: Path, name: str, most: int | None = None) -> PictureSet:
-    """All files of a set as one, in the order of their seeds; `most` pictures of it."""
+    """All files of a set as one, in the order of their seeds; `most` pictures of it.
+
+    FileNotFoundError if there is none, OSError if one is damaged.
+    """
     images, labels, count, first = [], [], 0, None
     for path in sorted(folder.glob(f"{name}-*.npz")):
         if most is not None and count >= most:
             break
-        with np.load(path) as file:
-            rows = file["labels"].copy()
-            rows[:, PICTURE] += count
-            images.append(file["images"])
-            labels.append(rows)
-            first = int(file["first"]) if first is None else first
+        try:
+            with np.load(path) as file:
+                rows = file["labels"].copy()
+                rows[:, PICTURE] += count
+                images.append(file["images"])
+                labels.append(rows)
+                first = int(file["first"]) if first is None else first
+        except DAMAGED as error:
+            raise OSError(f"{path}: no set of pictures; draw it again: {error}") from error
         count += len(images[-1])
     if first is None:
         raise FileNotFoundError(f"{folder}: no pictures {name}-*.npz; draw them first")

@@ -7,7 +7,7 @@ zebra, its front at most APPROACH before it. Rules, each on its own:
 - stood off: while a person is in the lane and the car is before them, its front stays KEPT_OFF or
   more from the person's body, and a car that stops, stops KEPT_OFF or more before the zebra.
 - moved on: MOVES_ON after the person left the lane at the latest the car drives at GOES or more,
-  unless somebody is in the lane again, or it never had to stop.
+  unless it never had to stop.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from evaluation.course_run.failure import RunError
-from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, Encounter
+from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
 from evaluation.race_trials.disturbance import Disturbance
 
 MOST_RMS, LEAST_SPEED = 0.05, 0.6  # m from the lane's middle, m/s
@@ -39,6 +39,11 @@ class LaneDrive:
     def closed(self) -> bool:
         """Did it go all the way?"""
         return self.outcome == CLOSED
+
+    @property
+    def kept_clear(self) -> bool:
+        """Was nobody touched, over the whole drive? Without a distance nobody knows."""
+        return self.nearest_person is not None and self.nearest_person >= TOUCHED
 
     @property
     def within_limits(self) -> bool:

@@ -49,6 +49,9 @@ def _run(options: TrialOptions) -> int:
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.json"
     drives = read_drives(path) if options.resume else []
+    others = {each.method for each in drives} - {options.method}
+    if others:
+        raise RunError(f"{path}: is of METHOD={others.pop()}; choose that or another --out")
     try:
         _drive_laps(options, drives, path)
         _drive_crossings(options, drives, path)
@@ -59,7 +62,7 @@ def _run(options: TrialOptions) -> int:
     laps = [each for each in drives if not each.people]
     met = [each for drive in drives for each in drive.encounters]
     good = all(each.within_limits for each in laps) and all(each.passed for each in met) and all(
-        each.closed and (each.nearest_person or 0.0) > 0 for each in drives if each.people)
+        each.closed and each.kept_clear for each in drives if each.people)
     return PASSED if good else NOT_PASSED
 
 

@@ -51,8 +51,8 @@ class ImageCheck:
         """
         if self._last is None or not np.array_equal(picture, self._last):
             self._last, self._same_since, self._frozen = picture, time, False
-        elif not moving and not self._frozen:
-            self._same_since = time  # who stands sees the same
+        elif (not moving and not self._frozen) or time < self._same_since:
+            self._same_since = time  # who stands sees the same; or time began anew
         if (picture == picture[0, 0]).all():
             raise BadImage("it is blank: every pixel has the same colour")
         self._frozen = self._frozen or time - self._same_since >= FROZEN_TIME

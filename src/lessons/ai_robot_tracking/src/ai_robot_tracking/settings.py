@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import Field, field, fields
 from pathlib import Path
@@ -48,7 +47,7 @@ def checked(entry: Field, value: object, where: str) -> float:
     """The value as a number within the field's bounds; SettingsError if it is none."""
     low, high = entry.metadata["low"], entry.metadata["high"]
     fits = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (fits and math.isfinite(value) and low <= value <= high):
+    if not (fits and low <= value <= high):
         raise SettingsError(
             f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {value!r}")
     return float(value)
@@ -59,7 +58,8 @@ def _section(path: Path, section: str) -> dict:
         sections = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
+        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
         raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     values = sections.get(section) if isinstance(sections, dict) else None
     if not isinstance(values, dict):

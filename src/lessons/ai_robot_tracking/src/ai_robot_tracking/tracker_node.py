@@ -14,6 +14,7 @@ import numpy as np
 import rospkg
 import rospy
 from geometry_msgs.msg import Twist
+from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool
 
@@ -32,6 +33,8 @@ def read_settings(kind: type[Settings], section: str) -> Settings:
     The node's other parameters win over the file. If they do not fit, one line ends the program.
     """
     given = dict(rospy.get_param("~", {}))
+    for key in load_command_line_node_params(sys.argv):
+        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
     folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
     try:
         path = Path(str(given.pop("config", folder / "tracking_params.yaml")))
@@ -75,6 +78,8 @@ class TrackerNode:
         with self._lock:
             if self._is_old(message.header.stamp):
                 return  # the time-out goes on
+            if rospy.is_shutdown():
+                return  # it waited while _end() held the lock: no command after the last one
             self._stamp, self._fresh = message.header.stamp, rospy.get_time()
             self._waiting = False
             picture = self._look(message)

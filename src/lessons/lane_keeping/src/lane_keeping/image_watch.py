@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 
 CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4, "mono8": 1}
+TO_BGR = {
+    "rgb8": cv2.COLOR_RGB2BGR, "bgra8": cv2.COLOR_BGRA2BGR, "rgba8": cv2.COLOR_RGBA2BGR,
+    "mono8": cv2.COLOR_GRAY2BGR,
+}  # fmt: skip
 SMALLEST = 80, 60  # px
 EVERY = 8  # px; a picture without contrast on this grid is blank
 
@@ -21,6 +26,16 @@ def mistake_in(encoding: str, width: int, height: int, step: int, length: int) -
     if length != step * height:
         return f"{length} bytes of data, but {height} rows of {step} bytes are {step * height}"
     return None
+
+
+def picture_of(encoding: str, width: int, height: int, step: int, data: bytes) -> np.ndarray:
+    """(height, width, 3) uint8 BGR of an image message's fields, in which `mistake_in` finds none.
+
+    Debian 12's cv_bridge skews pictures whose rows are padded.
+    """
+    rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, : width * CHANNELS[encoding]]
+    pixels = np.ascontiguousarray(rows.reshape(height, width, CHANNELS[encoding]))
+    return cv2.cvtColor(pixels, TO_BGR[encoding]) if encoding in TO_BGR else pixels
 
 
 def is_blank(image: np.ndarray, contrast: float) -> bool:

@@ -96,5 +96,5 @@ def _are_a_lane(left: Side, right: Side, view: RoadView) -> bool:
     """Whether the lines are about a lane's width apart where both were seen."""
     first, last = max(left.rows[0], right.rows[0]), min(left.rows[1], right.rows[1])
     rows = np.linspace(min(first, last), last, 5)
-    apart = np.polyval(right.curve - left.curve, rows) / view.lane_width_px(rows)
+    apart = np.polyval(right.curve - left.curve, rows) / np.maximum(view.lane_width_px(rows), 1e-6)
     return bool(NARROWEST < np.median(apart) < WIDEST)

@@ -53,6 +53,7 @@ class LaneKeeper:
 
         stamp: s, when it was taken; now: s, when it came, for a camera whose stamps stand still.
         """
+        stamp = stamp or now or 0.0  # 0: a camera that does not say
         moving = self.last.speed != 0 or self.last.turn != 0
         if is_blank(image, self.settings.blank_contrast):
             self.last = Decision(BLANK)
@@ -76,20 +77,21 @@ class LaneKeeper:
         limit = self._crossing.limit(
             zebra, people, _lane_left(self._plan, view), stamp, self.last.speed
         )
-        state, speed, turn = self._follow(stamp)
+        state, speed, turn = self._follow(stamp, found is not None)
         if state == LANE and self._crossing.occupied:
             state = PERSON
         if limit < speed:
             speed, turn = limit, turn * (limit / speed)
         return Decision(state, speed, turn, found, view, self._crossing.zebra, people)
 
-    def _follow(self, stamp: float) -> tuple[str, float, float]:
-        """State, speed and turn for the last plan, which may be of an earlier picture."""
+    def _follow(self, stamp: float, fresh: bool) -> tuple[str, float, float]:
+        """State, speed and turn for the last plan, which is of this picture if it is fresh."""
         settings, plan, age = self.settings, self._plan, stamp - self._planned
-        if plan is None or age > settings.lost_time + settings.search_time:
-            return STOPPED, 0.0, 0.0
-        if age == 0:
+        if fresh:
             return LANE, plan.speed, plan.turn
+        too_long = age > settings.lost_time + settings.search_time
+        if plan is None or too_long or age == 0:  # 0: stamps that stand still
+            return STOPPED, 0.0, 0.0
         if age <= settings.lost_time:
             return LOST, min(plan.speed, settings.bend_speed), plan.turn
         return SEARCHING, 0.0, math.copysign(settings.search_turn, -plan.error)

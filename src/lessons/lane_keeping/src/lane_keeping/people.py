@@ -33,6 +33,8 @@ def clothing(image: np.ndarray) -> np.ndarray:
 def find_people(image: np.ndarray, view: RoadView) -> np.ndarray:
     """(n, 2) m on the ground (ahead, left) of the feet of everybody in the BGR picture."""
     horizon = max(round(view.horizon), 0)
+    if horizon >= len(image):
+        return np.empty((0, 2))
     below = np.ascontiguousarray(image[horizon::SHRINK, ::SHRINK])
     mask = cv2.morphologyEx(clothing(below), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     count, _, boxes, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)

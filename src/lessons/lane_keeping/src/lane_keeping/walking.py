@@ -59,11 +59,15 @@ class Walker:
         self.stage = Stage.WAITING
         self.side = -1  # where this walk began, or the next will: 1 is left of the lane
         self._speed = self._until = self._trigger = 0.0
+        self._now = 0.0
         self._draw(0.0)
 
     def step(self, now: float, place: tuple[float, float],
              car: tuple[float, float, float] | None) -> float:
         """Speed to the left of the lane, m/s, from where the person is and the car: x, y, speed."""
+        if now < self._now:  # a simulation was reset
+            self._draw(now)
+        self._now = now
         across = self._crossing.within(*place)[1] * self.side  # falls from far to -far
         gap = self._gap(car)
         if self.stage is Stage.WAITING and now >= self._until and self._car_comes(gap):

@@ -59,7 +59,8 @@ def decode(output: np.ndarray, layout: str, confidence: float, iou: float) -> De
         scores = table[:, 4:]
     else:
         table = table[table[:, 4] > confidence]  # a product is never larger than its factor
-        scores = table[:, 5:] * table[:, 4:5]
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is left out below
+            scores = table[:, 5:] * table[:, 4:5]
     if not len(table):
         return nothing()
     classes = scores.argmax(axis=1)

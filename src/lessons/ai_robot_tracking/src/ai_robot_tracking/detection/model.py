@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 import onnxruntime
 
-from ai_robot_tracking.detection.decoding import Detections, decode, layout_of
+from ai_robot_tracking.detection.decoding import V5, Detections, decode, layout_of
 from ai_robot_tracking.detection.letterbox import PADDING, letterbox, to_picture
 from ai_robot_tracking.detection.names import (
+    LARGEST,
     NamesError,
     names_of_export,
     read_sidecar,
@@ -19,6 +20,7 @@ from ai_robot_tracking.detection.names import (
 
 USUAL_SIZE = (640, 640)  # px, of an export that says nothing else
 LARGEST_FILE = 1 << 30  # bytes
+CELL = 8  # px: YOLO has a candidate for each cell of this side at least; after NMS are fewer
 SILENT = 4  # onnxruntime's log: what it would say comes in our own line
 TYPES = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 EXPORT = "export it anew: yolo export model=best.pt format=onnx"
@@ -80,6 +82,9 @@ class Model:
     def _size(self, wanted: tuple[int, int]) -> tuple[int, int]:
         """Height and width: what the file fixes, else what is wanted."""
         fixed = [_fixed(side) for side in self._session.get_inputs()[0].shape[2:]]
+        if max(side or 0 for side in fixed) > LARGEST:
+            raise ModelError(f"{self.path}: takes {fixed[1]}x{fixed[0]} px, more than {LARGEST}; "
+                             f"{EXPORT}")
         return fixed[0] or wanted[0], fixed[1] or wanted[1]
 
     def _checked_output(self) -> str:
@@ -101,10 +106,13 @@ class Model:
             raise ModelError(f"{self.path}: does not run on {self.width}x{self.height} px: "
                              f"{_line(error)}") from None
         try:
-            return layout_of(shape, len(names) if names else None)
+            layout, count = layout_of(shape, len(names) if names else None)
+            if layout == V5 and count == 1 and shape[1] < self.width * self.height / CELL**2:
+                raise ValueError(f"its output has shape {shape}: boxes that NMS has chosen")
         except ValueError as error:
             raise ModelError(f"{self.path}: {error}; wanted are YOLO's (1, N, 5 + classes) or "
                              f"(1, 4 + classes, N), without NMS in it") from None
+        return layout, count
 
 
 def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:

@@ -12,6 +12,8 @@ from ai_robot_tracking.detection.settings import NOT_READ
 
 DATA_KEYS = {"names", "imgsz", "nc", "path", "train", "val", "test", "download"}  # of YOLO's own
 
+SMALLEST, LARGEST = 32, 4096  # px, of a side of the input
+
 
 class NamesError(Exception):
     """A file or an entry that names classes is wrong; one line that says where."""
@@ -77,10 +79,10 @@ def checked_size(value: object, where: str) -> tuple[int, int]:
     """Height and width from one number or two."""
     sides = [value, value] if isinstance(value, int) else value
     right = isinstance(sides, list | tuple) and len(sides) == 2 and all(
-        isinstance(side, int) and not isinstance(side, bool) and 32 <= side <= 4096
+        isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
         for side in sides)
     if not right:
-        raise NamesError(f"{where}: must be [height, width] in px, each 32 to 4096")
+        raise NamesError(f"{where}: must be [height, width] in px, each {SMALLEST} to {LARGEST}")
     return sides[0], sides[1]
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import yaml
 
-
 # Of a file that is not there or no YAML; a date of month 13 is a ValueError, `!!timestamp x` an
 # AttributeError.
 NOT_READ = (OSError, ValueError, AttributeError, RecursionError, yaml.YAMLError)

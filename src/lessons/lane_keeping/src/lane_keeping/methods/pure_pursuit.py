@@ -30,6 +30,8 @@ def look_along(mask: np.ndarray, view: RoadView) -> tuple[np.ndarray, np.ndarray
     middle, found, reach = mask.shape[1] / 2, ([], []), FIRST
     for row in np.linspace(len(mask) - 1, 0, ROWS).astype(int):
         lines, half = runs(mask[row]), view.lane_width_px(row) / 2
+        if half <= 0:  # the horizon and what is above
+            break
         aside = (lines - middle) / half  # left negative
         left = lines[(-reach[1] < aside) & (aside < -reach[0])][-1:]
         right = lines[(reach[0] < aside) & (aside < reach[1])][:1]
