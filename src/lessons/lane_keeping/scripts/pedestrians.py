@@ -61,13 +61,13 @@ class Pedestrians:
     """All who walk."""
 
     def __init__(self, crossings, habits, seed):
-        self._car = Place("ground_truth")
-        self._people = []
+        self._car, self._people = Place("ground_truth"), []
+        # First of all: whoever waits for our publishers before time begins, waits for this too.
+        rospy.Subscriber("camera_info", CameraInfo, self._walk, queue_size=1, tcp_nodelay=True)
         for number, crossing in enumerate(crossings, start=1):
             walker = Walker(crossing, habits, np.random.default_rng([seed, number]))
             command = rospy.Publisher(f"pedestrian_{number}/cmd_vel", Twist, queue_size=1)
             self._people.append((walker, Place(f"pedestrian_{number}/odom"), command))
-        rospy.Subscriber("camera_info", CameraInfo, self._walk, queue_size=1, tcp_nodelay=True)
 
     def _walk(self, info):
         now = info.header.stamp.to_sec()

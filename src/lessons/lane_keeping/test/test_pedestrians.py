@@ -59,3 +59,13 @@ def test_no_table_is_one_line(script, tmp_path, text):
     path.write_text(text)
     with pytest.raises(SystemExit, match=r"mine\.yaml: "):
         script.read_crossings(path)
+
+
+def test_pictures_are_asked_for_before_answers_are_announced(script, monkeypatch):
+    """Lockstep begins when all announced links are open; one announced late misses a picture."""
+    asked = []
+    monkeypatch.setattr(script.rospy, "Subscriber", lambda topic, *_, **__: asked.append(topic))
+    monkeypatch.setattr(script.rospy, "Publisher", lambda topic, *_, **__: asked.append(topic))
+    script.Pedestrians(script.read_crossings(CROSSINGS), script.Habits(), 0)
+    first_answer = next(n for n, topic in enumerate(asked) if topic.endswith("cmd_vel"))
+    assert asked.index("camera_info") < first_answer
