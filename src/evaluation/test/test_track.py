@@ -19,6 +19,7 @@ from evaluation.track import (
 
 HERE = Path(__file__).parent
 SHIPPED = sorted((HERE.parent / "tracks").glob("*.yaml"))
+RADII = {"course": (0.5, 1.1), "lane": (1.2, 1.8)}  # m, of bends
 BROKEN = {
     "missing_key": "key 'lane_width' is missing",
     "unknown_key": "unknown key 'sizes'; there are: name, size",
@@ -84,7 +85,8 @@ def test_shipped_track_keeps_its_promises(path):
     curvatures = [piece.curvature for piece in track.pieces]
     radii = [1 / abs(curvature) for curvature in curvatures if curvature]
     assert min(curvatures) < 0 < max(curvatures) and 0.0 in curvatures
-    assert 0.5 <= min(radii) <= max(radii) <= 1.1
+    least, most = RADII[path.stem]
+    assert least <= min(radii) <= max(radii) <= most
     assert track.pose(0.0) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
     lines = track.points(0.02) + track.offset(-track_file.lane_width).points(0.02)
     assert max(max(abs(x), abs(y)) for x, y in lines) < track_file.size / 2 - 0.1
