@@ -91,7 +91,8 @@ def test_shipped_track_keeps_its_promises(path):
     assert track.pose(0.0) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
     lines = track.points(0.02) + track.offset(-track_file.lane_width).points(0.02)
     middle_x, middle_y = MIDDLE[path.stem]
-    assert max(max(abs(x - middle_x), abs(y - middle_y)) for x, y in lines) < track_file.size / 2 - 0.1
+    reach = max(max(abs(x - middle_x), abs(y - middle_y)) for x, y in lines)
+    assert reach < track_file.size / 2 - 0.1
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
