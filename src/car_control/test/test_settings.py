@@ -45,6 +45,7 @@ def test_a_file_and_its_parameters(tmp_path):
         ({"speed": 5.1}, "'speed' must be a number from 0 to 5, not 5.1"),
         ({"speed": ".nan"}, "'speed' must be a number from 0 to 5, not nan"),
         ({"speed": "true"}, "'speed' must be a number from 0 to 5, not True"),
+        ({"speed": "1" + "0" * 400}, "'speed' must be a number from 0 to 5, not 1000"),
         ({"active": 1}, "'active' must be true or false, not 1"),
         ({"name": 7}, "'name' must be a text, not 7"),
     ],
@@ -55,7 +56,8 @@ def test_a_wrong_file_is_named_with_its_key(tmp_path, change, says):
     assert says in str(raised.value) and "mine.yaml" in str(raised.value)
 
 
-@pytest.mark.parametrize("text", ["", "- 1\n", "speed: [1\n", "example: 3\n"])
+@pytest.mark.parametrize("text", ["", "- 1\n", "speed: [1\n", "example: 3\n",
+                                  "speed: 2026-13-45", "speed: !!timestamp x", "[" * 1000])
 def test_a_file_that_is_no_table_is_one_line(tmp_path, text):
     for section in (None, "example"):
         with pytest.raises(SettingsError) as raised:

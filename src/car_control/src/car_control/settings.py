@@ -5,7 +5,6 @@ The YAML file has every default, once; the dataclass has types, bounds and meani
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import Field, field, fields
 from pathlib import Path
@@ -69,7 +68,7 @@ def checked(entry: Field, value: object, where: str) -> object:
         return value
     low, high = entry.metadata["low"], entry.metadata["high"]
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and math.isfinite(value) and low <= value <= high):
+    if not (number and low <= value <= high):
         raise SettingsError(
             f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {value!r}"
         )
@@ -91,7 +90,8 @@ def _read_table(path: Path, section: str | None, place: str) -> dict:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
+        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
         raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     if section is not None:
         values = values.get(section) if isinstance(values, dict) else None

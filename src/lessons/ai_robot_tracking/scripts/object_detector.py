@@ -15,14 +15,15 @@ from ai_robot_tracking.detection.messages import PictureError, detections_of, im
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
 from ai_robot_tracking.detection.picture import annotated
-from ai_robot_tracking.detection.settings import LIMITS, SettingsError, read_settings
-from rospy.client import load_command_line_node_params
+from ai_robot_tracking.detection.settings import FIELDS, read_settings
+from ai_robot_tracking.parameters import own_parameters
+from ai_robot_tracking.settings import SettingsError
 from sensor_msgs.msg import Image
 from vision_msgs.msg import Detection2DArray, VisionInfo
 
 PACKAGE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..")
 TEXTS = ("model", "image", "config")
-KEYS = {*LIMITS, *TEXTS, "class_names"}
+KEYS = {*FIELDS, *TEXTS, "class_names"}
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
 TICK = 0.2  # s, wall: nothing waits for longer, or Ctrl-C would
 BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
@@ -103,9 +104,7 @@ class ObjectDetector:
 def main():
     """Exit code 1, with one line, if the model or a parameter is no good."""
     rospy.init_node("object_detector")
-    given = rospy.get_param("~", {})
-    for key in load_command_line_node_params(sys.argv):
-        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+    given = own_parameters()
     try:
         for key in sorted(set(given) - KEYS):
             raise SettingsError(f"unknown parameter ~{key}; known: {', '.join(sorted(KEYS))}")
@@ -117,7 +116,7 @@ def main():
             raise SettingsError(f"'{topic}' can be no topic; see: rostopic list")
         config = given.get("config") or os.path.join(PACKAGE, "config/detector_params.yaml")
         path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
-        numbers = {key: given[key] for key in LIMITS if key in given}
+        numbers = {key: given[key] for key in FIELDS if key in given}
         settings = read_settings(os.path.expanduser(config), numbers)
         model = Model(os.path.expanduser(path), settings.threads)
     except (ModelError, SettingsError) as error:

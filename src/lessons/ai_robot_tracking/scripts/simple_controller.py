@@ -9,8 +9,8 @@ import time
 from dataclasses import dataclass
 
 import rospy
+from ai_robot_tracking.parameters import read_settings
 from ai_robot_tracking.settings import number
-from ai_robot_tracking.tracker_node import read_settings
 from geometry_msgs.msg import Twist
 
 RATE_HZ = 10

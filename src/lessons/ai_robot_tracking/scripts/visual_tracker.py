@@ -7,7 +7,8 @@
 import cv2
 import rospy
 from ai_robot_tracking.page_law import PageSettings, largest_blob, page_command
-from ai_robot_tracking.tracker_node import TrackerNode, read_settings
+from ai_robot_tracking.parameters import read_settings
+from ai_robot_tracking.tracker_node import TrackerNode
 
 
 class VisualTracker:

@@ -10,7 +10,7 @@ import numpy as np
 from ai_robot_tracking.pid import Gains, Pid
 from ai_robot_tracking.red_target import (
     Blob,
-    Colour,
+    RedSettings,
     bearing_of,
     distance_of,
     find_blobs,
@@ -27,14 +27,9 @@ LEAP = 0.5            # rad, or share of the distance: farther from where it was
 
 
 @dataclass(frozen=True)
-class FollowerSettings:
-    """Section visual_tracker_pid of the parameter file."""
+class FollowerSettings(RedSettings):
+    """Section visual_tracker_pid of the parameter file: which red, and the PID's own numbers."""
 
-    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
-    hue_high: float = number(0, 180, "0..180")
-    saturation_low: float = number(0, 255, "0..255")
-    value_low: float = number(0, 255, "0..255")
-    least_radius: float = number(0, 1000, "px; a smaller blob is no target")
     target_radius: float = number(0.01, 10, "m, of the cylinder")
     target_height: float = number(0.01, 10, "m")
     camera_hfov: float = number(0.1, 3.0, "rad")
@@ -52,11 +47,6 @@ class FollowerSettings:
     search_turn: float = number(0, 10, "rad/s")
     search_angle: float = number(0, 3.1, "rad to each side before it turns all round")
     image_timeout: float = number(0.05, 60, "s without a fresh image until it stands")
-
-    @property
-    def colour(self) -> Colour:
-        """The mask's bounds."""
-        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 @dataclass(frozen=True)

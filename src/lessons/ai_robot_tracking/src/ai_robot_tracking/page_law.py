@@ -9,19 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ai_robot_tracking.red_target import Blob, Colour, find_blobs, red_mask
+from ai_robot_tracking.red_target import Blob, RedSettings, find_blobs, red_mask
 from ai_robot_tracking.settings import number
 
 
 @dataclass(frozen=True)
-class PageSettings:
-    """Section visual_tracker of the parameter file."""
+class PageSettings(RedSettings):
+    """Section visual_tracker of the parameter file: which red, and the law's own numbers."""
 
-    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
-    hue_high: float = number(0, 180, "0..180")
-    saturation_low: float = number(0, 255, "0..255")
-    value_low: float = number(0, 255, "0..255")
-    least_radius: float = number(0, 1000, "px; a smaller blob is no target")
     turn_gain: float = number(0, 1, "rad/s for each px beside the middle")
     straight_error: float = number(0, 2000, "px; within it the target is ahead")
     near_radius: float = number(0, 2000, "px")
@@ -31,11 +26,6 @@ class PageSettings:
     slow_speed: float = number(0, 2, "m/s, else")
     search_turn: float = number(0, 5, "rad/s, without a target")
     image_timeout: float = number(0.05, 60, "s without a fresh image until it stands")
-
-    @property
-    def colour(self) -> Colour:
-        """The mask's bounds."""
-        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 def largest_blob(picture: np.ndarray, settings: PageSettings) -> Blob | None:

@@ -29,7 +29,8 @@ def offer_settings(settings: Settings, apply: Callable[[Settings], None]) -> Ser
         nonlocal current
         try:
             current = replace(current, **{
-                entry.name: checked(entry, config[entry.name], "dynamic_reconfigure")
+                entry.name: checked(entry, config[entry.name],
+                                    f"dynamic_reconfigure: '{entry.name}'")
                 for entry in fields(settings)})
         except SettingsError as error:
             rospy.logwarn("%s", error)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from ai_robot_tracking.settings import number
+
 KERNEL = np.ones((3, 3), np.uint8)
 PASSES = 2  # of erosion, then of dilation: specks vanish
 HIGH_ENOUGH = 0.7  # share of the target's height that its columns have
@@ -25,6 +27,22 @@ class Colour:
     hue_high: float
     saturation_low: float
     value_low: float
+
+
+@dataclass(frozen=True)
+class RedSettings:
+    """What both trackers' sections of the parameter file begin with."""
+
+    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
+    hue_high: float = number(0, 180, "0..180")
+    saturation_low: float = number(0, 255, "0..255")
+    value_low: float = number(0, 255, "0..255")
+    least_radius: float = number(0, 1000, "px; a smaller blob is no target")
+
+    @property
+    def colour(self) -> Colour:
+        """The mask's bounds."""
+        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
-"""Numbers from config/tracking_params.yaml, checked: a mistake names file and key."""
+"""Numbers from YAML files, checked against a dataclass: a mistake names file and key."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,6 +11,10 @@ import yaml
 
 Settings = TypeVar("Settings")
 
+# What a text that is no YAML raises; a date of month 13 is a ValueError, `!!timestamp x` an
+# AttributeError.
+NO_YAML = (ValueError, AttributeError, RecursionError, yaml.YAMLError)
+
 
 class SettingsError(Exception):
     """One line: which file, which key, what is wrong."""
@@ -18,7 +22,12 @@ class SettingsError(Exception):
 
 def number(low: float, high: float, meaning: str) -> Any:
     """A field of type float from `low` to `high`; the meaning says its unit."""
-    return field(metadata={"low": low, "high": high, "meaning": meaning})
+    return field(metadata={"low": low, "high": high, "meaning": meaning, "whole": False})
+
+
+def count(low: int, high: int, meaning: str) -> Any:
+    """A field of type int from `low` to `high`."""
+    return field(metadata={"low": low, "high": high, "meaning": meaning, "whole": True})
 
 
 def load_settings(
@@ -30,27 +39,41 @@ def load_settings(
     """
     values = _section(path, section)
     known = {entry.name: entry for entry in fields(kind)}
-    for where, table in ((f"{path}: {section}", values), ("the node's parameters", given)):
-        for key in table:
-            if key not in known:
-                raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
-    for key in known:
-        if key not in values:
-            raise SettingsError(f"{path}: {section}: missing key '{key}'")
-    merged = {key: (f"{path}: {section}", value) for key, value in values.items()}
-    merged |= {key: ("the node's parameters", value) for key, value in given.items()}
-    return kind(**{key: checked(known[key], value, where)
+    in_file, in_node = f"{path}: {section}", "the node's parameters"
+    refuse_unknown(values, known, in_file)
+    refuse_unknown(given, known, in_node)
+    refuse_missing(known, values, in_file)
+    merged = {key: (in_file, value) for key, value in values.items()}
+    merged |= {key: (in_node, value) for key, value in given.items()}
+    return kind(**{key: checked(known[key], value, f"{where}: '{key}'")
                    for key, (where, value) in merged.items()})
 
 
-def checked(entry: Field, value: object, where: str) -> float:
-    """The value as a number within the field's bounds; SettingsError if it is none."""
-    low, high = entry.metadata["low"], entry.metadata["high"]
-    fits = isinstance(value, int | float) and not isinstance(value, bool)
+def refuse_unknown(keys: Iterable[object], known: Collection[str], where: str | Path) -> None:
+    """SettingsError for the first key that is not known."""
+    for key in keys:
+        if key not in known:
+            raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+
+
+def refuse_missing(known: Iterable[str], keys: Collection[object], where: str | Path) -> None:
+    """SettingsError for the first known key that is not there."""
+    for key in known:
+        if key not in keys:
+            raise SettingsError(f"{where}: missing key '{key}'")
+
+
+def checked(entry: Field, value: object, what: str) -> float:
+    """The value within its field's bounds: a float, or an int where the field is a count.
+
+    Else SettingsError; `what` names place and key in it.
+    """
+    low, high, whole = (entry.metadata[key] for key in ("low", "high", "whole"))
+    fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
     if not (fits and low <= value <= high):
-        raise SettingsError(
-            f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {value!r}")
-    return float(value)
+        wanted = "a whole number" if whole else "a number"
+        raise SettingsError(f"{what} must be {wanted} from {low:g} to {high:g}, not {value!r}")
+    return value if whole else float(value)
 
 
 def _section(path: Path, section: str) -> dict:
@@ -58,8 +81,7 @@ def _section(path: Path, section: str) -> dict:
         sections = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
-        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
+    except NO_YAML as error:
         raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     values = sections.get(section) if isinstance(sections, dict) else None
     if not isinstance(values, dict):

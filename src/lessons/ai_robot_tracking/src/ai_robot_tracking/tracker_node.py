@@ -2,46 +2,24 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import cv_bridge
 import numpy as np
-import rospkg
 import rospy
 from geometry_msgs.msg import Twist
-from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool
 
 from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
-from ai_robot_tracking.settings import Settings, SettingsError, load_settings
 
 CHECK_PERIOD = 0.1   # s
 WARNING_PERIOD = 5   # s
 FLUSH_TIME = 0.2     # s, wall: rospy sends from threads of its own, which end with the process
 Command = tuple[float, float]  # m/s; rad/s, left positive
-
-
-def read_settings(kind: type[Settings], section: str) -> Settings:
-    """From the section of config/tracking_params.yaml, or of the file in the parameter ~config.
-
-    The node's other parameters win over the file. If they do not fit, one line ends the program.
-    """
-    given = dict(rospy.get_param("~", {}))
-    for key in load_command_line_node_params(sys.argv):
-        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
-    folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
-    try:
-        path = Path(str(given.pop("config", folder / "tracking_params.yaml")))
-        return load_settings(kind, path, section, given)
-    except SettingsError as error:
-        rospy.logfatal("%s", error)
-        sys.exit(1)
 
 
 class TrackerNode:

@@ -12,11 +12,11 @@ from ai_robot_tracking.detection.decoding import V5, Detections, decode, layout_
 from ai_robot_tracking.detection.letterbox import PADDING, letterbox, to_picture
 from ai_robot_tracking.detection.names import (
     LARGEST,
-    NamesError,
     names_of_export,
     read_sidecar,
     size_of_export,
 )
+from ai_robot_tracking.settings import SettingsError
 
 USUAL_SIZE = (640, 640)  # px, of an export that says nothing else
 LARGEST_FILE = 1 << 30  # bytes
@@ -41,7 +41,7 @@ class Model:
             held = self._session.get_modelmeta().custom_metadata_map
             names = beside.names or names_of_export(held.get("names"))
             size = beside.input_size or size_of_export(held.get("imgsz"))
-        except NamesError as error:
+        except SettingsError as error:
             raise ModelError(str(error) if str(self.path.parent) in str(error)
                              else f"{self.path}: {error}") from None
         self._input, self._type = self._checked_input()

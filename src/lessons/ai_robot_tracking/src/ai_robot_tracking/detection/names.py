@@ -6,17 +6,12 @@ import ast
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
+from ai_robot_tracking.detection.settings import read_yaml
+from ai_robot_tracking.settings import SettingsError, refuse_unknown
 
-from ai_robot_tracking.detection.settings import NOT_READ
-
-DATA_KEYS = {"names", "imgsz", "nc", "path", "train", "val", "test", "download"}  # of YOLO's own
+DATA_KEYS = ("download", "imgsz", "names", "nc", "path", "test", "train", "val")  # YOLO's own
 
 SMALLEST, LARGEST = 32, 4096  # px, of a side of the input
-
-
-class NamesError(Exception):
-    """A file or an entry that names classes is wrong; one line that says where."""
 
 
 @dataclass(frozen=True)
@@ -28,24 +23,18 @@ class Sidecar:
 
 
 def read_sidecar(model: Path) -> Sidecar:
-    """Of MODEL.yaml, if there is one; NamesError names file and key."""
+    """Of MODEL.yaml, if there is one; SettingsError names file and key."""
     path = model.with_suffix(".yaml")
     if not path.is_file():
         return Sidecar(None, None)
-    try:
-        table = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except NOT_READ as error:
-        raise NamesError(f"{path}: cannot be read: {_first_line(error)}") from None
+    table = read_yaml(path)
     if not isinstance(table, dict):
-        raise NamesError(f"{path}: not a table; write for example: names: [person, cone]")
-    for key in table:
-        if key not in DATA_KEYS:
-            known = ", ".join(sorted(DATA_KEYS))
-            raise NamesError(f"{path}: unknown key '{key}'; known: {known}")
+        raise SettingsError(f"{path}: not a table; write for example: names: [person, cone]")
+    refuse_unknown(table, DATA_KEYS, path)
     names = checked_names(table["names"], f"{path}: names") if "names" in table else None
     size = checked_size(table["imgsz"], f"{path}: imgsz") if "imgsz" in table else None
     if names and "nc" in table and table["nc"] != len(names):
-        raise NamesError(f"{path}: nc is {table['nc']}, but there are {len(names)} names")
+        raise SettingsError(f"{path}: nc is {table['nc']}, but there are {len(names)} names")
     return Sidecar(names, size)
 
 
@@ -65,13 +54,13 @@ def checked_names(value: object, where: str) -> list[str]:
     """Names as a list, from a list or a table of numbers from 0 on."""
     if isinstance(value, dict):
         if set(value) != set(range(len(value))):
-            raise NamesError(f"{where}: the numbers must be 0 to {len(value) - 1}")
+            raise SettingsError(f"{where}: the numbers must be 0 to {len(value) - 1}")
         value = [value[number] for number in range(len(value))]
     if not isinstance(value, list) or not value:
-        raise NamesError(f"{where}: must be a list, for example [person, cone]")
+        raise SettingsError(f"{where}: must be a list, for example [person, cone]")
     for name in value:
         if not isinstance(name, str) or not name:
-            raise NamesError(f"{where}: {name!r} is no name; write it in quotes")
+            raise SettingsError(f"{where}: {name!r} is no name; write it in quotes")
     return value
 
 
@@ -82,7 +71,7 @@ def checked_size(value: object, where: str) -> tuple[int, int]:
         isinstance(side, int) and not isinstance(side, bool) and SMALLEST <= side <= LARGEST
         for side in sides)
     if not right:
-        raise NamesError(f"{where}: must be [height, width] in px, each {SMALLEST} to {LARGEST}")
+        raise SettingsError(f"{where}: must be [height, width] in px, each {SMALLEST} to {LARGEST}")
     return sides[0], sides[1]
 
 
@@ -90,8 +79,4 @@ def _literal(text: str, where: str) -> object:
     try:
         return ast.literal_eval(text)
     except (TypeError, ValueError, SyntaxError, MemoryError, RecursionError):
-        raise NamesError(f"{where}: {text[:60]!r} is neither a list nor a table") from None
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
+        raise SettingsError(f"{where}: {text[:60]!r} is neither a list nor a table") from None

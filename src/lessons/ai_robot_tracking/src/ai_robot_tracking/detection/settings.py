@@ -2,60 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import yaml
 
-# Of a file that is not there or no YAML; a date of month 13 is a ValueError, `!!timestamp x` an
-# AttributeError.
-NOT_READ = (OSError, ValueError, AttributeError, RecursionError, yaml.YAMLError)
-
-
-class SettingsError(Exception):
-    """A file or parameter says something that cannot be; one line that names it."""
+from ai_robot_tracking.settings import (
+    NO_YAML,
+    SettingsError,
+    checked,
+    count,
+    number,
+    refuse_missing,
+    refuse_unknown,
+)
 
 
 @dataclass(frozen=True)
 class Settings:
     """See config/detector_params.yaml."""
 
-    confidence: float  # 0..1
-    iou: float  # 0..1
-    max_rate: float  # pictures a second, wall time; 0: as many as come
-    threads: int
+    confidence: float = number(0, 1, "what scores less is not shown")
+    iou: float = number(0, 1, "of boxes that overlap more, the surest stays")
+    max_rate: float = number(0, 1000, "pictures a second, wall time; 0: as many as come")
+    threads: int = count(1, 64, "of the network")
 
 
-LIMITS = {"confidence": (0.0, 1.0), "iou": (0.0, 1.0), "max_rate": (0.0, 1000.0),
-          "threads": (1, 64)}
+FIELDS = {entry.name: entry for entry in fields(Settings)}
 
 
-def read_settings(path: Path | str, given: dict[str, object]) -> Settings:
-    """The file's numbers with those of `given` (ROS parameters) in their place."""
-    try:
-        table = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except NOT_READ as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
-        raise SettingsError(f"{path}: cannot be read: {reason}") from None
+def read_settings(path: Path | str, given: Mapping[str, object]) -> Settings:
+    """The file's numbers with those of `given` (ROS parameters) in their place.
+
+    Raises SettingsError for an unknown or missing key and for a value that does not fit.
+    """
+    table = read_yaml(Path(path))
     if not isinstance(table, dict):
         raise SettingsError(f"{path}: not a table of 'key: number' lines")
-    known = [field.name for field in fields(Settings)]
-    for key in table:
-        if key not in known:
-            raise SettingsError(f"{path}: unknown key '{key}'; known: {', '.join(known)}")
-    for key in known:
-        if key not in table and key not in given:
-            raise SettingsError(f"{path}: missing key '{key}'")
-    checked = {key: _checked(table[key], key, f"{path}: {key}") for key in table}
-    checked |= {key: _checked(value, key, f"~{key}") for key, value in given.items()}
-    return Settings(**checked)
+    refuse_unknown(table, FIELDS, path)
+    refuse_missing(FIELDS, {**table, **given}, path)
+    values = {key: checked(FIELDS[key], value, f"{path}: {key}") for key, value in table.items()}
+    values |= {key: checked(FIELDS[key], value, f"~{key}") for key, value in given.items()}
+    return Settings(**values)
 
 
-def _checked(value: object, key: str, where: str) -> float:
-    lowest, highest = LIMITS[key]
-    whole = isinstance(lowest, int)
-    kinds = (int,) if whole else (int, float)
-    if isinstance(value, bool) or not isinstance(value, kinds) or not lowest <= value <= highest:
-        what = "a whole number" if whole else "a number"
-        raise SettingsError(f"{where} must be {what} from {lowest:g} to {highest:g}, not {value!r}")
-    return value if whole else float(value)
+def read_yaml(path: Path) -> object:
+    """What the file holds; SettingsError if it is not there or no YAML."""
+    try:
+        return yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, *NO_YAML) as error:
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise SettingsError(f"{path}: cannot be read: {reason}") from None

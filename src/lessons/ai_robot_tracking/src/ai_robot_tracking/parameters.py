@@ -1,0 +1,35 @@
+"""A node's own parameters: what a launch file or `_key:=value` on the command line gives it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import rospkg
+import rospy
+from rospy.client import load_command_line_node_params
+
+from ai_robot_tracking.settings import Settings, SettingsError, load_settings
+
+
+def own_parameters() -> dict[str, object]:
+    """By name, without `~`; those of the command line are taken off the parameter server."""
+    given = dict(rospy.get_param("~", {}))
+    for key in load_command_line_node_params(sys.argv):
+        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+    return given
+
+
+def read_settings(kind: type[Settings], section: str) -> Settings:
+    """From the section of config/tracking_params.yaml, or of the file in the parameter ~config.
+
+    The node's other parameters win over the file. If they do not fit, one line ends the program.
+    """
+    given = own_parameters()
+    folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
+    try:
+        path = Path(str(given.pop("config", folder / "tracking_params.yaml")))
+        return load_settings(kind, path, section, given)
+    except SettingsError as error:
+        rospy.logfatal("%s", error)
+        sys.exit(1)

@@ -1,0 +1,15 @@
+"""A node's own parameters, without a master."""
+
+import sys
+from unittest.mock import MagicMock, call
+
+from ai_robot_tracking import parameters
+
+
+def test_what_the_command_line_gave_does_not_stay_for_the_next_run(monkeypatch):
+    rospy = MagicMock()
+    rospy.get_param.return_value = {"kp_turn": 3.0, "config": "mine.yaml"}
+    monkeypatch.setattr(parameters, "rospy", rospy)
+    monkeypatch.setattr(sys, "argv", ["visual_tracker_pid.py", "_kp_turn:=3.0", "image:=/camera"])
+    assert parameters.own_parameters() == {"kp_turn": 3.0, "config": "mine.yaml"}
+    assert rospy.delete_param.call_args_list == [call("~kp_turn")]
