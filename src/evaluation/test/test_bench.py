@@ -26,6 +26,7 @@ from evaluation.bench.results import (
 )
 from evaluation.bench.ros_run import read_lines
 from evaluation.course_run.failure import RunError
+from evaluation.program import NOT_RUN
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "bench.py"
 
@@ -244,7 +245,7 @@ def test_a_part_that_fails_is_said_and_the_others_go_on(tmp_path, monkeypatch, c
 
     monkeypatch.setattr(growth, "measure", fail)
     monkeypatch.setattr(step, "measure", lambda _settings: [figure("ratio.driving", "x", [1.1])])
-    assert main.main(["--only", "step,growth", "--out", str(tmp_path)]) == main.NOT_MEASURED
+    assert main.main(["--only", "step,growth", "--out", str(tmp_path)]) == NOT_RUN
     assert "part growth: nothing works" in capsys.readouterr().err
     parts = {part.part: part for part in read_json(tmp_path / "bench.json").parts}
     assert parts["step"].figures and parts["growth"].failure == "nothing works"

@@ -50,6 +50,17 @@ def test_nothing_is_missing_when_all_links_are_open():
     assert missing() is None
 
 
+@pytest.mark.parametrize("publishers, link, said", [
+    (frozenset(), False, "the car's sensors (nobody publishes /scan)"),
+    (frozenset({SIMULATOR}), False, f"the connection of /scan from {SIMULATOR} to {ME}"),
+    (frozenset({SIMULATOR}), True, None),
+])
+def test_a_sensor_that_is_listened_to_is_waited_for(publishers, link, said):
+    """What it sent before that would be missing from one run's fingerprint and not another's."""
+    links = LINKS | ({(SIMULATOR, "/scan", ME)} if link else set())
+    assert missing({"/scan": publishers}, {"/scan": {ME}}, links) == said
+
+
 @pytest.mark.parametrize("link", sorted(LINKS))
 def test_each_link_is_waited_for(link):
     publisher, topic, subscriber = link

@@ -24,6 +24,7 @@ from evaluation.localisation.results import (
 from evaluation.localisation.trials import errors_since
 from evaluation.localisation.wander import SPEED, Steering
 from evaluation.navigation.records import Records
+from evaluation.program import NOT_RUN
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
 GOOD = Results(
@@ -58,7 +59,7 @@ def test_what_is_tried_by_default_and_when_asked_for():
     (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
 ])  # fmt: skip
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == main.NOT_RUN
+    assert main.main(arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 

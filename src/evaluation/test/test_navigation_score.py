@@ -203,7 +203,7 @@ def test_report_table_and_picture_of_a_run(tmp_path, ground):
 
 
 @pytest.mark.parametrize("arguments, said", [
-    (["--goals", "0"], r"--goals \(GOALS=\) must be a whole number, 1 or more; got '0'"),
+    (["--goals", "0"], r"--goals \(GOALS=\) must be a whole number, 1 to 999999; got '0'"),
     (["--goals", "five"], "GOALS="), (["--seed", "-1"], "SEED="),
     (["--real-time-factor", "0"], "PACE="), (["--real-time-factor", "fast"], "PACE="),
     (["--real-time-factor", "nan"], "PACE="),

@@ -9,6 +9,7 @@ import cv2
 import pytest
 
 from evaluation.course_run.failure import RunError
+from evaluation.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.yards import main
 from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.options import parse_options
@@ -45,14 +46,14 @@ def test_yards_and_crossings_that_are_asked_for():
         (["--yards", "many"], "--yards must be a whole number"),
         (["--first-crossing", "-1"], "--first-crossing"),
         (["--repeats", "0", "--crossings", "0"], "nothing to drive"),
-        (["--real-time-factor", "0"], "--real-time-factor must be"),
+        (["--real-time-factor", "0"], "--real-time-factor (PACE=) must be"),
         (["--parameters", "/none.yaml"], "--parameters /none.yaml: no such file"),
         (["--quick"], "--quick"),
         (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
     ],
 )
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == main.NOT_RUN
+    assert main.main(arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -133,7 +134,7 @@ def trials(tmp_path, monkeypatch):
 
 def test_all_is_driven_and_written(trials, tmp_path, capsys):
     drives = [made(0), made(1), made(0, 1), made(1, 1), crossed(0)]
-    assert trials(drives, "--yards", "2", "--crossings", "1") == main.PASSED
+    assert trials(drives, "--yards", "2", "--crossings", "1") == PASSED
     assert read_drives(tmp_path / "report.json") == drives
     assert json.loads((tmp_path / "report.json").read_text())["passed"] is True
     assert len(list(tmp_path.glob("*.png"))) == 3
@@ -143,15 +144,15 @@ def test_all_is_driven_and_written(trials, tmp_path, capsys):
 
 def test_what_was_driven_is_kept_and_resume_goes_on(trials, tmp_path, capsys):
     options = ("--yards", "2", "--repeats", "1", "--crossings", "0")
-    assert trials([made(0), RunError("gazebo ended")], *options) == main.NOT_RUN
+    assert trials([made(0), RunError("gazebo ended")], *options) == NOT_RUN
     assert len(read_drives(tmp_path / "report.json")) == 1
-    assert trials([made(1, outcome="late")], *options, "--resume") == main.NOT_PASSED
+    assert trials([made(1, outcome="late")], *options, "--resume") == NOT_PASSED
     assert [each.seed for each in read_drives(tmp_path / "report.json")] == [0, 1]
-    assert trials([], *options, "--resume") == main.NOT_PASSED
+    assert trials([], *options, "--resume") == NOT_PASSED
     assert "gazebo ended" in capsys.readouterr().err
 
 
 def test_a_report_of_something_else_is_refused(tmp_path, capsys):
     (tmp_path / "report.json").write_text("{}")
-    assert main.main(["--resume", "--out", str(tmp_path)]) == main.NOT_RUN
+    assert main.main(["--resume", "--out", str(tmp_path)]) == NOT_RUN
     assert "no report of navigation_trials" in capsys.readouterr().err

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from evaluation.course_run.failure import RunError
+from evaluation.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.race_trials import main
 from evaluation.race_trials.disturbance import Disturbance, draw
 from evaluation.race_trials.options import parse_options
@@ -60,7 +61,7 @@ def test_seeds_and_tracks_that_are_asked_for():
     ],
 )
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == main.NOT_RUN
+    assert main.main(arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -128,8 +129,8 @@ def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
 
 def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
     bad = lap(outcome="left the course", time=None)
-    assert trials(tmp_path, monkeypatch, [lap(), bad], "--seeds", "1") == main.PASSED
-    assert trials(tmp_path, monkeypatch, [bad, lap()], "--seeds", "1") == main.NOT_PASSED
+    assert trials(tmp_path, monkeypatch, [lap(), bad], "--seeds", "1") == PASSED
+    assert trials(tmp_path, monkeypatch, [bad, lap()], "--seeds", "1") == NOT_PASSED
     assert "[1/2] lane_follow.py racetrack seed 0" in capsys.readouterr().out
     values = json.loads((tmp_path / "out" / "report.json").read_text())
     assert [each["within_limits"] for each in values["laps"]] == [False, True]
@@ -140,8 +141,8 @@ def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("end", "code", "said"),
     [
-        (RunError("the machine broke"), main.NOT_RUN, "race_trials: the machine broke"),
-        (KeyboardInterrupt(), main.INTERRUPTED, "race_trials: interrupted; all processes ended"),
+        (RunError("the machine broke"), NOT_RUN, "race_trials: the machine broke"),
+        (KeyboardInterrupt(), INTERRUPTED, "race_trials: interrupted; all processes ended"),
     ],
 )
 def test_what_was_driven_is_kept(tmp_path, monkeypatch, capsys, end, code, said):
@@ -155,10 +156,10 @@ def test_what_was_driven_is_kept(tmp_path, monkeypatch, capsys, end, code, said)
 
 def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
     broken = [lap(mean_speed=1.7), RunError("broken")]
-    assert trials(tmp_path, monkeypatch, broken, "--seeds", "2") == main.NOT_RUN
+    assert trials(tmp_path, monkeypatch, broken, "--seeds", "2") == NOT_RUN
     capsys.readouterr()
     rest = [lap(), lap(), lap()]
-    assert trials(tmp_path, monkeypatch, rest, "--seeds", "2", "--resume") == main.PASSED
+    assert trials(tmp_path, monkeypatch, rest, "--seeds", "2", "--resume") == PASSED
     assert "[1/4]" not in (shown := capsys.readouterr().out) and "[2/4]" in shown
     found = read_laps(tmp_path / "out" / "report.json")
     assert [each.mean_speed for each in found] == [1.7, 2.0, 2.0, 2.0]
@@ -171,7 +172,7 @@ def test_no_report_to_go_on_with_is_said(tmp_path, monkeypatch, capsys, text, sa
     (tmp_path / "out").mkdir()
     if text:
         (tmp_path / "out" / "report.json").write_text(text)
-    assert trials(tmp_path, monkeypatch, [], "--resume") == main.NOT_RUN
+    assert trials(tmp_path, monkeypatch, [], "--resume") == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -199,6 +200,6 @@ def test_interrupted_while_a_lap_runs_it_leaves_no_process_behind(tmp_path):
         assert left_running(out)
         run.send_signal(signal.SIGINT)
         said = run.communicate(timeout=20)[1]
-    assert run.returncode == main.INTERRUPTED
+    assert run.returncode == INTERRUPTED
     assert said.strip() == "race_trials: interrupted; all processes ended"
     assert left_running(out) == []

@@ -130,3 +130,9 @@ def test_broken_track_file_is_named_with_its_mistake(name):
 def test_missing_track_file_is_named():
     with pytest.raises(TrackError, match=r"nowhere\.yaml: No such file"):
         load_track("nowhere.yaml")
+
+
+def test_a_track_file_that_is_no_text_is_named(tmp_path):
+    (tmp_path / "picture.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(TrackError, match=r"picture\.yaml: no text file"):
+        load_track(tmp_path / "picture.yaml")

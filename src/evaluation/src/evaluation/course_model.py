@@ -8,92 +8,32 @@ import zlib
 from pathlib import Path
 
 import numpy as np
+from racecar_description.track.painted_plane import model_texts
 
 from evaluation.track import Piece, Track, TrackError, TrackFile, build_track
 
 SIDE_PX = 2048
 EDGE_MARGIN = 0.1  # m of bare plane that must stay around every line
+MODEL_URI = "model://turtlebot3_autorace/course"
 BACKGROUND, WHITE, YELLOW = (10, 10, 10), (255, 255, 255), (255, 255, 0)  # RGB
 
-MODEL_CONFIG = """<?xml version="1.0"?>
-<model>
-  <name>{name}</name>
-  <version>1.0</version>
-  <sdf version="1.4">model.sdf</sdf>
-  <description>
-    A black floor with one closed lane: yellow line on its left, white line on its right.
-    Written by make_course.py of the package evaluation.
-  </description>
-</model>
-"""
-
-MODEL_SDF = """<?xml version="1.0"?>
-<sdf version="1.4">
-  <model name="{name}">
-    <static>true</static>
-    <link name="course_link">
-      <collision name="course_collision">
-        <geometry>
-          <plane>
-            <normal>0 0 1</normal>
-            <size>{size:g} {size:g}</size>
-          </plane>
-        </geometry>
-        <surface>
-          <friction>
-            <ode>
-              <mu>100</mu>
-              <mu2>50</mu2>
-            </ode>
-          </friction>
-        </surface>
-      </collision>
-      <visual name="course_visual">
-        <cast_shadows>false</cast_shadows>
-        <geometry>
-          <plane>
-            <normal>0 0 1</normal>
-            <size>{size:g} {size:g}</size>
-          </plane>
-        </geometry>
-        <material>
-          <script>
-            <uri>model://turtlebot3_autorace/course/materials/scripts</uri>
-            <uri>model://turtlebot3_autorace/course/materials/textures</uri>
-            <name>{name}</name>
-          </script>
-        </material>
-      </visual>
-    </link>
-  </model>
-</sdf>
-"""
-
-MATERIAL = """material {name}
-{{
-  technique
-  {{
-    pass
-    {{
-      texture_unit
-      {{
-        texture {name}.png
-      }}
-    }}
-  }}
-}}
-"""
+DESCRIPTION = (
+    "A black floor with one closed lane: yellow line on its left, white line on its right.\n"
+    "Written by make_course.py of the package evaluation."
+)
 
 
 def write_model(track_file: TrackFile, folder: Path) -> list[Path]:
     """Write the model's four files below this folder; the same track gives the same bytes."""
-    name, size = track_file.name, track_file.size
-    files = {
-        "model.config": MODEL_CONFIG.format(name=name).encode(),
-        "model.sdf": MODEL_SDF.format(name=name, size=size).encode(),
-        f"materials/scripts/{name}.material": MATERIAL.format(name=name).encode(),
-        f"materials/textures/{name}.png": encode_png(draw_course(track_file)),
-    }
+    texts = model_texts(
+        track_file.name,
+        description=DESCRIPTION,
+        size=(track_file.size, track_file.size),
+        uri=MODEL_URI,
+        part="course",
+    )
+    files = {relative: text.encode() for relative, text in texts.items()}
+    files[f"materials/textures/{track_file.name}.png"] = encode_png(draw_course(track_file))
     for relative, data in files.items():
         path = folder / relative
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -172,7 +112,7 @@ def _bounds(piece: Piece, centres: np.ndarray, reach: float, half: float) -> tup
 
 def _distances(piece: Piece, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Distance (m) of points from the piece, rounded so that no last digit can change a pixel."""
-    along = _straight_distance if abs(piece.curvature) < 1e-12 else _arc_distance
+    along = _straight_distance if piece.is_straight else _arc_distance
     return np.round(along(piece, x - piece.x, y - piece.y), 9)
 
 

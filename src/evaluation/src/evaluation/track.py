@@ -3,85 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
+from racecar_description.track.centre_line import Corner, Piece
+from racecar_description.track.errors import TrackError
+from racecar_description.track.track_file import TrackFile, load_track_file
 
 CLOSED_WITHIN = 1e-9  # m and rad, between the end of the last piece and the start of the first
-
-
-class TrackError(Exception):
-    """A track file that cannot be read, or a line that cannot be built from it."""
-
-
-@dataclass(frozen=True)
-class Corner:
-    """One corner of the polygon that the line follows, rounded by an arc of this radius."""
-
-    x: float
-    y: float
-    radius: float
-
-
-@dataclass(frozen=True)
-class TrackFile:
-    """A track's YAML, key by key; m in the world frame, driven in the order of the corners."""
-
-    name: str
-    size: float  # side of the square plane that the course is painted on
-    model_yaw: float  # rad, how the world file turns that plane
-    line_width: float
-    lane_width: float  # from the centre of the yellow line to the centre of the white one
-    start: tuple[float, float]  # where laps begin, on the yellow line
-    corners: tuple[Corner, ...]  # of the yellow line
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A straight (curvature 0) or an arc (1/radius, positive to the left) from a pose onwards."""
-
-    x: float
-    y: float
-    heading: float
-    length: float
-    curvature: float
-
-    def pose(self, s: float) -> tuple[float, float, float]:
-        """x, y and heading after s metres of this piece."""
-        turned = self.heading + self.curvature * s
-        if abs(self.curvature) < 1e-12:
-            return (self.x + s * math.cos(turned), self.y + s * math.sin(turned), turned)
-        radius = 1.0 / self.curvature
-        x = self.x + radius * (math.sin(turned) - math.sin(self.heading))
-        y = self.y - radius * (math.cos(turned) - math.cos(self.heading))
-        return x, y, turned
-
-    def nearest(self, x: float, y: float) -> float:
-        """Length along this piece at which it comes closest to the point."""
-        ahead = math.cos(self.heading) * (x - self.x) + math.sin(self.heading) * (y - self.y)
-        if abs(self.curvature) < 1e-12:
-            return min(max(ahead, 0.0), self.length)
-        left = -math.sin(self.heading) * (x - self.x) + math.cos(self.heading) * (y - self.y)
-        side = math.copysign(1.0, self.curvature)
-        radius = 1.0 / abs(self.curvature)
-        angle = math.atan2(ahead, radius - side * left)
-        whole = self.length / radius
-        # The arc's blind side is split in the middle: half of it is nearer to each end.
-        if angle < whole / 2 - math.pi:
-            angle += 2 * math.pi
-        return min(max(angle, 0.0), whole) * radius
-
-    def offset(self, left: float) -> Piece:
-        """The parallel piece this far to the left (negative: to the right)."""
-        scale = 1.0 - self.curvature * left
-        if scale <= 0:
-            raise TrackError(
-                f"no line {left:+.3f} m beside a bend of radius {1 / abs(self.curvature):.3f} m"
-            )
-        x = self.x - left * math.sin(self.heading)
-        y = self.y + left * math.cos(self.heading)
-        return Piece(x, y, self.heading, self.length * scale, self.curvature / scale)
 
 
 @dataclass(frozen=True)
@@ -140,34 +69,6 @@ class Track:
         return [self.pose(i * self.length / count)[:2] for i in range(count)]
 
 
-def load_track_file(path: str | Path) -> TrackFile:
-    """Read and check a track file; each mistake is one TrackError that names file and key."""
-    path = Path(path)
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise TrackError(f"{path}: {error.strerror}") from error
-    except yaml.YAMLError as error:
-        raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
-    _check_keys(path, "", values, TrackFile)
-    if not isinstance(values["corners"], list) or len(values["corners"]) < 3:
-        raise TrackError(f"{path}: corners: at least three are needed, as a list")
-    corners = tuple(
-        _read_corner(path, f"corners[{i}]", item) for i, item in enumerate(values["corners"])
-    )
-    start = values["start"]
-    if not isinstance(start, list) or len(start) != 2:
-        raise TrackError(f"{path}: start: must be [x, y], is {start!r}")
-    lengths = ("size", "line_width", "lane_width")
-    return TrackFile(
-        name=str(values["name"]),
-        model_yaw=_number(path, "model_yaw", values["model_yaw"]),
-        start=(_number(path, "start[0]", start[0]), _number(path, "start[1]", start[1])),
-        corners=corners,
-        **{key: _number(path, key, values[key], positive=True) for key in lengths},
-    )
-
-
 def load_track(path: str | Path) -> Track:
     """The yellow line of a track file, starting at its `start`."""
     return build_track(load_track_file(path), str(path))
@@ -181,36 +82,6 @@ def build_track(track_file: TrackFile, place: str = "track") -> Track:
     if abs(start.lateral) > 1e-6:
         raise TrackError(f"{place}: start: {abs(start.lateral):.3f} m beside the line")
     return Track(_starting_at(closed, start.s))
-
-
-def _read_corner(path: Path, place: str, values: object) -> Corner:
-    _check_keys(path, place, values, Corner)
-    return Corner(
-        x=_number(path, f"{place}.x", values["x"]),
-        y=_number(path, f"{place}.y", values["y"]),
-        radius=_number(path, f"{place}.radius", values["radius"], positive=True),
-    )
-
-
-def _check_keys(path: Path, place: str, values: object, schema: type) -> None:
-    expected = [field.name for field in fields(schema)]
-    where = f"{path}: {place}: " if place else f"{path}: "
-    if not isinstance(values, dict):
-        raise TrackError(f"{where}must have the keys {', '.join(expected)}")
-    for key in values:
-        if key not in expected:
-            raise TrackError(f"{where}unknown key {key!r}; there are: {', '.join(expected)}")
-    for key in expected:
-        if key not in values:
-            raise TrackError(f"{where}key {key!r} is missing")
-
-
-def _number(path: Path, place: str, value: object, positive: bool = False) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise TrackError(f"{path}: {place}: must be a number, is {value!r}")
-    if positive and value <= 0:
-        raise TrackError(f"{path}: {place}: must be more than 0, is {value!r}")
-    return float(value)
 
 
 def _round_corners(corners: tuple[Corner, ...], place: str) -> list[Piece]:

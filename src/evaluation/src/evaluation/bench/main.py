@@ -5,10 +5,7 @@ from __future__ import annotations
 import datetime
 import importlib
 import os
-import sys
 import time
-from collections.abc import Callable
-from pathlib import Path
 
 from evaluation.bench import machine
 from evaluation.bench.acceptance import judge
@@ -22,26 +19,16 @@ from evaluation.bench.results import (
 )
 from evaluation.bench.settings import Settings
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
-
-MEASURED, NOT_MEASURED, INTERRUPTED = 0, 2, 130
+from evaluation.program import NOT_RUN, PASSED, chart_writer, complain, run_program
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except RunError as failure:
-        _complain(failure)
-        return NOT_MEASURED
-    except KeyboardInterrupt:
-        print("bench: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("bench", lambda: _run(parse_options(arguments)))
 
 
 def _run(options: Options) -> int:
-    write_chart = _chart_writer()  # missing packages are said before anything is measured
+    write_chart = chart_writer("evaluation.bench.chart")  # what is missing is said at once
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -61,14 +48,7 @@ def _run(options: Options) -> int:
         print(acceptance_table(verdicts))
     write_chart(results, options.out / "bench.png")
     _say(f"written: {options.out / 'bench.json'}, {options.out / 'bench.png'}")
-    return NOT_MEASURED if any(part.failure for part in results.parts) else MEASURED
-
-
-def _chart_writer() -> Callable[[Results, Path], None]:
-    try:
-        return importlib.import_module("evaluation.bench.chart").write_chart
-    except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error
+    return NOT_RUN if any(part.failure for part in results.parts) else PASSED
 
 
 def _measure(part: str, settings: Settings) -> PartResult:
@@ -78,16 +58,10 @@ def _measure(part: str, settings: Settings) -> PartResult:
     try:
         figures, failure = tuple(module.measure(settings)), ""
     except RunError as error:
-        _complain(error, f"part {part}: ")
+        complain(f"bench: part {part}", error)
         figures, failure = (), str(error)
     return PartResult(part, figures, time.monotonic() - began, others.percent(), failure)
 
 
 def _say(text: str) -> None:
     print(text, flush=True)
-
-
-def _complain(failure: RunError, where: str = "") -> None:
-    if failure.details:
-        print(failure.details, file=sys.stderr)
-    print(f"bench: {where}{failure}", file=sys.stderr)

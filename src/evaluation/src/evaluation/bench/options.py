@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser
 from evaluation.course_run.failure import RunError
 
 PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
@@ -24,23 +24,17 @@ class Options:
     out: Path
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation bench.py --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
     return Options(_parts(given.only), given.quick, _memory_s(given.memory_s), given.out.resolve())
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="bench.py",
         description="Measure the simulator beside what else there is; write bench.json, bench.png.",
         epilog="Exit code: 0 all was measured, 2 something could not be. Figures decide nothing.",
-        allow_abbrev=False,
     )
     names = ", ".join(PARTS)
     parser.add_argument("--only", default="", metavar="PART,...", help=f"of: {names} (all)")

@@ -11,6 +11,7 @@ import socket
 import tempfile
 import time
 import xmlrpc.client
+from collections.abc import Callable
 from pathlib import Path
 
 from evaluation.course_run.failure import RunError
@@ -84,6 +85,29 @@ class Launched:
         if code != 0:
             how = f"did not end within {limit:.0f} s" if code is None else describe_exit(code)
             raise RunError(f"{name}: {how}; log: {child.log}", child.last_lines())
+
+    def wait_for(
+        self,
+        what: Callable[[], str],
+        condition: Callable[[], object],
+        status: Callable[[str], None],
+        limit: float,
+        pause: float = 0.0,
+    ) -> object:
+        """What the condition gives once it is true; RunError if it is not within `limit`, s.
+
+        `what` names what is not there yet, and `status` shows it meanwhile. Between two looks
+        there are `pause` s, wall, for a condition that does not wait by itself.
+        """
+        until = time.monotonic() + limit
+        while not (value := condition()):
+            self.check(None)
+            missing = what()
+            status(f"waiting for {missing}")
+            if time.monotonic() > until:
+                raise RunError(f"{missing} was not there within {limit:.0f} s", self.tail())
+            time.sleep(pause)
+        return value
 
     def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
         """End one program again, by force after `limit` (s, wall); then it is no failure."""

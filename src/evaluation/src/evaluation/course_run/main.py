@@ -10,7 +10,6 @@ import cv2
 
 from evaluation.course_run.failure import RunError
 from evaluation.course_run.fingerprints import Fingerprints
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.observer import Observer
 from evaluation.course_run.options import Options, parse_options
@@ -27,26 +26,16 @@ from evaluation.course_run.report import (
 from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from evaluation.track import TrackError, TrackFile, build_track, load_track_file
 
 RESULTS = ("path.png", "run.mp4", "report.json")
 LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
-CLOSED, NOT_CLOSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except RunError as failure:
-        if failure.details:
-            print(failure.details, file=sys.stderr)
-        print(f"course_run: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("course_run: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("course_run", lambda: _run(parse_options(arguments)))
 
 
 class CourseRun:
@@ -70,21 +59,16 @@ class CourseRun:
         self.progress.status("starting roscore")
         launched.start_roscore()
         self._observer = Observer(
-            launched.master_uri, options.robot, options.course, lockstep=options.fast)
+            launched.master_uri, options.robot, options.course, lockstep=options.fast,
+            listened=options.course.sensors if options.fingerprint else ())
         arguments = ("gui:=false", f"follower:={options.follower}", *options.launch_args)
         launched.start("roslaunch", ["roslaunch", *options.launch, *arguments])
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
-        self._observer.start()
         if options.fingerprint:
-            self._fingerprints.start()
-        until = time.monotonic() + options.startup_timeout
-        while not self._take_samples():
-            launched.check(None)
-            missing = self._observer.missing
-            self.progress.status(f"waiting for {missing}")
-            if time.monotonic() > until:
-                limit = f"{options.startup_timeout:.0f} s"
-                raise RunError(f"{missing} was not there within {limit}", launched.tail())
+            self._fingerprints.start()  # before time may begin
+        self._observer.start()
+        launched.wait_for(lambda: self._observer.missing, self._take_samples, self.progress.status,
+                          options.startup_timeout)
         if options.video:
             self.film.start()
 
@@ -192,9 +176,9 @@ def _run(options: Options) -> int:
     if end is not None:
         raise end
     if run.drive.verdict is Verdict.CLOSED:
-        return CLOSED
+        return PASSED
     print(f"course_run: {outcome[1]}", file=sys.stderr)
-    return NOT_CLOSED
+    return NOT_PASSED
 
 
 def _titles(follower: str, summary: dict) -> tuple[str, str]:

@@ -9,7 +9,7 @@ import queue
 import threading
 import time
 import xmlrpc.client
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import rosgraph
 import rospy
@@ -42,8 +42,10 @@ class Observer:
     The node must exist before use_sim_time is set: then it needs no /clock.
     """
 
-    def __init__(self, master_uri: str, robot: str, course: Course, lockstep: bool = False):
-        self._course = course
+    def __init__(self, master_uri: str, robot: str, course: Course, lockstep: bool = False,
+                 listened: Iterable[str] = ()):
+        """In lockstep, time begins only when `listened`, more topics, are connected, too."""
+        self._course, self._listened = course, tuple(listened)
         os.environ["ROS_MASTER_URI"] = master_uri
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Sample]] = queue.SimpleQueue()
@@ -124,7 +126,7 @@ class Observer:
     def _wait_for_connections(self) -> None:
         me, course = rospy.get_name(), self._course
         topics = (course.camera, course.camera_info, course.commands, course.odometry,
-                  *course.lockstep)
+                  *course.lockstep, *self._listened)
         for _ in self._asker.ticks(SETUP_RATE_HZ):
             try:
                 missing = missing_connection(look_up(self._master_uri, me, topics), me, course)
@@ -177,6 +179,9 @@ def missing_connection(found: Connections, me: str, course: Course) -> str | Non
     deaf = [topic for topic in course.lockstep if not found.subscribers[topic] - {me}]
     if deaf:
         return f"the car's control (nobody subscribes to {deaf[0]})"
+    silent = [topic for topic in course.sensors if not found.publishers.get(topic, {me})]
+    if silent:
+        return f"the car's sensors (nobody publishes {silent[0]})"
     links = (found.missing_link(topic) for topic in found.publishers)
     return next((link for link in links if link), None)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser
 from evaluation.course_run.course_file import Course, find_package, load_course
 from evaluation.course_run.failure import RunError
 
@@ -37,11 +37,6 @@ class Options:
     def robot(self) -> str:
         """The car's model name in the simulator, as the launch file spawns it."""
         return self.course.robot_name(self.launch_args)
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation course_run.py --help)")
 
 
 def parse_options(arguments: list[str]) -> Options:
@@ -83,8 +78,8 @@ def parse_options(arguments: list[str]) -> Options:
     )
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="course_run.py",
         description="Drive a follower round the course without a screen, score it, write a report.",
         epilog="Exit code: 0 laps closed, 1 left the course or stalled, 2 could not run.",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from pathlib import Path
 
@@ -13,14 +12,14 @@ from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
 from evaluation.course_run.course_file import Course
-from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
+from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
 from evaluation.lap import LapScorer
 from evaluation.picture import PAPER, TEXT, CourseMap, draw_line, lap_colour, write_text
 from evaluation.track import TrackFile
 
-FILM_PERIOD = 0.2  # s, simulated, between two pictures of the film
+# s, simulated, between two pictures of the film, which so runs at 2 or 8 times the speed
+FILM_PERIOD = 0.2
 FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
-FILM_RATE_HZ = 10  # so the film runs at 2 or 8 times the speed
 LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
 LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
 VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
@@ -29,7 +28,7 @@ MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds f
 MASK_TINT = (80, 60, 240)
 
 
-class Film:
+class Film(FilmFile):
     """Adds one camera picture in `period` (s, simulated) to the film; works in the camera's thread.
 
     The callback waits until the next picture is nearly due, so the rest of the 190 MB a simulated
@@ -38,16 +37,13 @@ class Film:
 
     def __init__(self, path: Path, course: Course, track_file: TrackFile, drive: LapScorer,
                  period: float):
+        super().__init__(path)
         self._camera, self._band = course.camera, course.film_band
-        self._path, self._drive, self._period = path, drive, period
+        self._drive, self._period = drive, period
         self._map = CourseMap(track_file, MAP_WIDTH_PX)
         self._floor, self._drawn = self._map.empty(), 0
         self._last: tuple[int, float] | None = None  # the last picture's number and s, wall
-        self._ended = threading.Event()
-        self._lock = threading.Lock()
-        self._writer: FfmpegEncoder | OpenCvEncoder | None = None
         self._subscriber: rospy.Subscriber | None = None
-        self.codec = ""
 
     def start(self) -> None:
         """Begin to film."""
@@ -55,22 +51,6 @@ class Film:
         self._subscriber = rospy.Subscriber(
             self._camera, Image, self.take, queue_size=1, buff_size=2**20
         )
-
-    @property
-    def process_id(self) -> int | None:
-        """Of the encoder, if it is a process."""
-        return getattr(self._writer, "process_id", None)
-
-    def stop(self) -> None:
-        """Take no more pictures."""
-        self._ended.set()
-
-    def close(self) -> None:
-        """Finish the file, if any picture came."""
-        self.stop()
-        with self._lock:
-            if self._writer is not None:
-                self._writer.close()
 
     def take(self, message: Image) -> None:
         """Add a camera picture if one is due, and wait until the next one nearly is."""
@@ -83,21 +63,11 @@ class Film:
         frame = fit(CvBridge().imgmsg_to_cv2(message))
         if message.encoding == "rgb8":
             frame = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
-        with self._lock:
-            if not self._ended.is_set():
-                self._add(self._page(frame, now), min(max(number - last, 1), LONGEST_GAP))
+        # The film keeps simulated time even where pictures are missing.
+        self._add(self._page(frame, now), min(max(number - last, 1), LONGEST_GAP))
         pace = (began - last_began) / max(number - last, 1)  # s, wall, from one picture to the next
         due = began + 0.8 * pace
         self._ended.wait(min(max(0.0, due - time.monotonic()), LONGEST_WAIT))
-
-    def _add(self, page: np.ndarray, times: int) -> None:
-        if self._writer is None:
-            self._path.unlink(missing_ok=True)
-            height, width, _ = page.shape
-            self._writer = open_encoder(self._path, width, height, FILM_RATE_HZ)
-            self.codec = self._writer.codec
-        for _ in range(times):  # the film keeps simulated time even where pictures are missing
-            self._writer.write(page)
 
     def _page(self, frame: np.ndarray, now: float) -> np.ndarray:
         """Camera view and map side by side under a bar of figures."""

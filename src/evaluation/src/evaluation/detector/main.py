@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from evaluation.command_line import Parser
 from evaluation.course_run.failure import RunError
 
 DONE, NOT_GOOD, NOT_RUN = 0, 1, 2
@@ -30,16 +31,11 @@ def main(arguments: list[str]) -> int:
         return NOT_RUN
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation train_detector.py --help)")
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="train_detector.py", description=__doc__, allow_abbrev=False,
+def _parser() -> Parser:
+    parser = Parser(
+        prog="train_detector.py", description=__doc__,
         epilog="Exit code: 0 done, 1 the report's model is below the target, 2 could not run.")
-    verbs = parser.add_subparsers(required=True, metavar="VERB", parser_class=_Parser)
+    verbs = parser.add_subparsers(required=True, metavar="VERB", parser_class=Parser)
     draw = verbs.add_parser("draw", help="draw the pictures to learn from")
     draw.add_argument("folder", type=Path, help="where they go: 0.25 MB a picture")
     draw.add_argument("--pictures", type=_count, default=PICTURES, metavar="N")

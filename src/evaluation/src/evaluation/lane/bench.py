@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
-from evaluation.course_run.failure import RunError
 from evaluation.lane.drive import Drive
 from evaluation.lane.options import BenchOptions, parse_bench
-from evaluation.lane.program import PASSED, run_program
 from evaluation.lane.results import LaneDrive, lap_table, line_of, read_drives, write_report
 from evaluation.lane.timing import ms_a_frame
 from evaluation.lane.trials import driven
+from evaluation.program import PASSED, chart_writer, run_program
 
 
 def main(arguments: list[str]) -> int:
@@ -20,7 +18,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _run(options: BenchOptions) -> int:
-    write_chart = _chart_writer()  # a missing package is said before anything is driven
+    write_chart = chart_writer("evaluation.lane.chart")  # what is missing is said at once
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "report.json"
     times = {method: round(ms_a_frame(method), 2) for method in options.methods}
@@ -48,10 +46,3 @@ def _drive_all(options: BenchOptions, drives: list[LaneDrive], path: Path) -> No
                 drives.append(driven(what, options.out / "drives"))
                 print(line_of(drives[-1]), flush=True)
                 write_report(drives, path)
-
-
-def _chart_writer() -> object:
-    try:
-        return importlib.import_module("evaluation.lane.chart").write_chart
-    except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, whole
 from evaluation.course_run.course_file import find_package
 from evaluation.course_run.failure import RunError
-
-MOST = 100_000  # seeds
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ def parse_trials(arguments: list[str]) -> TrialOptions:
     _add_common(parser, "out/lane_trials")
     given = parser.parse_args(arguments)
     _check_methods([given.method])
-    seeds, crossings = _whole("--seeds", given.seeds), _whole("--crossings", given.crossings)
+    seeds, crossings = whole("--seeds", given.seeds), whole("--crossings", given.crossings)
     if not seeds and not crossings:
         raise RunError("--seeds 0 --crossings 0: nothing to drive")
     return TrialOptions(given.method, range(seeds), crossings, given.out.resolve(), given.resume)
@@ -58,7 +55,7 @@ def parse_bench(arguments: list[str]) -> BenchOptions:
     given = parser.parse_args(arguments)
     methods = tuple(dict.fromkeys(given.methods or known_methods()))
     _check_methods(methods)
-    seeds = range(_whole("--seeds", given.seeds))
+    seeds = range(whole("--seeds", given.seeds))
     if not seeds:
         raise RunError("--seeds 0: nothing to drive")
     return BenchOptions(methods, seeds, given.out.resolve(), given.resume)
@@ -72,19 +69,12 @@ def known_methods() -> list[str]:
     return sorted(names, key=lambda name: name != "sliding_windows")
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation {self.prog} --help)")
+def _parser(name: str, does: str) -> Parser:
+    return Parser(prog=name, description=does,
+                  epilog="Exit code: 0 all within the limits, 1 some not, 2 could not run.")
 
 
-def _parser(name: str, does: str) -> argparse.ArgumentParser:
-    return _Parser(
-        prog=name, description=does, allow_abbrev=False,
-        epilog="Exit code: 0 all within the limits, 1 some not, 2 could not run.",
-    )  # fmt: skip
-
-
-def _add_common(parser: argparse.ArgumentParser, out: str) -> None:
+def _add_common(parser: Parser, out: str) -> None:
     parser.add_argument("--out", type=Path, default=Path(out), metavar="DIR",
                         help=f"where report.json and the drives go ({out})")
     parser.add_argument("--resume", action="store_true",
@@ -96,9 +86,3 @@ def _check_methods(methods: list[str] | tuple[str, ...]) -> None:
     for name in methods:
         if name not in known:
             raise RunError(f"no method {name!r} (METHOD=); there are: {', '.join(known)}")
-
-
-def _whole(name: str, text: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) > MOST:
-        raise RunError(f"{name} must be a whole number from 0 to {MOST}; got {text!r}")
-    return int(text)

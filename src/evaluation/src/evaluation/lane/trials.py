@@ -9,7 +9,6 @@ from evaluation.course_run.failure import RunError
 from evaluation.lane.drive import Drive, draw, drive
 from evaluation.lane.encounters import judge, nearest_ever
 from evaluation.lane.options import TrialOptions, parse_trials
-from evaluation.lane.program import NOT_PASSED, PASSED, run_program
 from evaluation.lane.recording import read_recording
 from evaluation.lane.results import (
     LaneDrive,
@@ -21,6 +20,7 @@ from evaluation.lane.results import (
     write_report,
 )
 from evaluation.lane.scenery import load_crossings
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from evaluation.track import load_track_file
 
 LAPS_WITH_PEOPLE = 4  # in a row; bringing up a simulator takes as long as a quarter of a lap

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import cv2
+from racecar_description.track.painted_plane import config_text, material_text
 
 from evaluation.lane.ground import Plane, draw_ground, plane_of
 from evaluation.lane.scenery import Crossings, Lamp, Scenery, Tree, Zebra
@@ -30,9 +31,9 @@ def write_world(track_file: TrackFile, crossings: Crossings, scenery: Scenery, f
         track_file, crossings, scenery if shade else None)
     size = f"{plane.width:g} {plane.height:g}"
     files = {
-        f"models/{MODEL}/model.config": _CONFIG,
+        f"models/{MODEL}/model.config": config_text(MODEL, _DESCRIPTION),
         f"models/{MODEL}/model.sdf": _GROUND.replace("SIZE", size),
-        f"models/{MODEL}/materials/scripts/{MODEL}.material": _MATERIAL,
+        f"models/{MODEL}/materials/scripts/{MODEL}.material": material_text(MODEL),
         "worlds/lane.world": _world(plane, scenery, _people(crossings)),
         "worlds/lane_empty.world": _world(plane, scenery, []),
     }
@@ -125,17 +126,8 @@ def _box(x: float, y: float, z: float) -> str:
     return f"<box><size>{x:g} {y:g} {z:g}</size></box>"
 
 
-_CONFIG = """<?xml version="1.0"?>
-<model>
-  <name>lane_track</name>
-  <version>1.0</version>
-  <sdf version="1.4">model.sdf</sdf>
-  <description>
-    Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
-    Written by make_lane.py of the package evaluation.
-  </description>
-</model>
-"""
+_DESCRIPTION = """Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
+Written by make_lane.py of the package evaluation."""
 
 _GROUND = """<?xml version="1.0"?>
 <sdf version="1.4">
@@ -160,21 +152,6 @@ _GROUND = """<?xml version="1.0"?>
     </link>
   </model>
 </sdf>
-"""
-
-_MATERIAL = """material lane_track
-{
-  technique
-  {
-    pass
-    {
-      texture_unit
-      {
-        texture lane_track.png
-      }
-    }
-  }
-}
 """
 
 _PERSON = """<model name="NAME">

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.processes import Family
 from evaluation.localisation.options import Options, parse_options
@@ -14,25 +11,14 @@ from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
 from evaluation.navigation.ground import Ground
 from evaluation.navigation.progress import Progress
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
-
-PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except RunError as failure:
-        if failure.details:
-            print(failure.details, file=sys.stderr)
-        print(f"localisation_trials: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("localisation_trials: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("localisation_trials", lambda: _run(parse_options(arguments)))
 
 
 def _run(options: Options) -> int:

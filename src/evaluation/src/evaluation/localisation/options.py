@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, pace, whole
 from evaluation.course_run.failure import RunError
 from evaluation.navigation.house_file import House, load_house
 
@@ -26,32 +25,26 @@ class Options:
     out: Path
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation localisation_trials.py --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
-    starts, kidnaps, tracking, load = (_whole(f"--{name}", getattr(given, name))
+    starts, kidnaps, tracking, load = (whole(f"--{name}", getattr(given, name))
                                        for name in ("starts", "kidnaps", "tracking", "load"))
-    first = _whole("--first", given.first)
+    first = whole("--first", given.first)
     if not (starts or kidnaps or tracking or load):
         raise RunError("no starts, no kidnaps, no tracking and no load: nothing to try")
     return Options(load_house(given.house), range(first, first + starts),
                    range(first, first + kidnaps), tracking, load, given.wheel_odometry,
-                   _whole("--seed", given.seed), _factor(given.real_time_factor),
+                   whole("--seed", given.seed), pace(given.real_time_factor),
                    given.out.resolve())
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="localisation_trials.py",
         description="Have amcl find the waffle in the house: from anywhere, and after it was"
         " carried away; then have it keep track of it, and see what that costs.",
         epilog="Exit code: 0 all within the limits of the table, 1 not so, 2 could not run.",
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--starts", default="20", metavar="N", help="robots to find anywhere in the house (20)")
@@ -69,15 +62,3 @@ def _parser() -> argparse.ArgumentParser:
     add("--out", type=Path, default=Path("out/localisation_trials"), metavar="DIR",
         help="where report.json, the map and log/ go (out/localisation_trials)")
     return parser
-
-
-def _whole(name: str, text: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,6}", text):
-        raise RunError(f"{name} must be a whole number, 0 to 999999; got {text!r}")
-    return int(text)
-
-
-def _factor(text: str) -> float:
-    if not re.fullmatch(r"[0-9]{1,3}(\.[0-9]{1,6})?", text) or not 0.1 <= float(text) <= 20:
-        raise RunError(f"--real-time-factor (PACE=) must be a number, 0.1 to 20; got {text!r}")
-    return float(text)

@@ -149,15 +149,8 @@ class Rig:
         return sum(process.cpu for process in processes() if process.name == "amcl")
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
-        until = time.monotonic() + START_LIMIT
-        while not (value := condition()):
-            self._launched.check(None)
-            self._progress.status(f"waiting for {what}")
-            if time.monotonic() > until:
-                raise RunError(f"{what} was not there within {START_LIMIT:.0f} s",
-                               self._launched.tail())
-            time.sleep(LOOK_PERIOD)
-        return value
+        return self._launched.wait_for(lambda: what, condition, self._progress.status, START_LIMIT,
+                                       LOOK_PERIOD)
 
     @staticmethod
     def _call(name: str, kind: type, *arguments: object) -> object:

@@ -10,7 +10,7 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
+from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
 from evaluation.course_run.video import VIEW_PX, fit
 from evaluation.navigation.ground import Ground
 from evaluation.navigation.house_map import HouseMap
@@ -22,18 +22,18 @@ from nav_algorithms.poses import compose, transform_points
 
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint
-PERIOD = 1.0  # s, simulated, between two pictures
-RATE_HZ = 10  # of the film, which so runs at ten times the speed
+PERIOD = 1.0  # s, simulated, between two pictures: the film runs at ten times the speed
 LOOK_PERIOD = 0.1  # s, wall
 MAP_WIDTH_PX, BAR_PX, SIDE_PX = 760, 48, 12
 SCAN, PLAN, DRIVEN = (80, 80, 255), (90, 230, 250), LAP_COLOURS[0]  # BGR
 
 
-class Film:
+class Film(FilmFile):
     """Adds a picture in PERIOD (s, simulated) while a part of the run goes on."""
 
     def __init__(self, path: Path, ground: Ground, watch: Watch, result: Result):
-        self._path, self._watch, self._result = path, watch, result
+        super().__init__(path)
+        self._watch, self._result = watch, result
         walls = ground.walls
         low = np.array(walls.origin)
         high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
@@ -43,36 +43,22 @@ class Film:
         self._title = ""
         self._records: Records | None = None
         self._number = -1
-        self._ended = threading.Event()
         self._thread = threading.Thread(target=self._film, daemon=True, name="film")
-        self._writer: FfmpegEncoder | OpenCvEncoder | None = None
-        self.codec = ""
 
     def start(self) -> None:
         """Begin to film."""
-        self._path.unlink(missing_ok=True)
         self._thread.start()
 
     def tell(self, title: str) -> None:
         """What is going on now."""
         self._title = title
 
-    @property
-    def process_id(self) -> int | None:
-        """Of the encoder, if it is a process."""
-        return getattr(self._writer, "process_id", None)
-
-    def stop(self) -> None:
-        """Take no more pictures."""
-        self._ended.set()
-
     def close(self) -> None:
         """Finish the file, if there is any picture."""
         self.stop()
         if self._thread.ident is not None:
             self._thread.join()
-        if self._writer is not None:
-            self._writer.close()
+        super().close()
 
     def _look(self) -> None:
         """Ask for one picture: while somebody subscribes, the camera draws thirty a second."""
@@ -95,12 +81,6 @@ class Film:
                 self._add(self._page(records))
                 self._look()
 
-    def _add(self, page: np.ndarray) -> None:
-        if self._writer is None:
-            self._writer = open_encoder(self._path, page.shape[1], page.shape[0], RATE_HZ)
-            self.codec = self._writer.codec
-        self._writer.write(page)
-
     def _page(self, records: Records) -> np.ndarray:
         """Camera view and map side by side under a bar of text."""
         plan = self._plan(records)
@@ -116,7 +96,8 @@ class Film:
         touched = len(records.contacts)
         figures = f"{records.now:6.1f} s   {records.length:6.1f} m   touched {touched}"
         write_text(page, figures, (left, 31), 14)
-        write_text(page, f"film at {PERIOD * RATE_HZ:g}x", (page.shape[1] - 120, 31), 12, FAINT)
+        speed = f"film at {PERIOD * FILM_RATE_HZ:g}x"
+        write_text(page, speed, (page.shape[1] - 120, 31), 12, FAINT)
         return page
 
     def _plan(self, records: Records) -> np.ndarray:

@@ -9,7 +9,6 @@ import cv2
 import numpy as np
 
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.processes import Family
 from evaluation.course_run.report import versions
@@ -22,27 +21,17 @@ from evaluation.navigation.progress import Progress
 from evaluation.navigation.report import lines, read_map_frame, write_report
 from evaluation.navigation.score import Result
 from evaluation.navigation.watch import Watch
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 
 RESULTS = ("map.png", "run.mp4", "report.json")
 MAP_FILES = ("map.pgm", "map.yaml")
-PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except RunError as failure:
-        if failure.details:
-            print(failure.details, file=sys.stderr)
-        print(f"navigate: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("navigate: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("navigate", lambda: _run(parse_options(arguments)))
 
 
 class NavigationRun:

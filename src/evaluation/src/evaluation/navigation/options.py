@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
-import math
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, pace, whole
 from evaluation.course_run.failure import RunError
 from evaluation.navigation.house_file import House, load_house
-
-MOST_FACTOR = 20.0  # no machine keeps up with more
 
 
 @dataclass(frozen=True)
@@ -29,11 +25,6 @@ class Options:
     stuck_timeout: float  # s, wall
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation navigate.py --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
@@ -41,9 +32,9 @@ def parse_options(arguments: list[str]) -> Options:
         raise RunError(f"--map {given.map}: no such file; it is a map's NAME.yaml")
     return Options(
         load_house(given.house),
-        _whole("--goals (GOALS=)", given.goals, least=1),
-        _whole("--seed (SEED=)", given.seed, least=0),
-        _factor(given.real_time_factor),
+        whole("--goals (GOALS=)", given.goals, least=1),
+        whole("--seed (SEED=)", given.seed),
+        pace(given.real_time_factor),
         given.out.resolve(),
         given.map.resolve() if given.map else None,
         given.video,
@@ -52,14 +43,13 @@ def parse_options(arguments: list[str]) -> Options:
     )
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="navigate.py",
         description="Map a house, start again on that map, visit goals in it; all without a"
         " screen. Scores map, localisation and driving, writes a report.",
         epilog="Exit code: 0 all goals reached, nothing touched, map and localisation within their"
         " limits; 1 not so; 2 could not run.",
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--goals", default="5", metavar="N", help="goals to visit, drawn from the seed (5)")
@@ -77,20 +67,3 @@ def _parser() -> argparse.ArgumentParser:
     add("--stuck-timeout", type=float, default=30.0, metavar="S",
         help="wall seconds that simulated time may stand still (30)")
     return parser
-
-
-def _whole(name: str, text: str, least: int) -> int:
-    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) < least:
-        raise RunError(f"{name} must be a whole number, {least} or more; got {text!r}")
-    return int(text)
-
-
-def _factor(text: str) -> float:
-    try:
-        factor = float(text)
-    except ValueError:
-        factor = math.nan
-    if not 0 < factor <= MOST_FACTOR:
-        raise RunError(f"--real-time-factor (PACE=) must be a number above 0, up to "
-                       f"{MOST_FACTOR:g}; got {text!r}")
-    return factor

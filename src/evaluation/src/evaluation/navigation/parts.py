@@ -74,14 +74,9 @@ class Part:
         self._children.append(self._launched.start(f"{self.name}-{name}", list(command)))
 
     def _wait_for(self, what: str, condition: Callable[[], object]) -> None:
-        until = time.monotonic() + self._options.startup_timeout
-        while not condition():
-            self._launched.check(None)
-            self._progress.status(f"{self.name}: waiting for {what}")
-            if time.monotonic() > until:
-                limit = f"{self._options.startup_timeout:.0f} s"
-                raise RunError(f"{what} was not there within {limit}", self._launched.tail())
-            time.sleep(LOOK_PERIOD)
+        self._launched.wait_for(
+            lambda: what, condition, lambda text: self._progress.status(f"{self.name}: {text}"),
+            self._options.startup_timeout, LOOK_PERIOD)
 
     def _connect(self, map_in_world: np.ndarray) -> Driver:
         self._driver = Driver(self._watch, self._ground, self._look, map_in_world,

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
+from evaluation.program import NOT_PASSED, PASSED, chart_writer, run_program
 from evaluation.race_trials.disturbance import draw
 from evaluation.race_trials.drive import drive
 from evaluation.race_trials.options import Options, parse_options
@@ -23,28 +21,15 @@ from evaluation.race_trials.results import (
     write_report,
 )
 from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, racetrack, random_track
-from evaluation.track import TrackError
-
-PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except (RunError, TrackError, OSError) as failure:
-        if getattr(failure, "details", ""):
-            print(failure.details, file=sys.stderr)
-        print(f"race_trials: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("race_trials: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("race_trials", lambda: _run(parse_options(arguments)))
 
 
 def _run(options: Options) -> int:
-    write_chart = _chart_writer()  # a missing package is said before anything is driven
+    write_chart = chart_writer("evaluation.race_trials.chart")  # what is missing is said at once
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -78,7 +63,7 @@ def _trials(options: Options) -> Iterator[tuple[str, int, str]]:
         yield from itertools.product([kind], seeds, options.followers)
 
 
-def _write(laps: list[Lap], out: Path, write_chart: object) -> None:
+def _write(laps: list[Lap], out: Path, write_chart: Callable) -> None:
     write_chart(laps, out / "trials.png")
     sheets = [
         write_path_sheet([lap for lap in laps if lap.follower == follower], out)
@@ -86,10 +71,3 @@ def _write(laps: list[Lap], out: Path, write_chart: object) -> None:
     ]
     names = ("report.json", "trials.png", *(sheet.name for sheet in sheets))
     print(f"written to {out}: {', '.join(names)}", flush=True)
-
-
-def _chart_writer() -> object:
-    try:
-        return importlib.import_module("evaluation.race_trials.chart").write_chart
-    except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, whole
 from evaluation.course_run.failure import RunError
 
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
-MOST = 100_000_000  # a larger seed is none for course_run
 
 
 @dataclass(frozen=True)
@@ -24,32 +22,26 @@ class Options:
     resume: bool  # drive only what report.json in `out` has not
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation race_trials.py --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
-    first_seed = _whole("--first-seed", given.first_seed)
-    first_track = _whole("--first-track", given.first_track)
-    seeds = range(first_seed, first_seed + _whole("--seeds", given.seeds))
-    tracks = range(first_track, first_track + _whole("--tracks", given.tracks))
+    first_seed = whole("--first-seed", given.first_seed)
+    first_track = whole("--first-track", given.first_track)
+    seeds = range(first_seed, first_seed + whole("--seeds", given.seeds))
+    tracks = range(first_track, first_track + whole("--tracks", given.tracks))
     if not seeds and not tracks:
         raise RunError("--seeds 0 --tracks 0: nothing to drive")
     followers = tuple(dict.fromkeys(given.followers))
     return Options(seeds, tracks, followers, given.out.resolve(), given.resume)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="race_trials.py",
         description="Drive many laps, each with a start, camera noise and light of its own; compare"
         " followers.",
         epilog="Exit code: 0 all laps of the first follower closed within the limits, 1 some not,"
         " 2 could not run.",
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--seeds", default="20", metavar="N", help="laps on the racetrack (20)")
@@ -66,9 +58,3 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     add("--resume", action="store_true", help="go on where the run that wrote there ended")
     return parser
-
-
-def _whole(name: str, text: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) > MOST:
-        raise RunError(f"{name} must be a whole number, 0 or more; got {text!r}")
-    return int(text)

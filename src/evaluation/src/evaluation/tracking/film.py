@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +9,8 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, FILM_RATE_HZ, VIEW_PX, fit
+from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
+from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, fit
 from evaluation.picture import FAINT, PAPER, write_text
 from evaluation.tracking.room import Room
 from evaluation.tracking.scene import Scene
@@ -20,38 +19,19 @@ from evaluation.tracking.score import TrackScorer
 ROOM_PX, BAR_PX, GAP_PX = 480, 44, 8
 
 
-class Film:
+class Film(FilmFile):
     """Adds one of the tracker's pictures in a period of simulated time."""
 
     def __init__(self, path: Path, topic: str, scene: Scene, drive: TrackScorer, fast: bool):
-        self._path, self._topic, self._drive = path, topic, drive
+        super().__init__(path)
+        self._topic, self._drive = topic, drive
         self._period = FAST_FILM_PERIOD / 2 if fast else FILM_PERIOD  # s, simulated
         self._room = Room(scene, ROOM_PX)
         self._number = -1
-        self._ended, self._lock = threading.Event(), threading.Lock()
-        self._writer: FfmpegEncoder | OpenCvEncoder | None = None
-        self.codec = ""
 
     def start(self) -> None:
         """Begin to film."""
-        self._path.unlink(missing_ok=True)
         rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
-
-    @property
-    def process_id(self) -> int | None:
-        """Of the encoder, if it is a process."""
-        return getattr(self._writer, "process_id", None)
-
-    def stop(self) -> None:
-        """Take no more pictures."""
-        self._ended.set()
-
-    def close(self) -> None:
-        """Finish the file, if any picture came."""
-        self.stop()
-        with self._lock:
-            if self._writer is not None:
-                self._writer.close()
 
     def take(self, message: Image) -> None:
         """Add a picture if one is due."""
@@ -60,14 +40,7 @@ class Film:
         if self._ended.is_set() or number == self._number or not self._drive.samples:
             return
         self._number = number
-        page = self._page(CvBridge().imgmsg_to_cv2(message, "bgr8"), now)
-        with self._lock:
-            if self._ended.is_set():
-                return
-            if self._writer is None:
-                self._writer = open_encoder(self._path, page.shape[1], page.shape[0], FILM_RATE_HZ)
-                self.codec = self._writer.codec
-            self._writer.write(page)
+        self._add(self._page(CvBridge().imgmsg_to_cv2(message, "bgr8"), now))
 
     def _page(self, picture: np.ndarray, now: float) -> np.ndarray:
         """The two side by side under a bar of figures."""

@@ -2,37 +2,25 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import cv2
 
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.launch import Launched
 from evaluation.course_run.processes import Family, strip_terminal_codes
 from evaluation.course_run.status_line import StatusLine
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from evaluation.tracking.options import Options, parse_options
 from evaluation.tracking.report import lines, path_picture, summarize, write_report
 from evaluation.tracking.run import TrackRun
 
-GOOD, NOT_GOOD, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 RESULTS = ("path.png", "run.mp4", "report.json")
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except (RunError, OSError) as failure:
-        if getattr(failure, "details", ""):
-            print(failure.details, file=sys.stderr)
-        print(f"track: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("track: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("track", lambda: _run(parse_options(arguments)))
 
 
 def _run(options: Options) -> int:
@@ -55,7 +43,7 @@ def _run(options: Options) -> int:
         _report(run, progress, launched.log_folder / "roslaunch.log")
     if end is not None:
         raise end
-    return GOOD if run.drive.good else NOT_GOOD
+    return PASSED if run.drive.good else NOT_PASSED
 
 
 def _report(run: TrackRun, progress: StatusLine, log: Path) -> None:

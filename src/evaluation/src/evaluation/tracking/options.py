@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, number, whole
 from evaluation.course_run.failure import RunError
 from evaluation.tracking.course import COURSE, PID, TRACKERS
 from evaluation.tracking.scene import KINDS, MOVING
-
-MOST_SEED = 999_999
 
 
 @dataclass(frozen=True)
@@ -29,13 +26,6 @@ class Options:
     stuck_timeout: float  # s, wall
 
 
-class Parser(argparse.ArgumentParser):
-    """Errors are RunErrors."""
-
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation {self.prog} --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
@@ -44,12 +34,13 @@ def parse_options(arguments: list[str]) -> Options:
     if given.tracker not in TRACKERS:
         raise RunError(f"no tracker {given.tracker!r} (TRACKER=); there are: {', '.join(TRACKERS)}")
     return Options(given.scene, whole("--seed (SEED=)", given.seed), given.tracker,
-                   _seconds(given.keep), given.fast, given.video, given.out.resolve(), 90.0, 30.0)
+                   number("--keep", given.keep, 1, 150, "seconds"), given.fast, given.video,
+                   given.out.resolve(), 90.0, 30.0)
 
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="track.py", allow_abbrev=False,
+        prog="track.py",
         description="Follow the red cylinder without a screen, score it, write a report.",
         epilog="Exit code: 0 all that was asked for was seen, 1 not so, 2 could not run.")
     add = parser.add_argument
@@ -63,16 +54,3 @@ def _parser() -> Parser:
     add("--out", type=Path, default=Path(COURSE.out), metavar="DIR",
         help=f"where path.png, run.mp4, report.json and log/ go ({COURSE.out})")
     return parser
-
-
-def whole(name: str, text: str) -> int:
-    """A whole number that is no larger than a seed may be, or RunError."""
-    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) > MOST_SEED:
-        raise RunError(f"{name} must be a whole number, 0 to {MOST_SEED}; got {text!r}")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
-    if not re.fullmatch(r"[0-9]{1,3}(\.[0-9]+)?", text) or not 1 <= float(text) <= 150:
-        raise RunError(f"--keep must be seconds, 1 to 150; got {text!r}")
-    return float(text)

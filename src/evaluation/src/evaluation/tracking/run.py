@@ -87,14 +87,8 @@ class TrackRun:
         self._observer.start()
         if options.video:
             self.film.start()
-        until = time.monotonic() + options.startup_timeout
-        while not self._take():
-            launched.check(None)
-            missing = self._observer.missing
-            self.progress.status(f"waiting for {missing}")
-            if time.monotonic() > until:
-                limit = f"{options.startup_timeout:.0f} s"
-                raise RunError(f"{missing} was not there within {limit}", launched.tail())
+        launched.wait_for(lambda: self._observer.missing, self._take, self.progress.status,
+                          options.startup_timeout)
 
     def watch(self, launched: Launched) -> None:
         """Returns when nothing more is to be seen."""

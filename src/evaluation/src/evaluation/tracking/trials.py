@@ -13,16 +13,15 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, whole
 from evaluation.course_run.course_file import find_package
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.processes import Child, Family
+from evaluation.program import NOT_PASSED, PASSED, run_program
 from evaluation.tracking.course import PAGE, PID
-from evaluation.tracking.options import Parser, whole
 from evaluation.tracking.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
 from evaluation.tracking.score import FIND_TIME
 
-PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 LIMIT = 900.0  # s, wall, for one drive
 DRIVEN = (0, 1)  # exit codes of track.py after a drive
 
@@ -115,23 +114,13 @@ def table(summaries: Sequence[Summary]) -> str:
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(_parser().parse_args(arguments))
-    except (RunError, OSError) as failure:
-        if getattr(failure, "details", ""):
-            print(failure.details, file=sys.stderr)
-        print(f"track_trials: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("track_trials: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("track_trials", lambda: _run(_parser().parse_args(arguments)))
 
 
 def _parser() -> Parser:
     names = " ".join(kind.name for kind in SETS)
     parser = Parser(
-        prog="track_trials.py", allow_abbrev=False,
+        prog="track_trials.py",
         description="Follow the red cylinder in many seeded drives, and count.",
         epilog="Exit code: 0 enough of each set good, 1 not so, 2 could not run.")
     add = parser.add_argument

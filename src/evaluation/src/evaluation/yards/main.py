@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
 import json
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from evaluation.bench.ros_run import RosRun
 from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
 from evaluation.course_run.processes import Family
+from evaluation.program import NOT_PASSED, PASSED, chart_writer, run_program
 from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.drive import Way, past_person, through_yard
 from evaluation.yards.options import Options, parse_options
@@ -31,26 +29,14 @@ from evaluation.yards.sdf import world, yard_model
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.yard import draw_yard
 
-PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
-
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    try:
-        with interruptible():
-            return _run(parse_options(arguments))
-    except (RunError, OSError) as failure:
-        if getattr(failure, "details", ""):
-            print(failure.details, file=sys.stderr)
-        print(f"navigation_trials: {failure}", file=sys.stderr)
-        return NOT_RUN
-    except KeyboardInterrupt:
-        print("navigation_trials: interrupted; all processes ended", file=sys.stderr)
-        return INTERRUPTED
+    return run_program("navigation_trials", lambda: _run(parse_options(arguments)))
 
 
 def _run(options: Options) -> int:
-    write_chart = _chart_writer()  # a missing package is said before anything is driven
+    write_chart = chart_writer("evaluation.yards.chart")  # what is missing is said at once
     try:
         (options.out / "drives").mkdir(parents=True, exist_ok=True)
         (options.out / "worlds").mkdir(exist_ok=True)
@@ -104,10 +90,3 @@ def _write(drives: list[Drive], out: Path, write_chart: Callable) -> None:
     write_chart(drives, out / "trials.png")
     names = ("report.json", "trials.png", *write_sheets(drives, out))
     print(f"written to {out}: {', '.join(names)}", flush=True)
-
-
-def _chart_writer() -> Callable:
-    try:
-        return importlib.import_module("evaluation.yards.chart").write_chart
-    except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error

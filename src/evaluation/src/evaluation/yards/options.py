@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from evaluation.command_line import Parser, pace, whole
 from evaluation.course_run.course_file import find_package
 from evaluation.course_run.failure import RunError
 
@@ -26,36 +25,30 @@ class Options:
     resume: bool  # drive only what report.json in `out` has not
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:
-        raise RunError(f"{message} (see: rosrun evaluation navigation_trials.py --help)")
-
-
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
-    first_yard = _whole("--first-yard", given.first_yard)
-    first_crossing = _whole("--first-crossing", given.first_crossing)
-    yards = range(first_yard, first_yard + _whole("--yards", given.yards))
-    crossings = range(first_crossing, first_crossing + _whole("--crossings", given.crossings))
-    repeats = _whole("--repeats", given.repeats)
+    first_yard = whole("--first-yard", given.first_yard)
+    first_crossing = whole("--first-crossing", given.first_crossing)
+    yards = range(first_yard, first_yard + whole("--yards", given.yards))
+    crossings = range(first_crossing, first_crossing + whole("--crossings", given.crossings))
+    repeats = whole("--repeats", given.repeats)
     if not (yards and repeats) and not crossings:
         raise RunError("no yards or repeats, and no crossings: nothing to drive")
     parameters = (given.parameters or find_package("evaluation") / PARAMETERS).resolve()
     if not parameters.is_file():
         raise RunError(f"--parameters {parameters}: no such file")
-    return Options(yards, repeats, crossings, _factor(given.real_time_factor), parameters,
+    return Options(yards, repeats, crossings, pace(given.real_time_factor), parameters,
                    given.out.resolve(), given.resume)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="navigation_trials.py",
         description="Drive the waffle by move_base, without a map, through narrow yards and past"
         " persons who cross its way.",
         epilog="Exit code: 0 at least 95 %% of the yards crossed and no person touched, 1 not so,"
         " 2 could not run.",
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--yards", default="50", metavar="N", help="narrow worlds (50)")
@@ -71,15 +64,3 @@ def _parser() -> argparse.ArgumentParser:
         help="where report.json, pictures, worlds and drives go (out/navigation_trials)")
     add("--resume", action="store_true", help="go on where the run that wrote there ended")
     return parser
-
-
-def _whole(name: str, text: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,6}", text):
-        raise RunError(f"{name} must be a whole number, 0 to 999999; got {text!r}")
-    return int(text)
-
-
-def _factor(text: str) -> float:
-    if not re.fullmatch(r"[0-9]{1,3}(\.[0-9]{1,6})?", text) or not 0.1 <= float(text) <= 100:
-        raise RunError(f"--real-time-factor must be a number, 0.1 to 100; got {text!r}")
-    return float(text)

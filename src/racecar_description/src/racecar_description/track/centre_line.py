@@ -11,6 +11,7 @@ import numpy as np
 from racecar_description.track.errors import TrackError
 
 STRAIGHT = 1e-9  # rad and m: less is no bend, and no piece
+LEAST_CURVATURE = 1e-12  # 1/m
 SPACING = 0.02  # m, between the points that stand for the line in pictures and checks
 
 
@@ -33,14 +34,45 @@ class Piece:
     length: float
     curvature: float
 
+    @property
+    def is_straight(self) -> bool:
+        """Whether it bends too little for an arc's formulas."""
+        return abs(self.curvature) < LEAST_CURVATURE
+
     def pose(self, s: float) -> tuple[float, float, float]:
         """x, y and heading after s metres of this piece."""
         turned = self.heading + self.curvature * s
-        if self.curvature == 0.0:
+        if self.is_straight:
             return self.x + s * math.cos(turned), self.y + s * math.sin(turned), turned
         x = self.x + (math.sin(turned) - math.sin(self.heading)) / self.curvature
         y = self.y - (math.cos(turned) - math.cos(self.heading)) / self.curvature
         return x, y, turned
+
+    def nearest(self, x: float, y: float) -> float:
+        """Length (m) along this piece at which it comes closest to the point."""
+        ahead = math.cos(self.heading) * (x - self.x) + math.sin(self.heading) * (y - self.y)
+        if self.is_straight:
+            return min(max(ahead, 0.0), self.length)
+        left = -math.sin(self.heading) * (x - self.x) + math.cos(self.heading) * (y - self.y)
+        side = math.copysign(1.0, self.curvature)
+        radius = 1.0 / abs(self.curvature)
+        angle = math.atan2(ahead, radius - side * left)
+        whole = self.length / radius
+        # The arc's blind side is split in the middle: half of it is nearer to each end.
+        if angle < whole / 2 - math.pi:
+            angle += 2 * math.pi
+        return min(max(angle, 0.0), whole) * radius
+
+    def offset(self, left: float) -> Piece:
+        """The parallel piece this far (m) to the left; TrackError where a bend is too tight."""
+        scale = 1.0 - self.curvature * left
+        if scale <= 0:
+            raise TrackError(
+                f"no line {left:+.3f} m beside a bend of radius {1 / abs(self.curvature):.3f} m"
+            )
+        x = self.x - left * math.sin(self.heading)
+        y = self.y + left * math.cos(self.heading)
+        return Piece(x, y, self.heading, self.length * scale, self.curvature / scale)
 
 
 class CentreLine:

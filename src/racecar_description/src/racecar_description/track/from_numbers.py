@@ -18,7 +18,7 @@ from racecar_description.track.course import (
 )
 from racecar_description.track.errors import TrackError
 from racecar_description.track.random_circuit import Room, random_circuit
-from racecar_description.track.track_file import load_track_file
+from racecar_description.track.track_file import load_centre_line
 from racecar_description.track.wishes import (
     DEFAULT_SIZE,
     RoadTouches,
@@ -31,8 +31,8 @@ from racecar_description.track.wishes import (
 
 def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
     """The course of a centre line; coordinates and, unless asked otherwise, widths are its own."""
-    track = load_track_file(path)
-    line, remarks = CentreLine(track.corners), []
+    track, line = load_centre_line(path)
+    remarks: list[str] = []
     if wishes.backwards:
         line = line.reversed()
     lane = track.lane_width if wishes.width is None else lane_width(wishes.width)

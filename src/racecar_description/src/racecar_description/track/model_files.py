@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from racecar_description.track.course import Course
+from racecar_description.track.painted_plane import model_texts
 from racecar_description.track.painting import paint_course, texture_scale
 from racecar_description.track.preview import draw_preview
 from racecar_description.track.track_file import track_text
@@ -25,75 +26,8 @@ from racecar_description.track.walls import (
 # Models that stand in a world beside the course's, and the older course of this package.
 TAKEN_NAMES = ("racecar", "sun", "ground_plane", "walls", "smartcar_plane")
 WRITTEN_BY = "Written by make_track of the package racecar_description"
-
-MODEL_CONFIG = """<?xml version="1.0"?>
-<model>
-  <name>{name}</name>
-  <version>1.0</version>
-  <sdf version="1.4">model.sdf</sdf>
-  <description>
-    A lawn with a closed road: yellow centre line, white edge lines.
-    {written_by} from {source}.
-  </description>
-</model>
-"""
-
-MODEL_SDF = """<?xml version="1.0"?>
-<sdf version="1.4">
-  <model name="{name}">
-    <static>true</static>
-    <link name="{name}_link">
-      <collision name="{name}_collision">
-        <geometry>
-          <plane>
-            <normal>0 0 1</normal>
-            <size>{width:g} {height:g}</size>
-          </plane>
-        </geometry>
-        <surface>
-          <friction>
-            <ode>
-              <mu>100</mu>
-              <mu2>50</mu2>
-            </ode>
-          </friction>
-        </surface>
-      </collision>
-      <visual name="{name}_visual">
-        <cast_shadows>false</cast_shadows>
-        <geometry>
-          <plane>
-            <normal>0 0 1</normal>
-            <size>{width:g} {height:g}</size>
-          </plane>
-        </geometry>
-        <material>
-          <script>
-            <uri>model://{name}/materials/scripts</uri>
-            <uri>model://{name}/materials/textures</uri>
-            <name>{name}</name>
-          </script>
-        </material>
-      </visual>
-    </link>
-  </model>
-</sdf>
-"""
-
-MATERIAL = """material {name}
-{{
-  technique
-  {{
-    pass
-    {{
-      texture_unit
-      {{
-        texture {name}.png
-      }}
-    }}
-  }}
-}}
-"""
+DESCRIPTION = """A lawn with a closed road: yellow centre line, white edge lines.
+{written_by} from {source}."""
 
 WORLD = """<?xml version="1.0"?>
 <!-- {written_by} from {source}. A lap begins at {start}. -->
@@ -188,10 +122,14 @@ def course_files(course: Course) -> dict[PurePosixPath, bytes]:
     grid = grid_map(course, polygons)
     texture = paint_course(course, texture_scale(course))
     words = {"name": name, "source": _in_comment(course.source), "written_by": WRITTEN_BY}
-    texts = {
-        model / "model.config": MODEL_CONFIG.format(**words),
-        model / "model.sdf": MODEL_SDF.format(name=name, width=plane.width, height=plane.height),
-        model / f"materials/scripts/{name}.material": MATERIAL.format(name=name),
+    model_files = model_texts(
+        name,
+        description=DESCRIPTION.format(**words),
+        size=(plane.width, plane.height),
+        uri=f"model://{name}",
+        part=name,
+    )
+    texts = {model / relative: text for relative, text in model_files.items()} | {
         world_path(name): _world_text(course, wall_boxes(polygons), words),
         PurePosixPath("maps") / f"{name}.yaml": MAP_YAML.format(
             name=name, cell=MAP_CELL, x=grid.x, y=grid.y

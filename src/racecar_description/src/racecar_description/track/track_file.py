@@ -1,4 +1,4 @@
-"""The centre line as a YAML file, with the keys of the line course's tracks/course.yaml."""
+"""The line of a course as a YAML file: a polygon whose corners are rounded by arcs."""
 
 from __future__ import annotations
 
@@ -17,16 +17,17 @@ class TrackFile:
     """A track's YAML, key by key; m in the world frame, driven in the order of the corners."""
 
     name: str
-    size: float  # the longer side of the painted plane
-    model_yaw: float  # rad, how the world file turns that plane; those written here are not turned
-    line_width: float  # of the centre line
-    lane_width: float  # from the middle of the centre line to the middle of an edge line
-    start: tuple[float, float]  # where laps begin, on the centre line
-    corners: tuple[Corner, ...]  # of the centre line
+    size: float  # the longer side of the plane that the course is painted on
+    model_yaw: float  # rad, how the world file turns that plane
+    line_width: float  # of the painted line
+    lane_width: float  # from the middle of that line to the middle of the lane's other line
+    start: tuple[float, float]  # where laps begin, on the line
+    corners: tuple[Corner, ...]  # of the line
 
 
-def load_track_file(path: Path) -> TrackFile:
+def load_track_file(path: str | Path) -> TrackFile:
     """Read and check a track file; each mistake is one TrackError that names file and key."""
+    path = Path(path)
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
@@ -40,6 +41,17 @@ def load_track_file(path: Path) -> TrackFile:
         raise TrackError(f"{path}: {error}") from error
 
 
+def load_centre_line(path: Path) -> tuple[TrackFile, CentreLine]:
+    """A track file and its line; TrackError too where bends overlap or `start` is off the line."""
+    track = load_track_file(path)
+    try:
+        line = CentreLine(track.corners)
+        _check_start(track, line)
+    except TrackError as error:
+        raise TrackError(f"{path}: {error}") from error
+    return track, line
+
+
 def _track_file(values: object) -> TrackFile:
     _check_keys("", values, TrackFile)
     corners = values["corners"]
@@ -48,7 +60,7 @@ def _track_file(values: object) -> TrackFile:
     start = values["start"]
     if not isinstance(start, list) or len(start) != 2:
         raise TrackError(f"start: must be [x, y], is {start!r}")
-    track = TrackFile(
+    return TrackFile(
         name=str(values["name"]),
         size=_number("size", values["size"], positive=True),
         model_yaw=_number("model_yaw", values["model_yaw"]),
@@ -57,12 +69,9 @@ def _track_file(values: object) -> TrackFile:
         start=(_number("start[0]", start[0]), _number("start[1]", start[1])),
         corners=tuple(_corner(f"corners[{i}]", item) for i, item in enumerate(corners)),
     )
-    _check_start(track)
-    return track
 
 
-def _check_start(track: TrackFile) -> None:
-    line = CentreLine(track.corners)
+def _check_start(track: TrackFile, line: CentreLine) -> None:
     x, y, _ = line.pose(line.nearest(*track.start))
     beside = math.hypot(x - track.start[0], y - track.start[1])
     if beside > 1e-6:
