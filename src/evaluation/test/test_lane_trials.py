@@ -1,6 +1,7 @@
 """The judge of encounters on made-up drives; recordings, options, and reports of lane trials."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -144,6 +145,8 @@ def test_a_report_is_gone_on_with(tmp_path):
     write_report([one], tmp_path / "report.json")
     assert read_drives(tmp_path / "report.json") == [one]
     assert "1 of 1" in encounter_table([one])
+    passing = tuple(replace(each, stopped_before=None, moved_after=None) for each in met)
+    assert "stood nowhere" in encounter_table([replace(one, encounters=passing)])
     (tmp_path / "report.json").write_text("{}")
     with pytest.raises(RunError, match="no report of lane trials"):
         read_drives(tmp_path / "report.json")

@@ -80,6 +80,11 @@ def test_limits(results, passes):
     assert results.passed is passes
 
 
+def test_a_robot_without_any_pose_is_told_in_words():
+    lost = Trial(FINDING, 1, (0.0, 0.0, 0.0), None, None, None, 0)
+    assert trial_line(lost).endswith("not found, no pose at the end")
+
+
 def test_right_counts_from_the_last_wrong_pose_on():
     times = np.arange(6.0)
     off = np.array([2.0, 0.1, 0.4, 0.29, 0.1, 0.0])

@@ -151,6 +151,15 @@ def test_trials_go_on_from_what_is_there_and_count(tmp_path, capsys, good, code)
     assert json.loads((tmp_path / "report.json").read_text())["summaries"][0]["cases"] == 2
 
 
+def test_a_damaged_report_of_a_drive_is_one_line(tmp_path, capsys):
+    folder = tmp_path / "stand" / "0"
+    folder.mkdir(parents=True)
+    (folder / "report.json").write_text("{")
+    assert main(["--sets", "stand", "--seeds", "1", "--resume", "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1 and str(folder / "report.json") in said[0]
+
+
 def test_no_drives_are_refused(capsys):
     assert main(["--seeds", "0"]) == 2
     assert "nothing to drive" in capsys.readouterr().err

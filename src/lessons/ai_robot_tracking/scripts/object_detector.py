@@ -104,8 +104,8 @@ class ObjectDetector:
 def main():
     """Exit code 1, with one line, if the model or a parameter is no good."""
     rospy.init_node("object_detector")
-    given = own_parameters()
     try:
+        given = own_parameters()
         for key in sorted(set(given) - KEYS):
             raise SettingsError(f"unknown parameter ~{key}; known: {', '.join(sorted(KEYS))}")
         for key in TEXTS:

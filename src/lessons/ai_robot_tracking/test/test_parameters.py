@@ -3,7 +3,17 @@
 import sys
 from unittest.mock import MagicMock, call
 
+import pytest
 from ai_robot_tracking import parameters
+from ai_robot_tracking.settings import SettingsError
+
+
+def test_one_value_in_place_of_all_parameters_is_refused(monkeypatch):
+    rospy = MagicMock()
+    rospy.get_param.return_value, rospy.get_name.return_value = 3, "/visual_tracker"
+    monkeypatch.setattr(parameters, "rospy", rospy)
+    with pytest.raises(SettingsError, match="rosparam delete /visual_tracker"):
+        parameters.own_parameters()
 
 
 def test_what_the_command_line_gave_does_not_stay_for_the_next_run(monkeypatch):

@@ -138,6 +138,8 @@ def main():
     for key in load_command_line_node_params(sys.argv):
         rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
     try:
+        if not isinstance(given, dict):
+            raise SettingsError(f"rosparam delete {rospy.get_name()}: it is {given!r}, no table")
         node = LaneKeeping(*read_parameters(given))
     except SettingsError as error:
         rospy.logfatal("%s", error)

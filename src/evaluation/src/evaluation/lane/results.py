@@ -106,15 +106,16 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
     nearest = min(drive.nearest_person for drive in drives if drive.nearest_person is not None)
     stops = [each.stopped_before for each in met if each.stopped_before is not None]
     starts = [each.moved_after for each in met if each.moved_after is not None]
+    stood = f"{min(stops):.2f} m before" if stops else "nowhere"
     rows = [
         ["demanded", "kept", "worst"],
         ["no contact", f"{sum(not each.touched for each in met)} of {len(met)}",
          f"{nearest:.2f} m, over all drives"],
         [f"{KEPT_OFF:g} m from person and zebra",
          f"{sum(each.stood_off for each in met)} of {len(met)}",
-         f"{min(each.nearest for each in met):.2f} m; stood {min(stops, default=0):.2f} m before"],
+         f"{min(each.nearest for each in met):.2f} m; stood {stood}"],
         [f"moves on within {MOVES_ON:g} s", f"{sum(each.moved_on for each in met)} of {len(met)}",
-         f"{max(starts, default=0):.2f} s"],
+         f"{max(starts):.2f} s" if starts else "-"],
         ["all of it", f"{sum(each.passed for each in met)} of {len(met)}", ""],
     ]
     return aligned(rows)

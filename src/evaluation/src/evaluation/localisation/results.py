@@ -25,8 +25,8 @@ class Trial:
     number: int
     start: tuple[float, float, float]  # in the world; rad
     took: float | None  # until it was right and stayed so; None: it was not, or not for long
-    off: float  # at the end
-    off_deg: float
+    off: float | None  # at the end; None: it had no pose
+    off_deg: float | None
     touched: int
 
     @property
@@ -100,8 +100,9 @@ def trial_line(trial: Trial) -> str:
     """One on one line."""
     found = "not found" if trial.took is None else f"found after {trial.took:.1f} s"
     late = "" if trial.right or trial.took is None else ", too late"
-    return (f"{trial.set} {trial.number}: {found}{late}, at the end {trial.off * 100:.1f} cm and "
-            f"{trial.off_deg:.1f}° off")
+    end = (", no pose at the end" if trial.off is None else
+           f", at the end {trial.off * 100:.1f} cm and {trial.off_deg:.1f}° off")
+    return f"{trial.set} {trial.number}: {found}{late}{end}"
 
 
 def table(results: Results) -> str:

@@ -138,11 +138,12 @@ def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
     finally:
         wander.stop()
     times, errors = errors_since(rig.watch.records, began)
-    off = errors[-1] if len(errors) else (np.inf, np.inf)
+    off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
     held = since is not None and times[-1] - since >= HOLD
     return Trial(kind, number, tuple(np.round(place, 3).tolist()),
-                 round(since - began, 2) if held else None, round(float(off[0]), 4),
-                 round(float(np.degrees(off[1])), 3), len(rig.watch.records.contacts))
+                 round(since - began, 2) if held else None, off,
+                 turned if turned is None else round(float(np.degrees(turned)), 3),
+                 len(rig.watch.records.contacts))
 
 
 def _watch_for(rig: Rig, seconds: float, part: str, what: str) -> None:

@@ -177,7 +177,11 @@ def _drive(kind: Set, seed: int, folder: Path, resume: bool) -> dict:
         if child.process.returncode not in DRIVEN or not report.exists():
             *details, why = child.last_lines().splitlines() or ["track.py said nothing"]
             raise RunError(f"{kind.name}, seed {seed}: {why}", "\n".join(details))
-    return json.loads(report.read_text(encoding="utf-8"))
+    try:
+        return json.loads(report.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise RunError(f"{report}: no report of a drive ({error}); remove it, or --resume not"
+                       ) from error
 
 
 def _wait(child: Child) -> None:

@@ -13,11 +13,17 @@ from ai_robot_tracking.settings import Settings, SettingsError, load_settings
 
 
 def own_parameters() -> dict[str, object]:
-    """By name, without `~`; those of the command line are taken off the parameter server."""
-    given = dict(rospy.get_param("~", {}))
+    """By name, without `~`; those of the command line are taken off the parameter server.
+
+    SettingsError where one value stands in place of all of them.
+    """
+    given = rospy.get_param("~", {})
+    if not isinstance(given, dict):
+        raise SettingsError(f"the parameter {rospy.get_name()} is {given!r}: there should be "
+                            f"parameters below it; type: rosparam delete {rospy.get_name()}")
     for key in load_command_line_node_params(sys.argv):
         rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
-    return given
+    return dict(given)
 
 
 def read_settings(kind: type[Settings], section: str) -> Settings:
@@ -25,9 +31,9 @@ def read_settings(kind: type[Settings], section: str) -> Settings:
 
     The node's other parameters win over the file. If they do not fit, one line ends the program.
     """
-    given = own_parameters()
     folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
     try:
+        given = own_parameters()
         path = Path(str(given.pop("config", folder / "tracking_params.yaml")))
         return load_settings(kind, path, section, given)
     except SettingsError as error:
