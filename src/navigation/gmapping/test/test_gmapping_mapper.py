@@ -7,7 +7,7 @@ import pytest
 from geometry_msgs.msg import Quaternion, Transform, Vector3
 from sensor_msgs.msg import LaserScan
 
-from gmapping.mapper import TABLE, Mapper, ranges_of, settings_from
+from gmapping.mapper import TABLE, Mapper, ScanError, ranges_of, settings_from
 from nav_algorithms.grid import OCCUPIED
 from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
@@ -73,6 +73,40 @@ def test_an_upside_down_laser_turns_the_other_way(upside_down, y):
     assert mapper.take(scan, np.zeros(3), Mount(np.zeros(3), upside_down))
     grid = mapper.slam.grid()
     assert grid.cells[tuple(grid.cells_of((0.01, y)))] == OCCUPIED
+
+
+def scan_of(reach, range_max=3.5):
+    return LaserScan(angle_increment=0.1, range_max=range_max, ranges=[1.0, reach])
+
+
+@pytest.mark.parametrize("reach, x, said", [
+    (1e6, 0.0, "scan of 1e[+]06 m about [(]0, 0[)] m is left out: it would have 2e[+]15 cells"),
+    (3e38, 0.0, "more than 5e[+]07; write a smaller ~maxUrange"),
+    (2.0, 1e9, "about [(]1e[+]09, 0[)] m is left out: the map would have 4e[+]12 cells"),
+    (2.0, 1e300, "more than 5e[+]08"), (2.0, np.nan, "nan cells")])
+def test_a_scan_for_which_no_map_is_large_enough_is_as_if_it_had_not_come(reach, x, said):
+    """First, when its range_max must not become the algorithm's, and later."""
+    mapper = Mapper(SMALL)
+    level, absurd, odometry = Mount(np.zeros(3), False), scan_of(reach, 1e39), np.array([x, 0, 0])
+    with pytest.raises(ScanError, match=said):
+        mapper.take(absurd, odometry, level)
+    assert mapper.take(scan_of(2.0), np.zeros(3), level)
+    assert mapper.slam.settings.maxRange == pytest.approx(3.49)
+    if x:
+        with pytest.raises(ScanError, match=said):
+            mapper.take(absurd, odometry, level)
+    assert mapper.take(scan_of(2.0), np.array([1.0, 0, 0]), level)
+    assert mapper.slam.grid().cells.size < 1e6
+
+
+def test_the_map_grows_step_by_step_up_to_its_limit(monkeypatch):
+    monkeypatch.setattr("gmapping.mapper.LARGEST", 1e5)
+    mapper, level = Mapper(SMALL), Mount(np.zeros(3), False)
+    for x in (0.0, 3.0, 6.0, 9.0):  # to 16 m x 10 m, 6.4e4 cells
+        assert mapper.take(scan_of(2.0), np.array([x, 0, 0]), level)
+    with pytest.raises(ScanError, match=r"the map would have 1e\+05 cells"):
+        mapper.take(scan_of(2.0), np.array([19.0, 0, 0]), level)
+    assert mapper.take(scan_of(2.0), np.array([11.0, 0, 0]), level)
 
 
 def test_throttle_scans():

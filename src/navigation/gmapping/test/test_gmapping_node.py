@@ -1,5 +1,7 @@
-"""When the node takes the clock for set back; no master."""
+"""When the node takes the clock for set back, and what it does with scans that come; no master."""
 
+import threading
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 import rospy
 from sensor_msgs.msg import LaserScan
 
+from gmapping.mapper import ScanError
 from gmapping.node import SlamNode
 
 
@@ -18,8 +21,11 @@ def node(monkeypatch):
     found._values = {"map_update_interval": 5.0}
     found._frames = {"odom_frame": "odom", "base_frame": "base_link"}
     found._newest, found._map = rospy.Time(0), None
+    found._lock, found._scans = threading.Lock(), SimpleNamespace(resolved_name="/scan")
+    found._silence = SimpleNamespace(heard=nullcontext)
     found._mounts = SimpleNamespace(of=lambda _frame: True)
-    found._mapper = SimpleNamespace(take=lambda *_: True, slam=SimpleNamespace(map_to_odom=None))
+    found._mapper = SimpleNamespace(take=lambda *_: True, is_wanted=lambda: True,
+                                    slam=SimpleNamespace(map_to_odom=None))
     found._transforms = SimpleNamespace(
         pose=lambda *_: np.zeros(3),
         buffer=SimpleNamespace(clear=lambda: found.events.append("no transforms")))
@@ -44,6 +50,57 @@ def take(node, *stamps):
 
 def test_scans_of_two_lasers_may_come_in_the_wrong_order(node):
     assert take(node, 10.0, 10.1, 10.05, 10.2, 10.15, 9.9) == ["map at 10 s"]
+
+
+def test_scans_of_two_lasers_are_mapped_one_at_a_time(node):
+    """rospy calls on a thread for each publisher."""
+    together, met = threading.Barrier(2), []
+
+    def map_scan(*_):
+        try:
+            together.wait(0.3)  # s; for somebody else who is in here
+            met.append(True)
+        except threading.BrokenBarrierError:
+            met.append(False)
+        return True
+
+    node._mapper.take = map_scan
+    lasers = [threading.Thread(target=node._take_scan, args=(LaserScan(),)) for _ in range(2)]
+    for laser in lasers:
+        laser.start()
+    for laser in lasers:
+        laser.join(5.0)
+    assert met == [False, False]
+
+
+def test_a_laser_that_waits_for_its_odometry_does_not_hold_up_another(node):
+    waits, is_over = threading.Event(), threading.Event()
+    late = threading.Thread(target=take, args=(node, 0.0))
+
+    def pose(*_):
+        if threading.current_thread() is not late:
+            return np.zeros(3)
+        waits.set()
+        is_over.wait(5.0)
+        return None
+
+    node._transforms.pose = pose
+    late.start()
+    assert waits.wait(5.0)
+    node._take_scan(LaserScan())
+    assert node.events == ["map at 0 s"] and late.is_alive()
+    is_over.set()
+    late.join(5.0)
+
+
+def test_a_scan_that_no_map_can_be_made_of_is_left_out_with_a_line(node, monkeypatch):
+    def refuse(*_):
+        raise ScanError("of 1e+06 m")
+
+    node._mapper.take = refuse
+    monkeypatch.setattr(rospy, "logwarn_throttle", lambda seconds, text, *values:
+                        node.events.append((seconds, text % values)))
+    assert take(node, 10.0) == [(5.0, "/scan: of 1e+06 m")]
 
 
 def test_the_clock_was_set_back(node):

@@ -102,6 +102,23 @@ def test_a_file_of_parameters_that_is_none(bag, capsys, tmp_path, text, said):
     assert said in line and "slam.yaml" in line and line.count("\n") == 1
 
 
+def test_scans_of_no_use_are_counted_and_the_rest_is_mapped(tmp_path, capsys):
+    path = tmp_path / "absurd.bag"
+    with rosbag.Bag(str(path), "w") as out:
+        for i in range(6):
+            stamp, scan = rospy.Time(10 + i), scan_at(0.0, rospy.Time(10 + i))
+            if i < 2:
+                scan.ranges, scan.range_max = [1e6] * 120, 1e7
+            out.write("/tf", TFMessage([
+                transform_message(np.zeros(3), "odom", "base_link", stamp),
+                transform_message(np.zeros(3), "base_link", "laser", stamp)]), stamp)
+            out.write("/scan", scan, stamp)
+    assert replay(path, "absurd") == 0
+    said, line = capsys.readouterr()
+    assert "4 scans of 3 s" in said
+    assert "2 scans of no use, the first: a scan of 1e+06 m" in line and line.count("\n") == 1
+
+
 def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys):
     (tmp_path / "text.bag").write_text("no bag")
     assert main([str(tmp_path / "text.bag")]) == 1

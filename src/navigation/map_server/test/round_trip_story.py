@@ -143,7 +143,7 @@ class RoundTrip(unittest.TestCase):
                               ("none.pgm: there is no such image", ["image.yaml"]),
                               ("resolution is 'wide', but must be a number", ["size.yaml"]),
                               ("cut.pgm: is no image, or a damaged one", ["cut.yaml"]),
-                              ("'0' is no resolution", ["one.pgm", "0"]),
+                              ("'1e-46' is no resolution", ["one.pgm", "1e-46"]),
                               ("got 0 arguments; usage", []),
                               ("frame_id is 3, but must be", ["one.yaml", "_frame_id:=3"])):
             self.fails(255, said, "map_server", *command)

@@ -10,13 +10,29 @@ import rospy
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMap
 
+from nav_algorithms.grid import OccupancyGrid
 from nav_nodes.complaints import Complaints
+from nav_nodes.messages import grid_of
 
 RETRY = 0.5  # s of wall time between two calls of static_map, as upstream
+ADVICE = "start map_server with the map's YAML file"
+
+
+def grid_in(message: OccupancyGridMessage, frame: str) -> OccupancyGrid:
+    """Its grid, with a line if it is in another frame than ours. Raises ValueError."""
+    grid = grid_of(message)
+    if message.header.frame_id.lstrip("/") != frame.lstrip("/"):
+        rospy.logwarn("the map's frame is %r, but ~global_frame_id is %r: what is published "
+                      "may not fit it", message.header.frame_id, frame.lstrip("/"))
+    rospy.loginfo("Received a %d X %d map @ %.3f m/pix", *grid.cells.shape[::-1], grid.resolution)
+    return grid
 
 
 class MapSource:
-    """Gives `take` each map that comes; follows its topic or calls the service until one came."""
+    """Gives `take` each map that comes; follows its topic or calls the service until one came.
+
+    A map that `take` refuses, by a ValueError, has not come.
+    """
 
     def __init__(self, take: Callable[[OccupancyGridMessage], None],
                  complaints: Complaints) -> None:
@@ -24,7 +40,9 @@ class MapSource:
         self._complaints = complaints
         self._topic: rospy.Subscriber | None = None
         self._first_only = False
+        self._lock = threading.Lock()  # of two maps at a time the second must know of the first
         self._came = False
+        self._advice = ADVICE
 
     def follow(self, topic: bool, first_only: bool) -> None:
         """From now on the topic, or else the service; with `first_only` one map of the topic."""
@@ -38,10 +56,23 @@ class MapSource:
             self._topic.unregister()
             self._topic = None
 
-    def set(self, message: OccupancyGridMessage) -> None:
-        """A map from elsewhere."""
-        self._came = True
-        self._take(message)
+    def set(self, message: OccupancyGridMessage, only_first: bool = False) -> bool:
+        """A map from elsewhere; false if it is of no use. `only_first`: passed over if one came."""
+        with self._lock:
+            if only_first and self._came:
+                return True
+            try:
+                self._take(message)
+            except ValueError as error:
+                self._refuse(error)
+                return False
+            self._came, self._advice = True, ADVICE
+            return True
+
+    def _refuse(self, error: ValueError) -> None:
+        self._advice = f"the one that came is of no use: {error}"
+        if self._came:  # else complain says it
+            rospy.logerr_throttle(5.0, "a map came that is of no use, passed over: %s", error)
 
     @property
     def missing(self) -> str:
@@ -53,13 +84,12 @@ class MapSource:
     def complain(self) -> None:
         """Call now and then: says how long there has been no map."""
         if not self._came:
-            self._complaints.missing(self.missing, "start map_server with the map's YAML file")
+            self._complaints.missing(self.missing, self._advice)
         else:
             self._complaints.present(self.missing)
 
     def _from_topic(self, message: OccupancyGridMessage) -> None:
-        if not (self._first_only and self._came):
-            self.set(message)
+        self.set(message, self._first_only)
 
     def _ask(self) -> None:
         call = rospy.ServiceProxy("static_map", GetMap)
@@ -67,7 +97,7 @@ class MapSource:
             try:
                 found = call().map
             except (rospy.ServiceException, rospy.ROSException):
-                time.sleep(RETRY)
-                continue
-            if not self._came:
-                self.set(found)
+                found = None
+            if found is not None and self.set(found, only_first=True):
+                return
+            time.sleep(RETRY)

@@ -18,7 +18,7 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
 from amcl.conversions import known_pose, scan_of
 from amcl.initial_pose import carried_on, initial_pose, save_pose, saved_pose
-from amcl.maps import MapSource
+from amcl.maps import MapSource, grid_in
 from amcl.outputs import Outputs
 from amcl.robot_frames import RobotFrames
 from amcl.settings import localisation_settings, sensor_settings, with_order
@@ -27,13 +27,13 @@ from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
-from nav_nodes.messages import grid_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
 from nav_nodes.silence import Silence
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time that a scan waits for its odometry
+DISORDER = 1.0                    # s by which scans of two lasers may come in the wrong order
 WATCH = 0.25                      # s of wall time between two looks at what is missing
 
 
@@ -73,17 +73,8 @@ class AmclNode:
     # The map, and where the robot starts on it
 
     def _take_map(self, message: OccupancyGridMessage) -> None:
-        frame = self._values["global_frame_id"].lstrip("/")
-        if message.header.frame_id.lstrip("/") != frame:
-            rospy.logwarn("the map's frame is %r, but ~global_frame_id is %r: what is published "
-                          "may not fit it", message.header.frame_id, frame)
-        try:
-            grid = grid_of(message)
-        except ValueError as error:
-            rospy.logerr("a map came that is none, passed over: %s", error)
-            return
-        rospy.loginfo("Received a %d X %d map @ %.3f m/pix", *grid.cells.shape[::-1],
-                      grid.resolution)
+        """Raises ValueError, and changes nothing, if it is none."""
+        grid = grid_in(message, self._values["global_frame_id"])
         with self._lock:
             self._grid = grid
             told, self._told = self._told, None
@@ -100,7 +91,8 @@ class AmclNode:
         self._saved = self._odometry = None
 
     def _set_map(self, request: SetMapRequest) -> SetMapResponse:
-        self._maps.set(request.map)
+        if not self._maps.set(request.map):
+            return SetMapResponse(False)
         self._take_pose(request.initial_pose)
         with self._lock:
             if self._values["force_update_after_set_map"] and self._localisation is not None:
@@ -171,9 +163,8 @@ class AmclNode:
 
     def _use_scan(self, message: LaserScan) -> None:
         stamp = message.header.stamp
-        if stamp < self._newest:
-            self._restart(self._newest - stamp)
-        self._newest = stamp
+        with self._lock:
+            self._look_at_clock(stamp)
         mount = self._frames.mount(message.header.frame_id)
         odometry = self._frames.odometry(stamp, SCAN_PATIENCE)
         if mount is None or odometry is None:
@@ -187,6 +178,8 @@ class AmclNode:
             return
         self._complaints.present(what)
         with self._lock:
+            if stamp > self._newest:  # the clock went back while this one waited for its odometry
+                return
             if self._saved is not None:
                 self._localisation.start_at(*carried_on(*self._saved, odometry))
             elif self._has_jumped:
@@ -194,10 +187,15 @@ class AmclNode:
             self._saved, self._odometry, self._has_jumped = None, odometry, False
             self._publish(self._localisation.add(odometry, scan, message.header.frame_id), stamp)
 
-    def _restart(self, by: rospy.Duration) -> None:
-        """A simulation was reset: the robot is back where it and its odometry began."""
+    def _look_at_clock(self, stamp: rospy.Time) -> None:
+        """A simulation that was reset put the robot back where it and its odometry began."""
+        behind = (self._newest - stamp).to_sec()
+        if not 0.0 < behind <= DISORDER:
+            self._newest = stamp
+        if behind <= DISORDER:
+            return
         rospy.logwarn("the clock went back by %.1f s: the robot is taken to be where its odometry "
-                      "is now; if not, set its pose (2D Pose Estimate in rviz)", by.to_sec())
+                      "is now; if not, set its pose (2D Pose Estimate in rviz)", behind)
         self._frames.clear()
         self._has_jumped = True
         self._outputs.restart()

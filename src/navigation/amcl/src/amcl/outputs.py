@@ -26,6 +26,7 @@ class Outputs:
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
         self._transforms = tf2_ros.TransformBroadcaster()
         self._newest_cloud = rospy.Time(0)
+        self._latest: rospy.Time | None = None  # the stamp of the last transform
 
     def restart(self) -> None:
         """The clock was set back."""
@@ -38,7 +39,13 @@ class Outputs:
         self._pose.publish(message)
 
     def transform(self, map_to_odom: np.ndarray, values: dict[str, Any], stamp: rospy.Time) -> None:
-        """Dated ahead by transform_tolerance."""
+        """Dated ahead by transform_tolerance; not twice at a stamp, as two lasers may have it.
+
+        Every listener would warn, and take the first.
+        """
+        if stamp == self._latest:
+            return
+        self._latest = stamp
         ahead = rospy.Duration.from_sec(values["transform_tolerance"])
         self._transforms.sendTransform(transform_message(
             map_to_odom, _frame(values, "global"), _frame(values, "odom"), stamp + ahead))

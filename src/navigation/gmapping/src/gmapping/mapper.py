@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from sensor_msgs.msg import LaserScan
 
+from nav_algorithms import poses
 from nav_algorithms.particle_slam import ParticleSlam, SlamSettings
 from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError
@@ -16,6 +17,11 @@ from nav_nodes.parameters import ParameterError
 TABLE = Path("params/slam_gmapping.yaml")  # below the package's folder
 BEYOND = 0.01  # m below the sensor's reach a range begins to say nothing
 LARGEST = 5e8  # cells, of 8 bytes while it is made
+LARGEST_SCAN = 5e7  # cells about one scan, of 16 bytes and more: 177 m to each side at 5 cm
+
+
+class ScanError(ValueError):
+    """A scan that no map can be made of; the text says why and what to write."""
 
 
 def settings_from(values: dict[str, Any], range_max: float) -> SlamSettings:
@@ -56,6 +62,8 @@ class Mapper:
         """`values` by the names of the parameter table; raises ParameterError."""
         check_extent(values)
         self._values = values
+        self._lower = np.array([values["xmin"], values["ymin"]], float)  # (x, y), m, of the map
+        self._upper = np.array([values["xmax"], values["ymax"]], float)
         self._seen = 0
         self.slam: ParticleSlam | None = None
 
@@ -65,10 +73,41 @@ class Mapper:
         return (self._seen - 1) % self._values["throttle_scans"] == 0
 
     def take(self, scan: LaserScan, odometry: np.ndarray, mount: Mount) -> bool:
-        """True if the scan was used. `odometry` (x, y, yaw) of the robot at the scan's stamp."""
+        """True if the scan was used. `odometry` (x, y, yaw) of the robot at the scan's stamp.
+
+        Raises ScanError; all is as if that scan had not come, also where it was the first.
+        """
+        settings = (self.slam.settings if self.slam
+                    else settings_from(self._values, scan.range_max))
+        ranges = ranges_of(scan)
+        extent = self._extent_with(_reach(ranges, settings) + np.hypot(*mount.pose[:2]), odometry)
         if self.slam is None:
-            self.slam = ParticleSlam(settings_from(self._values, scan.range_max),
-                                     self._values["seed"])
-        angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
-        return self.slam.add(scan.header.stamp.to_sec(), odometry, ranges_of(scan),
+            self.slam = ParticleSlam(settings, self._values["seed"])
+        angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+        used = self.slam.add(scan.header.stamp.to_sec(), odometry, ranges,
                              -angles if mount.upside_down else angles, mount.pose)
+        if used:
+            self._lower, self._upper = extent
+        return used
+
+    def _extent_with(self, reach: float, odometry: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(lower, upper) (x, y), m, of the map with a scan of that reach; raises ScanError."""
+        x, y, _ = poses.compose(self.slam.map_to_odom, odometry) if self.slam else odometry
+        lower = np.minimum(self._lower, (x - reach, y - reach))
+        upper = np.maximum(self._upper, (x + reach, y + reach))
+        with np.errstate(over="ignore", invalid="ignore"):
+            about = (2.0 * np.float64(reach) / self._values["delta"]) ** 2
+            cells = np.prod((upper - lower) / self._values["delta"])
+        for name, found, most in (("it", about, LARGEST_SCAN), ("the map", cells, LARGEST)):
+            if not found <= most:
+                raise ScanError(f"a scan of {reach:g} m about ({x:g}, {y:g}) m is left out: {name} "
+                                f"would have {found:.0e} cells, more than {most:.0e}; write a "
+                                f"smaller ~maxUrange or a larger ~delta")
+        return lower, upper
+
+
+def _reach(ranges: np.ndarray, settings: SlamSettings) -> float:
+    """How far from the laser the farthest beam ends that says anything, m."""
+    with np.errstate(invalid="ignore"):
+        told = ranges[(ranges <= settings.maxRange) & np.isfinite(ranges)]
+    return min(told.max(initial=0.0), settings.maxUrange)

@@ -15,11 +15,11 @@ from nav_msgs.srv import GetMap, GetMapRequest, GetMapResponse
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
-from gmapping.mapper import TABLE, Mapper
+from gmapping.mapper import TABLE, Mapper, ScanError
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
-from nav_nodes.mount import Mounts
+from nav_nodes.mount import Mount, Mounts
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
 from nav_nodes.silence import Silence
@@ -32,7 +32,8 @@ DISORDER = 1.0  # s by which scans of two lasers may come in the wrong order
 class SlamNode:
     """Scans and transforms come in; the map and the transform from map to odom go out.
 
-    After the clock was set back upstream's node may fail; this one goes on with its map.
+    After the clock was set back upstream's node may fail; this one goes on with its map. The
+    scans of two lasers come on two threads, and are mapped one at a time under one lock.
     """
 
     def __init__(self, values: dict) -> None:
@@ -40,6 +41,7 @@ class SlamNode:
         self._values = values
         self._frames = {name: values[name].lstrip("/")
                         for name in ("map_frame", "odom_frame", "base_frame")}
+        self._lock = threading.Lock()
         self._mapper = Mapper(values)
         self._complaints = Complaints()
         clock.watch(self._complaints)
@@ -60,21 +62,38 @@ class SlamNode:
 
     def _take_scan(self, scan: LaserScan) -> None:
         with self._silence.heard():
-            if self._mapper.is_wanted():
+            with self._lock:
+                is_wanted = self._mapper.is_wanted()
+            if is_wanted:
                 self._use_scan(scan)
 
     def _use_scan(self, scan: LaserScan) -> None:
-        behind = (self._newest - scan.header.stamp).to_sec()
+        """Waits for its odometry outside the lock: one laser's is no reason for others to wait."""
+        with self._lock:
+            self._look_at_clock(scan.header.stamp)
+        mount = self._mounts.of(scan.header.frame_id)
+        odometry = self._transforms.pose(self._frames["odom_frame"], self._frames["base_frame"],
+                                         scan.header.stamp, PATIENCE)
+        if mount is None or odometry is None:
+            return
+        with self._lock:
+            self._map_scan(scan, odometry, mount)
+
+    def _look_at_clock(self, stamp: rospy.Time) -> None:
+        behind = (self._newest - stamp).to_sec()
         if behind > DISORDER:
             rospy.logwarn("the clock went back by %.1f s: mapping goes on from the odometry there",
                           behind)
             self._transforms.buffer.clear()
         if not 0.0 < behind <= DISORDER:
-            self._newest = scan.header.stamp
-        mount = self._mounts.of(scan.header.frame_id)
-        odometry = self._transforms.pose(self._frames["odom_frame"], self._frames["base_frame"],
-                                         scan.header.stamp, PATIENCE)
-        if mount is None or odometry is None or not self._mapper.take(scan, odometry, mount):
+            self._newest = stamp
+
+    def _map_scan(self, scan: LaserScan, odometry: np.ndarray, mount: Mount) -> None:
+        try:
+            if not self._mapper.take(scan, odometry, mount):
+                return
+        except ScanError as error:
+            rospy.logwarn_throttle(5.0, "%s: %s", self._scans.resolved_name, error)
             return
         self._map_to_odom = self._mapper.slam.map_to_odom
         age = None if self._map is None else (scan.header.stamp - self._map.header.stamp).to_sec()

@@ -19,7 +19,7 @@ import yaml
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import LaserScan
 
-from gmapping.mapper import TABLE, Mapper
+from gmapping.mapper import TABLE, Mapper, ScanError
 from map_server.map_files import write_map
 from nav_nodes.messages import yaw_of
 from nav_nodes.mount import Mount
@@ -137,14 +137,21 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _replay(scans: BagScans, mapper: Mapper, options: argparse.Namespace) -> int:
-    start, stamps = time.monotonic(), []
+    start, stamps, refused = time.monotonic(), [], []
     for scan, odometry, mount in scans:
         if mapper.is_wanted():
-            mapper.take(scan, odometry, mount)
+            try:
+                mapper.take(scan, odometry, mount)
+            except ScanError as error:
+                refused.append(error)
+                continue
             stamps.append(scan.header.stamp.to_sec())
+    of_no_use = f"{len(refused)} scans of no use, the first: {refused[0]}" if refused else ""
     if mapper.slam is None:
-        raise ValueError(f"no scan on {options.scan_topic} with transforms to it from the "
-                         f"odometry; {scans.left_out} without")
+        raise ValueError(of_no_use or f"no scan on {options.scan_topic} with transforms to it from "
+                                      f"the odometry; {scans.left_out} without")
+    if refused:
+        print(f"slam_gmapping_replay: {options.bag}: {of_no_use}", file=sys.stderr)
     write_map(options.map, mapper.slam.grid())
     write_trajectory(Path(f"{options.map}.tum"), *mapper.slam.trajectory())
     took, lasted = time.monotonic() - start, stamps[-1] - stamps[0]

@@ -11,8 +11,10 @@ import cv2
 import numpy as np
 
 from map_server.errors import MapImageError
+from map_server.files import read_file
 
 LARGEST = 1 << 27  # pixels: 579 m to a side at 5 cm
+LARGEST_FILE = 8 * LARGEST  # bytes: four channels of 16 bits, not compressed
 GAP = rb"(?:\s|#[^\n]*\n)+"
 PNM = re.compile(rb"P([1-6])%b(\d{1,9})%b(\d{1,9})(?:%b(\d{1,5}))?" % (GAP, GAP, GAP))
 PNG = re.compile(rb"\x89PNG\r\n\x1a\n....IHDR(....)(....)", re.DOTALL)
@@ -30,12 +32,15 @@ class MapImage:
 def read_image(path: Path) -> MapImage:
     """Any format of OpenCV's; raises MapImageError. Deeper images are brought to 8 bits."""
     try:
-        content = path.read_bytes()
+        content = read_file(path, LARGEST_FILE)
     except (FileNotFoundError, NotADirectoryError):
         raise MapImageError(f"{path}: there is no such image; image: is a path beside the YAML "
                             f"file, or one that begins with /") from None
     except OSError as error:
         raise MapImageError(f"{path}: cannot be read: {error.strerror}") from None
+    if len(content) > LARGEST_FILE:
+        raise MapImageError(f"{path}: is too large for a map, more than {LARGEST_FILE >> 20} MiB; "
+                            f"save it as PNG")
     width, height, brightest = _header(content)
     _check_size(path, width, height)
     pixels = _decode(path, content)

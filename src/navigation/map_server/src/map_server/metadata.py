@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,10 +12,12 @@ from typing import Any
 import yaml
 
 from map_server.errors import MapMetadataError, MapMissingError
+from map_server.files import read_file
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
-COARSEST = 1000.0  # m a pixel; from 3e38 on no message can hold it
+FINEST, COARSEST = 1e-6, 1000.0  # m a pixel; a message's 32 bits make 0 of 1e-46, inf of 4e38
+FARTHEST = 1e9  # m from 0; near 1e300 what is reckoned with it is inf
 IMAGE = re.compile(rb"P[1-6]\s|\x89PNG|\xff\xd8\xff|BM|GIF8")  # how files of images begin
 EXAMPLES = {
     "image": "image: map.pgm",
@@ -51,9 +54,11 @@ def read_metadata(path: Path) -> MapMetadata:
     resolution = keys.number("resolution")
     if resolution <= 0:
         raise keys.wrong("resolution", "must be above 0 m a pixel")
-    if resolution > COARSEST:
-        raise keys.wrong("resolution", f"must be at most {COARSEST:g} m a pixel")
+    if not FINEST <= resolution <= COARSEST:
+        raise keys.wrong("resolution", f"must be from {FINEST:g} to {COARSEST:g} m a pixel")
     x, y, yaw = keys.numbers("origin", "[x, y, yaw] in m, m, rad", 3)
+    if max(abs(x), abs(y)) > FARTHEST:
+        raise keys.wrong("origin", f"its x and y must be from -{FARTHEST:g} to {FARTHEST:g} m")
     occupied, free = keys.probability("occupied_thresh"), keys.probability("free_thresh")
     if free > occupied:
         raise keys.wrong("free_thresh", f"is above occupied_thresh, {occupied:g}: the two are the "
@@ -67,10 +72,10 @@ def read_metadata(path: Path) -> MapMetadata:
 
 def _load(path: Path) -> dict[str, Any]:
     try:
-        content = path.read_bytes()
+        content = read_file(path, LARGEST)
     except (FileNotFoundError, NotADirectoryError):
         meant = path.with_suffix(".yaml")
-        advice = meant if meant.is_file() else "the path of a map's YAML file"
+        advice = meant if os.path.isfile(meant) else "the path of a map's YAML file"
         raise MapMissingError(f"{path}: there is no such file; write {advice}") from None
     except OSError as error:
         raise MapMissingError(f"{path}: cannot be read: {error.strerror}") from None
@@ -78,7 +83,8 @@ def _load(path: Path) -> dict[str, Any]:
         raise MapMetadataError(f"{path}: is an image; write the YAML file that belongs to it, "
                                f"such as {path.with_suffix('.yaml').name}")
     if len(content) > LARGEST:
-        raise MapMetadataError(f"{path}: is no map's YAML file: {len(content)} bytes are too many")
+        raise MapMetadataError(f"{path}: is no map's YAML file: it has more than {LARGEST} "
+                               f"bytes")
     try:
         found = yaml.safe_load(content)
     except (yaml.YAMLError, RecursionError, ValueError) as error:

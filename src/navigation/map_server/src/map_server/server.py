@@ -19,15 +19,15 @@ from nav_msgs.srv import (
 
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
 from map_server.map_files import load_map, read_map
-from map_server.metadata import MapMetadata
+from map_server.metadata import COARSEST, FINEST, MapMetadata
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
 from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
 
-USAGE = ("usage: map_server MAP.yaml (or, deprecated: map_server IMAGE RESOLUTION, with m a pixel "
-         "above 0)")
+USAGE = ("usage: map_server MAP.yaml (or, deprecated: map_server IMAGE RESOLUTION, with "
+         f"{FINEST:g} to {COARSEST:g} m a pixel)")
 FAILED = 255  # upstream's exit(-1)
 RESULTS = {MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,
            MapMetadataError: LoadMapResponse.RESULT_INVALID_MAP_METADATA,
@@ -111,7 +111,7 @@ def _load(arguments: list[str], values: dict) -> tuple:
         resolution = float(arguments[1])
     except ValueError:
         resolution = 0.0
-    if not 0 < resolution < float("inf"):
+    if not FINEST <= resolution <= COARSEST:
         raise MapFileError(f"{arguments[1]!r} is no resolution; {USAGE}")
     if values["free_thresh"] > values["occupied_thresh"]:
         raise MapFileError("~free_thresh is above ~occupied_thresh: the two are the wrong way "
