@@ -9,7 +9,6 @@ from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
 
 from costmap_2d import clouds
 from costmap_2d.publishing import OCCUPANCIES
-from costmap_2d.sources import _moved
 
 INF, NAN = float("inf"), float("nan")
 
@@ -54,6 +53,12 @@ def test_a_scan_that_leads_nowhere_is_refused(angle):
         clouds.points_of_scan(message, False)
 
 
+@pytest.mark.parametrize("increment", [NAN, INF, 31.0])
+def test_a_scan_that_never_ends_is_refused(increment):
+    with pytest.raises(ValueError, match="time_increment"):
+        clouds.points_of_scan(scan(1.0, 2.0, time_increment=increment), False)
+
+
 def test_clouds_become_points():
     wanted = [[1.0, 2.0, 3.0], [-4.0, 5.5, 0.25]]
     message = PointCloud(points=[Point32(*point) for point in [*wanted, (NAN, 0, 0)]])
@@ -88,7 +93,7 @@ def test_a_transform_turns_and_moves():
 def test_a_moving_sensors_points_are_put_where_it_was():
     start, end = (np.eye(3), np.zeros(3)), (np.eye(3), np.array([1.0, 0, 0]))
     points = np.array([[0.0, 1, 0], [0, 1, 0], [0, 1, 0]])
-    moved = _moved(points, start, end, np.array([0.0, 0.1, 0.2]))
+    moved = clouds.placed(points, start, end, np.array([0.0, 0.1, 0.2]))
     assert moved[:, 0].tolist() == [0.0, 0.5, 1.0]
 
 

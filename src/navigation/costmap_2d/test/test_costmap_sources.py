@@ -1,5 +1,7 @@
 """When a sensor's messages count, with a tf that is made up; no master."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import rospy
@@ -7,8 +9,8 @@ from geometry_msgs.msg import Point32, Transform
 from sensor_msgs.msg import LaserScan, PointCloud
 
 from costmap_2d import sources
+from costmap_2d.news import News
 from costmap_2d.settings import table
-from nav_nodes.complaints import Complaints
 
 
 class Frames:
@@ -16,6 +18,7 @@ class Frames:
 
     def __init__(self):
         self.until = 100.0
+        self.buffer = SimpleNamespace(can_transform=lambda *asked: self.find(*asked) is not None)
 
     def find(self, _parent, child, stamp):
         if stamp.to_sec() > self.until:
@@ -28,7 +31,22 @@ class Frames:
 
 
 @pytest.fixture
-def make(monkeypatch):
+def complaints():
+    """What is missing, with the advice."""
+    return {}
+
+
+@pytest.fixture
+def lines(monkeypatch):
+    """What is warned of."""
+    found = []
+    monkeypatch.setattr(rospy, "logwarn_throttle", lambda _period, text, *values: found.append(
+        text % values))
+    return found
+
+
+@pytest.fixture
+def make(monkeypatch, complaints):
     """A source of these settings and the frames that it goes by, at time 10 s."""
     at = {"now": 10.0}
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time.from_sec(at["now"]))
@@ -37,7 +55,9 @@ def make(monkeypatch):
         values = {entry.name: entry.default for entry in table("source")}
         frames = Frames()
         source = sources.Source({**values, "topic": "scan", **settings}, "map", frames,
-                                Complaints())
+                                SimpleNamespace(
+                                    missing=lambda what, why, **_: complaints.update({what: why}),
+                                    present=lambda what: complaints.pop(what, None)))
         return source, frames
 
     make_source.at = at
@@ -122,16 +142,117 @@ def test_a_sensor_is_current_within_its_rate(make):
 def test_how_long_a_sensor_is_silent(make):
     source, _ = make()
     make.at["now"] = 11.5
-    assert source.silence() == ("PointCloud on /scan", 1.5)
+    assert source.news() == News("PointCloud on /scan", "PointCloud on /scan that can be placed",
+                                 1.5, 1.5)
     source._take(cloud(11.0))
-    assert source.silence()[1] == 0.0
+    assert (source.news().heard, source.news().placed) == (0.0, 0.0)
 
 
-def test_a_damaged_cloud_is_one_line_and_frees_nothing(make, monkeypatch):
-    lines = []
-    monkeypatch.setattr(rospy, "logwarn_throttle", lambda _period, text, *values: lines.append(
-        text % values))
+def test_what_cannot_be_placed_is_no_news(make):
+    """A robot drove on by a laser whose place nobody told."""
+    source, frames = make()
+    frames.until = 9.0
+    for now in (10.2, 10.4, 10.6, 10.8):
+        make.at["now"] = now
+        source._take(cloud(now))
+    assert source.news().heard == 0.0 and source.news().placed == pytest.approx(0.8)
+    frames.until = 10.65
+    assert source.news().placed == pytest.approx(0.2)  # without an update of the costmap
+    source.collect()
+    assert source.news().placed == pytest.approx(0.2)
+
+
+def test_a_transform_that_comes_after_its_scan_makes_nothing_old(make):
+    """At 5 scans a second, tf 30 ms late, and one update a second."""
+    source, frames = make()
+    oldest = 0.0
+    for step in range(1, 300):
+        make.at["now"] = now = 10.0 + 0.01 * step
+        frames.until = now - 0.03
+        if step % 20 == 0:
+            source._take(cloud(now))
+        if step % 100 == 99:
+            source.collect()
+        oldest = max(oldest, source.news().placed)
+    assert oldest == pytest.approx(0.22, abs=0.011)
+
+
+def test_who_sees_nothing_sees(make):
+    """Of a scan of no numbers, as of an empty one, the costmap learns what is free: nothing."""
+    for ranges in ([], [float("nan")] * 3, [float("inf")] * 3):
+        source, frames = make(data_type="LaserScan")
+        make.at["now"] = frames.until = 11.0
+        message = LaserScan(ranges=ranges, range_max=5.0, time_increment=5.0)
+        message.header.stamp, message.header.frame_id = rospy.Time(11), "laser"
+        source._take(message)
+        assert source.news().placed == 0.0
+        (seen,) = source.collect()
+        assert not len(seen.points)
+        make.at["now"] = 10.0
+
+
+def test_a_sweep_that_ends_in_the_future_is_said(make, complaints):
+    """Its beginning is known, so tf has nothing to complain about for long."""
+    source, frames = make(data_type="LaserScan")
+    message = LaserScan(ranges=[1.0] * 360, range_max=5.0, time_increment=0.05)
+    message.header.stamp, message.header.frame_id = rospy.Time(11), "laser"
+    make.at["now"] = frames.until = 11.0
+    source._take(message)
+    assert source.collect() == [] and source.news().placed == 1.0
+    assert "17.9 s (time_increment)" in source.news().why
+    assert "17.9 s (time_increment)" in complaints[source.news().usable]
+    frames.until = 40.0
+    assert source.collect() and source.news().why == "" and not complaints
+
+
+def test_a_pause_makes_nothing_old(make, monkeypatch):
+    """shutdown_costmaps."""
+    monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: SimpleNamespace(
+        unregister=lambda: None))
+    source, _ = make()
+    source.start()
+    source._take(cloud(10.0))
+    source.stop()
+    make.at["now"] = 20.0
+    source.start()
+    assert source.news().placed == 0.0 and source.collect() == []
+
+
+@pytest.mark.parametrize("stamp", [2.0e9 + 20, 4294967295.0])
+def test_a_message_of_another_age_never_gets_to_tf(make, lines, stamp):
+    """tf2 subtracts stamps in 32 bits, and where that is too little the process is aborted."""
+    source, frames = make()
+    frames.find = lambda *_: pytest.fail("asked")
+    source._take(cloud(stamp))
+    make.at["now"] = 11.0
+    assert source.collect() == [] and source.news().placed == 1.0
+    assert f"dated {stamp:.0f} s has come at 10 s" in source.news().why and len(lines) == 1
+
+
+def test_a_damaged_cloud_is_one_line_and_no_news(make, lines):
     source, _ = make(data_type="PointCloud2")
-    source._take(sources.PointCloud2(height=1, width=3))
-    assert [len(seen.points) for seen in source.collect()] == [0]
-    assert "needs x, y and z" in lines[0] and "/scan" in lines[0]
+    for now in (11.0, 12.0):
+        make.at["now"] = now
+        message = sources.PointCloud2(height=1, width=3)
+        message.header.stamp, message.header.frame_id = rospy.Time(10), "laser"
+        source._take(message)
+        assert source.collect() == []
+    assert source.news().placed == 2.0 and "needs x, y and z" in source.news().why
+    assert "needs x, y and z" in lines[0] and "/scan" in lines[0] and len(lines) == 1
+
+
+@pytest.mark.parametrize("increment", [float("nan"), float("inf"), 1e30])
+def test_a_scan_whose_times_make_no_sense_is_one_line(make, lines, increment):
+    """Each update of the costmap ended in a traceback."""
+    source, _ = make(data_type="LaserScan")
+    for stamp in (9.0, 9.1):
+        message = LaserScan(ranges=[1.0, 1.0], range_max=5.0, time_increment=increment)
+        message.header.stamp, message.header.frame_id = rospy.Time.from_sec(stamp), "laser"
+        source._take(message)
+        make.at["now"] += 1.0
+        assert "time_increment" in source.news().why
+        assert source.collect() == []
+    assert source.news().placed == 2.0 and "time_increment" in lines[0] and len(lines) == 1
+    message.time_increment = 0.0
+    source._take(message)
+    assert len(source.collect()) == 1 and source.news().why == ""

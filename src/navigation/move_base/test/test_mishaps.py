@@ -10,7 +10,9 @@ import pytest
 import rospy
 from geometry_msgs.msg import PoseStamped, Quaternion
 from move_base_msgs.msg import MoveBaseGoal
+from nav_msgs.msg import Odometry
 
+from costmap_2d.news import News
 from move_base import goals, services
 from move_base.base import Base
 from move_base.node import MoveBase
@@ -134,14 +136,95 @@ def test_odometry_may_end_a_limit_while_it_is_applied():
     assert told[0] == pytest.approx(np.array([0.1, 0.0, 0.1]))
 
 
-@pytest.mark.parametrize(("odometry", "scan", "drives"), [
-    (1000.0, 0.1, False), (1.05, -999.0, False), (1.05, -0.05, True), (0.2, 0.1, False)])
-def test_what_was_heard_before_the_clock_was_set_back_is_old(odometry, scan, drives):
-    """At 1 s after 1000 s; what another thread heard just now may be a little ahead."""
+@pytest.fixture
+def watched():
+    """Whether the robot may drive at 1 s, by odometry of that time and by a laser's news."""
+    return _watched
+
+
+def _watched(odometry, news, said=None, fault=""):
     costmap = SimpleNamespace(global_frame="map", robot_pose=lambda: np.zeros(3),
                               is_ready=lambda: True, is_current=lambda: True,
-                              silences=lambda: {"LaserScan on /scan": scan})
-    base = SimpleNamespace(odom_topic="/odom", heard=rospy.Time.from_sec(odometry))
-    complaints = SimpleNamespace(missing=lambda *_, **__: None, present=lambda _what: None)
-    assert Watch((costmap, costmap), base, None, complaints).can_drive(
-        1.0, 0.6, False) is drives
+                              news=lambda: [News("laser", "placed laser", *news)])
+    base = SimpleNamespace(odom_topic="/odom", heard=rospy.Time.from_sec(odometry),
+                           odometry_fault=fault)
+    said = {} if said is None else said
+    complaints = SimpleNamespace(missing=lambda what, why, **_: said.update({what: why}),
+                                 present=lambda what: said.pop(what, None))
+    return Watch((costmap, costmap), base, None, complaints).can_drive(1.0, 0.6, False)
+
+
+@pytest.mark.parametrize(("odometry", "scan", "drives"), [
+    (1000.0, 0.1, False), (1.05, -999.0, False), (1.05, -0.05, True), (0.2, 0.1, False)])
+def test_what_was_heard_before_the_clock_was_set_back_is_old(watched, odometry, scan, drives):
+    """At 1 s after 1000 s; what another thread heard just now may be a little ahead."""
+    assert watched(odometry, (scan, scan)) is drives
+
+
+def test_the_robot_stands_by_a_sensor_that_says_nothing_of_use(watched):
+    """It comes, but nobody knows from where; one line, and none beside that of tf."""
+    said = {}
+    assert watched(1.0, (0.1, 0.5), said) and not said
+    assert not watched(1.0, (0.1, 0.7), said) and not said
+    assert not watched(1.0, (0.1, 0.7, "its sweeps are long"), said)
+    assert not watched(1.0, (0.1, 0.8), said)  # tf's line may come and go
+    assert list(said) == ["placed laser"]
+    assert said["placed laser"].startswith("its sweeps are long; the robot stands")
+    assert watched(1.0, (0.1, 0.1), said) and not said
+    assert not watched(1.0, (0.7, 0.8, "its sweeps are long"), said) and list(said) == ["laser"]
+
+
+@pytest.fixture
+def base():
+    """One that is told 0.3 m/s and 1 rad/s at most, and drives."""
+    found = Base.__new__(Base)
+    found._velocity, found._limits, found.heard = np.zeros(3), None, None
+    found._driven, found.odometry_fault, found.odom_topic = True, "", "/odom"
+    found.expect(0.3, 1.0)
+    return found
+
+
+def odometry(vx, omega, vy=0.0):
+    message = Odometry()
+    message.twist.twist.linear.x, message.twist.twist.linear.y = vx, vy
+    message.twist.twist.angular.z = omega
+    return message
+
+
+@pytest.mark.parametrize("wrong", [(0.3, 1e8), (math.nan, 0.0), (0.1, -math.inf), (5.1, 0.0),
+                                   (0.0, 10.1), (4.0, 0.0, 4.0), (1.7e308, 0.0, 1.7e308)])
+def test_odometry_that_cannot_be_counts_as_missing(base, lines, watched, wrong):
+    """One such message kept the loop from its next command for 8 s, and the robot drove on."""
+    base._take(odometry(0.2, 0.5))
+    before = base.heard
+    for _ in range(2):
+        base._take(odometry(*wrong))
+    assert base.velocity.tolist() == [0.2, 0.0, 0.5] and base.heard is before
+    assert len(lines) == 1 and "odometry on /odom: it says" in lines[0]
+    said = {}
+    assert not watched(0.2, (0.0, 0.0), said, base.odometry_fault)
+    assert "it says" in said["odometry on /odom"] and "stands" in said["odometry on /odom"]
+    base._take(odometry(0.1, 0.0))
+    assert base.velocity.tolist() == [0.1, 0.0, 0.0] and not base.odometry_fault
+
+
+@pytest.mark.parametrize("pushed", [(4.9, 0.0), (-3.0, 9.0)])
+def test_a_robot_may_be_pushed_faster_than_it_is_told(base, lines, pushed):
+    """Or roll down a slope."""
+    base._take(odometry(*pushed))
+    assert base.velocity.tolist() == [pushed[0], 0.0, pushed[1]] and not lines
+
+
+@pytest.mark.parametrize("tolerance", [math.inf, 1e30, math.nan])
+def test_make_plan_looks_no_farther_than_the_map_is_wide(monkeypatch, tolerance):
+    """At places a step apart; with none of them free nothing is planned, and the answer is none."""
+    monkeypatch.setattr(services.rospy, "Service", lambda *_: None)
+    tried = []
+    monkeypatch.setattr(services, "_is_open", lambda _costmap, place: tried.append(place))
+    costmap = Costmap(np.full((40, 30), LETHAL, np.uint8), 0.1, (0.0, 0.0))
+    fixed = SimpleNamespace(global_frame="map", footprint=None)
+    found = Services((fixed, fixed), None, lambda: SimpleNamespace(plan=lambda *_: None),
+                     dict, lambda: False, 0.5)
+    goal = np.array([2.0, 2.0, 0.0])
+    assert found._near_goal(costmap, goal, goal, tolerance) is None
+    assert len(tried) == (0 if math.isnan(tolerance) else 27 ** 2 - 1)

@@ -6,20 +6,44 @@ import numpy as np
 from geometry_msgs.msg import Transform
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
 
-NEARLY = 1e-4  # m; how much less than range_max an infinite range becomes, as upstream
+NEARLY = 1e-4   # m; how much less than range_max an infinite range becomes, as upstream
+LONGEST = 60.0  # s of a sweep; tf remembers less
 
 NUMBERS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
+
+
+def timed_points(message: LaserScan | PointCloud | PointCloud2, data_type: str,
+                 inf_is_valid: bool) -> tuple[np.ndarray, np.ndarray]:
+    """(points (N, 3), (N,) s after the message's stamp); ValueError for what makes no sense."""
+    if data_type == "LaserScan":
+        return points_of_scan(message, inf_is_valid)
+    points = points_of_cloud(message) if data_type == "PointCloud" else points_of_cloud2(message)
+    return points, np.zeros(len(points))
+
+
+def placed(points: np.ndarray, start: tuple, end: tuple, when: np.ndarray) -> np.ndarray:
+    """Points (N, 3) of a sensor that went from `start` to `end` evenly while it measured.
+
+    Both as of `rotation_and_translation`; `when` (N,), s after the start.
+    """
+    first = points @ start[0].T + start[1]
+    if not when.any():
+        return first
+    return first + (when / when[-1])[:, None] * (points @ end[0].T + end[1] - first)
 
 
 def points_of_scan(message: LaserScan, inf_is_valid: bool) -> tuple[np.ndarray, np.ndarray]:
     """(points (N, 3), when in the sweep (N,), s after the message's stamp).
 
     Ranges count from range_min to below range_max. With `inf_is_valid` +inf is a ray that ended
-    at range_max; else it is nothing. Raises ValueError where the angles are no numbers.
+    at range_max; else it is nothing. Raises ValueError where angles or times are none.
     """
     if not np.isfinite((message.angle_min, message.angle_increment)).all():
         raise ValueError(f"a scan from {message.angle_min} rad in steps of "
                          f"{message.angle_increment} rad leads nowhere")
+    if not message.time_increment * len(message.ranges) <= LONGEST:
+        raise ValueError(f"a scan of {len(message.ranges)} beams {message.time_increment} s apart "
+                         f"(time_increment) takes longer than {LONGEST:g} s")
     ranges = np.asarray(message.ranges, float)
     beams = np.arange(len(ranges))
     if inf_is_valid:

@@ -13,6 +13,7 @@ import rospy
 
 from costmap_2d.building import build_layer, change_layer
 from costmap_2d.map_input import MapInput
+from costmap_2d.news import News
 from costmap_2d.publishing import CostmapPublisher
 from costmap_2d.sensors import Sensors
 from costmap_2d.settings import TABLES, footprint_of, geometry_of, read_settings, table
@@ -115,9 +116,9 @@ class CostmapROS:
             return False
         return self._sensors.are_current()
 
-    def silences(self) -> dict[str, float]:
-        """s of ROS time since each sensor was heard from, by names like "LaserScan on /scan"."""
-        return self._sensors.silences()
+    def news(self) -> list[News]:
+        """When each sensor was heard from, and when it last sent what can be used."""
+        return self._sensors.news()
 
     def orphaned_maps(self) -> list[str]:
         """Topics of maps that nobody publishes; what they said last still counts."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from costmap_2d.news import News
 from costmap_2d.settings import LayerSettings
 from costmap_2d.sources import Source
 from nav_algorithms.costmap.layer import Layer
@@ -41,9 +42,14 @@ class Sensors:
         """Whether each was heard from within its `expected_update_rate`."""
         return all(source.is_current() for source in self._all)
 
-    def silences(self) -> dict[str, float]:
-        """s of ROS time since each was heard from, by names like "LaserScan on /scan"."""
-        return dict(source.silence() for source in self._all)
+    def news(self) -> list[News]:
+        """Of each; of those that share a topic, of the one that has been useless for longest."""
+        found: dict[str, News] = {}
+        for news in (source.news() for source in self._all):
+            known = found.get(news.what)
+            if known is None or abs(news.placed) > abs(known.placed):
+                found[news.what] = news
+        return list(found.values())
 
     def observe(self, layers: Sequence[Layer]) -> None:
         """Gives each layer what its sources see: for marking, for clearing."""

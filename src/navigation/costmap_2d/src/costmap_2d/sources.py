@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import rospy
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2
 
-from costmap_2d.clouds import (
-    points_of_cloud,
-    points_of_cloud2,
-    points_of_scan,
-    rotation_and_translation,
-)
+from costmap_2d.clouds import placed, rotation_and_translation, timed_points
+from costmap_2d.news import News
 from nav_algorithms.costmap.obstacles import Observation
 from nav_nodes.complaints import Complaints
 from nav_nodes.silence import why_silent
@@ -25,6 +21,12 @@ from nav_nodes.transforms import Transforms
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 WAITING = 10   # messages that wait for their transform; upstream's queue is 50
 SILENCE = 5.0  # s of wall time until a line, where no expected_update_rate says otherwise
+FAR = 2.0e9    # s from now; a process in which tf2 subtracts stamps of 68 years apart is aborted
+
+
+class _Arrival(NamedTuple):
+    message: Any
+    at: rospy.Time  # when it came
 
 
 class Source:
@@ -42,16 +44,21 @@ class Source:
         self._sensor_frame = settings["sensor_frame"].lstrip("/")
         self._what = f"{settings['data_type']} on {rospy.resolve_name(settings['topic'])}"
         self._lock = threading.Lock()
-        self._waiting: deque = deque(maxlen=WAITING)
+        self._usable = f"{self._what} that can be placed"
+        self._waiting: deque[_Arrival] = deque(maxlen=WAITING)
         self._heard = False
+        self._newest: _Arrival | None = None  # of those that can be placed
+        self._fault = ""  # of the newest messages, while none of them makes sense
+        self._complained = False
         self._seen: list[tuple[rospy.Time, Observation]] = []  # newest first
-        self._updated = self._heard_at = rospy.Time.now()
+        self._updated = self._heard_at = self._placed_at = rospy.Time.now()
         self._subscriber: rospy.Subscriber | None = None
 
     def start(self) -> None:
         """Begins to listen."""
-        self._updated = self._heard_at = rospy.Time.now()
+        self._updated = self._heard_at = self._placed_at = rospy.Time.now()
         if self._subscriber is None:
+            self._forget_messages()  # of before a pause
             self._subscriber = rospy.Subscriber(
                 self.settings["topic"], TYPES[self.settings["data_type"]], self._take,
                 queue_size=WAITING)
@@ -64,19 +71,33 @@ class Source:
 
     def forget(self) -> None:
         """Time went backwards: what was seen is of another world."""
+        self._forget_messages()
+        self._seen.clear()
+        self._updated = self._heard_at = self._placed_at = rospy.Time.now()
+
+    def _forget_messages(self) -> None:
         with self._lock:
             self._waiting.clear()
-        self._seen.clear()
-        self._updated = self._heard_at = rospy.Time.now()
+            self._newest, self._fault = None, ""
 
     def is_current(self) -> bool:
         """Whether an observation came within `expected_update_rate`; always if that is 0."""
         rate = self.settings["expected_update_rate"]
         return not rate or (rospy.Time.now() - self._updated).to_sec() <= rate
 
-    def silence(self) -> tuple[str, float]:
-        """("LaserScan on /scan", s of ROS time since a message came, or since `start`)."""
-        return self._what, (rospy.Time.now() - self._heard_at).to_sec()
+    def news(self) -> News:
+        """Ages since `start` where nothing came. On any thread, between two updates as well."""
+        with self._lock:
+            waiting = list(self._waiting)
+        for arrival in reversed(waiting):
+            if arrival is self._newest or self._can_be_placed(arrival.message):
+                self._newest, self._placed_at = arrival, arrival.at
+                break
+        all_is_well = waiting and waiting[-1] is self._newest and not self._fault
+        now = rospy.Time.now()
+        return News(self._what, self._usable, (now - self._heard_at).to_sec(),
+                    (now - self._placed_at).to_sec(),
+                    "" if all_is_well else self._why_useless(waiting))
 
     def collect(self) -> list[Observation]:
         """What counts now."""
@@ -86,18 +107,52 @@ class Source:
         if silent and self._subscriber is not None:
             self._complain(self._subscriber)
         keep = self.settings["observation_persistence"]
-        if keep:
-            self._place_all(waiting, keep)
-        else:
-            self._place_newest(waiting)
+        newest = self._place_all(waiting, keep) if keep else self._place_newest(waiting)
+        if newest is not None:
+            self._note(newest)
+        elif not silent and (why := self._why_useless(waiting)):
+            self._complaints.missing(self._usable, why, patience=SILENCE)
+            self._complained = True
         return [observation for _, observation in self._seen]
 
     def _take(self, message: Any) -> None:
+        now, stamp = rospy.Time.now(), message.header.stamp.to_sec()
+        near = abs(stamp - now.to_sec()) < FAR
         with self._lock:
-            self._waiting.append(message)
             self._heard = True
-        self._heard_at = rospy.Time.now()
+            if near:
+                self._waiting.append(_Arrival(message, now))
+        if not near:
+            self._pass_over(f"a message dated {stamp:.0f} s has come at {now.to_sec():.0f} s")
+        self._heard_at = now
         self._complaints.present(self._what)
+
+    def _pass_over(self, fault: str) -> None:
+        if not self._fault:
+            rospy.logwarn_throttle(5.0, "%s: %s", self._what, fault)
+        self._fault = fault
+
+    def _note(self, arrival: _Arrival) -> None:
+        """The newest that was placed."""
+        self._newest, self._placed_at, self._fault = arrival, arrival.at, ""
+        if self._complained:
+            self._complaints.present(self._usable)
+            self._complained = False
+
+    def _why_useless(self, waiting: list[_Arrival]) -> str:
+        """Empty where tf says it, or nothing waits."""
+        if self._fault or not waiting:
+            return self._fault
+        message = waiting[-1].message
+        if not self._is_known(message.header.frame_id, message.header.stamp):
+            return ""
+        try:
+            sweep = self._sweep(message)
+        except ValueError as error:
+            return str(error)
+        return "" if not sweep else (
+            f"its sweeps take {sweep:.1f} s (time_increment), and tf does not know the ends "
+            "of them")
 
     def _complain(self, subscriber: rospy.Subscriber) -> None:
         rate = self.settings["expected_update_rate"]
@@ -105,69 +160,86 @@ class Source:
         self._complaints.missing(self._what, f"expected every {rate:g} s; {why}" if rate else why,
                                  patience=rate or SILENCE)
 
-    def _place_newest(self, waiting: list) -> None:
+    def _place_newest(self, waiting: list[_Arrival]) -> _Arrival | None:
         for n in range(len(waiting) - 1, -1, -1):
             observation = self._placed(waiting[n])
             if observation is not None:
-                self._seen = [(waiting[n].header.stamp, observation)]
+                self._seen = [(waiting[n].message.header.stamp, observation)]
                 self._updated = rospy.Time.now()
                 self._drop(waiting[:n + 1])
-                return
+                return waiting[n]
+        return None
 
-    def _place_all(self, waiting: list, keep: float) -> None:
-        placed = [(message, self._placed(message)) for message in waiting]
-        placed = [(message, observation) for message, observation in placed
-                  if observation is not None]
-        for message, observation in placed:
-            self._seen.insert(0, (message.header.stamp, observation))
+    def _place_all(self, waiting: list[_Arrival], keep: float) -> _Arrival | None:
+        found = [(arrival, self._placed(arrival)) for arrival in waiting]
+        found = [(arrival, observation) for arrival, observation in found
+                 if observation is not None]
+        for arrival, observation in found:
+            self._seen.insert(0, (arrival.message.header.stamp, observation))
             self._updated = rospy.Time.now()
-        self._drop([message for message, _ in placed])
+        self._drop([arrival for arrival, _ in found])
         self._seen = [(stamp, observation) for stamp, observation in self._seen
                       if (self._updated - stamp).to_sec() <= keep]
+        return found[-1][0] if found else None
 
-    def _drop(self, messages: list) -> None:
-        gone = {id(message) for message in messages}
+    def _drop(self, arrivals: list[_Arrival]) -> None:
+        gone = {id(arrival) for arrival in arrivals}
         with self._lock:
-            left = [message for message in self._waiting if id(message) not in gone]
+            left = [arrival for arrival in self._waiting if id(arrival) not in gone]
             self._waiting.clear()
             self._waiting.extend(left)
 
-    def _placed(self, message: Any) -> Observation | None:
-        """The message in the costmap's frame; None while tf cannot say where that is."""
+    def _placed(self, arrival: _Arrival) -> Observation | None:
+        """The message in the costmap's frame; None while tf cannot say where that is.
+
+        None for good, where it makes no sense: it says nothing of what is there.
+        """
+        message = arrival.message
         stamp, frame = message.header.stamp, message.header.frame_id.lstrip("/")
         try:
             points, when = self._points(message)
         except ValueError as error:
-            rospy.logwarn_throttle(5.0, "%s: %s", self._what, error)
-            points, when = np.zeros((0, 3)), np.zeros(0)
+            self._pass_over(str(error))
+            self._drop([arrival])
+            return None
         start = self._transform(frame, stamp)
         end = self._transform(frame, stamp + rospy.Duration(when[-1])) if when.any() else start
         sensor = self._transform(self._sensor_frame or frame, stamp)
         if start is None or end is None or sensor is None:
             return None
-        origin, points = sensor[1], _moved(points, start, end, when)
+        origin, points = sensor[1], placed(points, start, end, when)
         settings = self.settings
         high = (points[:, 2] >= settings["min_obstacle_height"]) \
             & (points[:, 2] <= settings["max_obstacle_height"])
         return Observation(origin, points[high], settings["obstacle_range"],
                            settings["raytrace_range"])
 
+    def _can_be_placed(self, message: Any) -> bool:
+        """As `_placed` would, without a word where it cannot be yet; clouds are not looked into."""
+        stamp, frame = message.header.stamp, message.header.frame_id
+        if self._fault or not (self._is_known(frame, stamp)
+                               and self._is_known(self._sensor_frame or frame, stamp)):
+            return False
+        try:
+            sweep = self._sweep(message)
+        except ValueError:
+            return False
+        return not sweep or self._is_known(frame, stamp + rospy.Duration(sweep))
+
+    def _is_known(self, frame: str, stamp: rospy.Time) -> bool:
+        frame = frame.lstrip("/")  # tf2 prints a warning of its own for one without a name
+        return bool(frame) and self._transforms.buffer.can_transform(self._frame, frame, stamp)
+
+    def _sweep(self, message: Any) -> float:
+        """s from its stamp to its last beam that counts; 0 of a cloud. Raises ValueError."""
+        if self.settings["data_type"] != "LaserScan":
+            return 0.0
+        when = self._points(message)[1]
+        return float(when[-1]) if len(when) else 0.0
+
     def _points(self, message: Any) -> tuple[np.ndarray, np.ndarray]:
-        """(points (N, 3) in the message's frame, (N,) s after its stamp)."""
-        kind = self.settings["data_type"]
-        if kind == "LaserScan":
-            return points_of_scan(message, self.settings["inf_is_valid"])
-        points = points_of_cloud(message) if kind == "PointCloud" else points_of_cloud2(message)
-        return points, np.zeros(len(points))
+        return timed_points(message, self.settings["data_type"], self.settings["inf_is_valid"])
 
     def _transform(self, frame: str, stamp: rospy.Time) -> tuple[np.ndarray, np.ndarray] | None:
         found = self._transforms.find(self._frame, frame, stamp)
         return None if found is None else rotation_and_translation(found)
-
-
-def _moved(points: np.ndarray, start: tuple, end: tuple, when: np.ndarray) -> np.ndarray:
-    """Points of a sensor that went from `start` to `end` evenly while it measured."""
-    first = points @ start[0].T + start[1]
-    if not when.any():
-        return first
-    return first + (when / when[-1])[:, None] * (points @ end[0].T + end[1] - first)

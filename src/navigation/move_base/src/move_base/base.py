@@ -15,6 +15,9 @@ from nav_msgs.msg import Odometry
 
 from move_base.stop_guard import DRIVEN, STANDING
 
+IMPOSSIBLE = 10.0      # times what the robot is told at most; nothing pushes it so fast
+SLOWEST = (0.5, 1.0)   # m/s and rad/s; who is told less than that may still be pushed
+
 TOPICS = {"twist": ("cmd_vel", Twist), "ackermann": ("ackermann_cmd", AckermannDriveStamped)}
 
 
@@ -48,6 +51,8 @@ class Base:
         self._limits: tuple[float, float] | None = None
         self._slow_for = 0.0
         self._velocity = np.zeros(3)
+        self._possible = np.inf, np.inf
+        self.odometry_fault = ""  # of its last message, which then counts as missing
         self.heard: rospy.Time | None = None
         self._odometry: rospy.Subscriber | None = None
         self.listen_to(odom_topic)
@@ -61,8 +66,16 @@ class Base:
 
     @property
     def velocity(self) -> np.ndarray:
-        """(vx, vy, omega) as odometry has it, m/s and rad/s."""
+        """(vx, vy, omega) as odometry has it, m/s and rad/s; finite."""
         return self._velocity
+
+    def expect(self, speed: float, turn: float) -> None:
+        """The robot is told `speed`, m/s, and `turn`, rad/s, at most.
+
+        Odometry that says far more counts as missing.
+        """
+        self._possible = tuple(IMPOSSIBLE * max(told, least)
+                               for told, least in zip((speed, turn), SLOWEST, strict=True))
 
     def limit(self, speed: float, turn: float, distance: float) -> None:
         """Slower over the next `distance`, m: no more than `speed`, m/s, and `turn`, rad/s."""
@@ -104,13 +117,30 @@ class Base:
 
     def _take(self, message: Odometry) -> None:
         moving = message.twist.twist
-        self._velocity = np.array([moving.linear.x, moving.linear.y, moving.angular.z])
+        velocity = np.array([moving.linear.x, moving.linear.y, moving.angular.z])
+        fault = self._fault_of(velocity)
+        if fault and not self.odometry_fault and self._driven:
+            rospy.logwarn_throttle(5.0, f"odometry on {self.odom_topic}: {fault}; left out")
+        self.odometry_fault = fault
+        if fault:
+            return
+        self._velocity = velocity
         now = rospy.Time.now()
         if self._limits is not None and self.heard is not None:
             self._slow_for -= np.hypot(*self._velocity[:2]) * max((now - self.heard).to_sec(), 0.0)
             if self._slow_for <= 0.0:
                 self._limits = None
         self.heard = now
+
+    def _fault_of(self, velocity: np.ndarray) -> str:
+        """Why it cannot be the robot's, or nothing."""
+        speed, turn = self._possible
+        if (np.isfinite(velocity).all() and math.hypot(*velocity[:2]) <= speed
+                and abs(velocity[2]) <= turn):
+            return ""
+        return (f"it says ({velocity[0]:.3g}, {velocity[1]:.3g}) m/s and {velocity[2]:.3g} rad/s; "
+                f"more than {speed:.3g} m/s or {turn:.3g} rad/s cannot be, by the local planner's "
+                "limits")
 
     def _start_guard(self) -> subprocess.Popen:
         """In a session of its own: Ctrl-C in the terminal must not end it before this node."""

@@ -82,6 +82,11 @@ class LocalPlanner(Plugin):
             self._planner.set_path(path, again)
             self._path = path
 
+    def fastest(self) -> tuple[float, float]:
+        """Speed, m/s, and turn rate, rad/s, that it never exceeds."""
+        with self._lock:
+            return self._planner.limits().fastest
+
     def reached(self, situation: Situation) -> bool:
         """Whether the robot stands at the end of the path."""
         with self._lock:

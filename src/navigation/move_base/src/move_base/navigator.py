@@ -65,6 +65,7 @@ class Navigator:
 
         While something is missing the robot stands, and patience does not run out.
         """
+        self._base.expect(*self.local_planner.fastest())
         pose = self._costmaps[0].robot_pose()
         if not self._watch.can_drive(now, timeout, map_required) or pose is None:
             self._base.stop()

@@ -91,7 +91,8 @@ class Services:
         path = self._planner().plan(snapshot, footprint, start, goal, frame)
         if path is not None:
             return path
-        for offset in offsets(tolerance, snapshot.resolution):
+        widest = max(snapshot.cells.shape) * snapshot.resolution  # nothing is open beyond it
+        for offset in offsets(min(tolerance, widest), snapshot.resolution):
             place = goal + np.array([*offset, 0.0])
             if not _is_open(snapshot, place):
                 continue  # no planner would find a way to it
@@ -109,9 +110,7 @@ def offsets(tolerance: float, resolution: float) -> Iterator[tuple[float, float]
         step = tolerance
     for ring in range(1, int(tolerance / step + 1e-9) + 1 if tolerance > 0.0 else 1):
         for row in range(ring + 1):
-            for column in range(ring + 1):
-                if max(row, column) < ring:
-                    continue
+            for column in range(ring + 1) if row == ring else (ring,):
                 for y in ((-row, row) if row else (0,)):
                     for x in ((-column, column) if column else (0,)):
                         yield x * step, y * step

@@ -8,9 +8,11 @@ import rospy
 import tf2_ros
 
 from costmap_2d import CostmapROS
+from costmap_2d.news import News
 from move_base.base import Base
 from nav_nodes.complaints import Complaints
 
+STANDS = "the robot stands until it is there again"
 PAUSE = 1.0  # s between two looks; after a longer one, e.g. between goals, what was seen is old
 
 
@@ -74,16 +76,22 @@ class Watch:
         return False
 
     def _sensors_speak(self, timeout: float) -> bool:
-        silent = {what: abs(silence) > timeout  # below 0: heard before the clock was set back
-                  for what, silence in self._costmaps[1].silences().items()}
-        for what, missing in silent.items():
-            self._say(what, missing)
-        return not any(silent.values())
+        speaking = [self._speaks(news, timeout) for news in self._costmaps[1].news()]
+        return all(speaking)  # of each that does not it is said
+
+    def _speaks(self, news: News, timeout: float) -> bool:
+        """Whether a sensor says what can be used. A missing transform has a line of its own."""
+        silent = abs(news.heard) > timeout  # below 0: heard before the clock was set back
+        useless = not silent and abs(news.placed) > timeout
+        self._say(news.what, silent)
+        if news.why or not useless:
+            self._say(news.usable, useless, news.why)
+        return not (silent or useless)
 
     def _odometry_speaks(self, now: float, timeout: float) -> bool:
         heard = self._base.heard
         silent = heard is None or abs(now - heard.to_sec()) > timeout
-        self._say(f"odometry on {self._base.odom_topic}", silent)
+        self._say(f"odometry on {self._base.odom_topic}", silent, self._base.odometry_fault)
         return not silent
 
     def _is_localised(self, now: float, timeout: float) -> bool:
@@ -104,9 +112,9 @@ class Watch:
         self._say(f"new transform from {parent} to {child}", late, is_result=True)
         return not late
 
-    def _say(self, what: str, missing: bool, is_result: bool = False) -> None:
+    def _say(self, what: str, missing: bool, why: str = "", is_result: bool = False) -> None:
         if missing:
-            self._complaints.missing(what, "the robot stands until it is there again",
+            self._complaints.missing(what, f"{why}; {STANDS}" if why else STANDS,
                                      is_result=is_result)
         else:
             self._complaints.present(what)

@@ -17,7 +17,12 @@ from nav_algorithms.local_planning.goal import Arrival
 from nav_algorithms.local_planning.grids import distances_to
 from nav_algorithms.local_planning.local_planner import LocalPlanner
 from nav_algorithms.local_planning.oscillation import Oscillation
-from nav_algorithms.local_planning.velocities import Command, all_samples, window
+from nav_algorithms.local_planning.velocities import (
+    Command,
+    Limits,
+    all_samples,
+    window,
+)
 
 EPSILON = 1e-4
 
@@ -81,6 +86,12 @@ class DwaPlanner(LocalPlanner):
             (settings.acc_lim_x, settings.acc_lim_y, settings.acc_lim_theta),
             1.0 / settings.controller_frequency),
             Oscillation(settings.oscillation_reset_dist, settings.oscillation_reset_angle))
+
+    def limits(self) -> Limits:
+        s = self.settings
+        return Limits((s.min_vel_x, s.min_vel_y, -s.max_vel_theta),
+                      (s.max_vel_x, s.max_vel_y, s.max_vel_theta),
+                      s.max_vel_trans if s.max_vel_trans >= 0.0 else np.inf)
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:

@@ -9,7 +9,7 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning.following import STANDSTILL, Following, within
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
 from nav_algorithms.local_planning.oscillation import Oscillation
-from nav_algorithms.local_planning.velocities import Command
+from nav_algorithms.local_planning.velocities import Command, Limits
 
 
 class LocalPlanner:
@@ -42,7 +42,8 @@ class LocalPlanner:
 
     def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                 velocity: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> Command | None:
-        """The next velocity; None where all that can be had touch something or lead nowhere.
+        """The next velocity, within `limits`; None where all that can be had touch something or
+        lead nowhere, or where `velocity` is no number.
 
         `pose` (3,) in the costmap's frame; `velocity` (3,) in the base frame; `footprint` (K, 2);
         `path_frame`: pose of the path's frame in the costmap's.
@@ -50,6 +51,14 @@ class LocalPlanner:
         if self.following is None:
             return None
         pose, velocity = np.array(pose, float), np.array(velocity, float)
+        if not np.isfinite(velocity).all():
+            return None
+        found = self._next(costmap, footprint, pose, velocity, path_frame)
+        return None if found is None else found.within(self.limits())
+
+    def _next(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+              velocity: np.ndarray, path_frame: np.ndarray) -> Command | None:
+        """What to do on the way or at its end; who brakes may still be faster than the limits."""
         path = self.following.left(pose, path_frame)
         footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
         if footprint is None:
@@ -64,6 +73,10 @@ class LocalPlanner:
         if best is None:
             self.oscillation.reset()  # what it forbids may be the only way out
         return best
+
+    def limits(self) -> Limits:
+        """What is never exceeded."""
+        raise NotImplementedError
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:

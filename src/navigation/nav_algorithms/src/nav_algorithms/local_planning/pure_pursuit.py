@@ -16,7 +16,7 @@ from nav_algorithms.local_planning.following import STANDSTILL
 from nav_algorithms.local_planning.free_arcs import free_arc, space
 from nav_algorithms.local_planning.goal import turned
 from nav_algorithms.local_planning.pieces import ON_THE_SPOT, Piece, cut
-from nav_algorithms.local_planning.velocities import Command, turning
+from nav_algorithms.local_planning.velocities import Command, Limits, turning
 from nav_algorithms.poses import compose, relative, wrap_angle
 
 AHEAD = 1.0       # m along the path in which the vehicle's place on it is looked for
@@ -95,7 +95,8 @@ class PurePursuit:
 
     def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                 velocity: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> Command | None:
-        """The next velocity; None where the way is blocked or the vehicle has left its path.
+        """The next velocity, within `limits`; None where the way is blocked, the vehicle has left
+        its path, or `velocity` is no number.
 
         `pose` (3,) in the costmap's frame; `velocity` (3,) in the base frame; `footprint` (K, 2);
         `path_frame`: pose of the path's frame in the costmap's.
@@ -103,6 +104,8 @@ class PurePursuit:
         if self.goal is None:
             return None
         pose, velocity = np.array(pose, float), np.array(velocity, float)
+        if not np.isfinite(velocity).all():
+            return None
         standing = Command(0.0, 0.0, 0.0, pose[None])
         goal = compose(np.asarray(path_frame, float), self.goal)
         footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
@@ -129,6 +132,12 @@ class PurePursuit:
             self.pieces.pop(0)
             self._begin_piece()
         return standing if self._there(pose, goal) else None
+
+    def limits(self) -> Limits:
+        """What is never exceeded."""
+        s = self.settings
+        fastest = max(s.desired_linear_vel, s.min_approach_linear_velocity), 0.0, s.max_vel_theta
+        return Limits(tuple(-most for most in fastest), fastest)
 
     def _left(self, piece: Piece, poses: np.ndarray, pose: np.ndarray) -> float:
         """What is left of a piece, m; the place on it, `at`, never goes back."""
@@ -189,6 +198,7 @@ class PurePursuit:
             wanted = float(np.sign(wanted)) * s.min_approach_linear_velocity
         step = s.acc_lim_x / s.controller_frequency
         vx = float(np.clip(wanted, velocity[0] - step, velocity[0] + step))
+        vx = float(np.clip(vx, self.limits().low[0], self.limits().high[0]))
         if 0.0 < vx * np.sign(wanted) < s.min_approach_linear_velocity:
             vx = float(np.sign(wanted)) * s.min_approach_linear_velocity
         if abs(vx * curvature) > s.max_vel_theta:

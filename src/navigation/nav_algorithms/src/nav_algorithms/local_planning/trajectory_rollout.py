@@ -17,7 +17,13 @@ from nav_algorithms.local_planning.goal import Arrival
 from nav_algorithms.local_planning.grids import distances_to
 from nav_algorithms.local_planning.local_planner import LocalPlanner
 from nav_algorithms.local_planning.oscillation import Oscillation
-from nav_algorithms.local_planning.velocities import Command, all_samples, samples, window
+from nav_algorithms.local_planning.velocities import (
+    Command,
+    Limits,
+    all_samples,
+    samples,
+    window,
+)
 from nav_algorithms.poses import wrap_angle
 
 STRAFES = (-0.3, -0.1, 0.1, 0.3)  # m/s, y_vels
@@ -79,6 +85,12 @@ class TrajectoryRollout(LocalPlanner):
             s.max_vel_theta, (s.acc_lim_x, s.acc_lim_y, s.acc_lim_theta),
             1.0 / s.controller_frequency), Oscillation(s.oscillation_reset_dist, np.inf))
         self.escaped_from: np.ndarray | None = None
+
+    def limits(self) -> Limits:
+        s = self.settings
+        strafe = max(STRAFES) if s.holonomic_robot else 0.0
+        return Limits((min(s.escape_vel, s.min_vel_x), -strafe, s.min_vel_theta),
+                      (max(s.max_vel_x, s.min_vel_x), strafe, s.max_vel_theta))
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,22 +21,48 @@ class Command:
         """(vx, vy, omega)."""
         return np.array([self.vx, self.vy, self.omega])
 
+    def within(self, limits: Limits) -> Command:
+        """The same, no faster than the limits."""
+        vx, vy, omega = map(float, limits.clip(self.velocity))
+        return replace(self, vx=vx, vy=vy, omega=omega)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What may be commanded: 0, and from `low` (3,) to `high` (3,), no faster than `speed`, m/s."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    speed: float = np.inf
+
+    def clip(self, velocity: np.ndarray) -> np.ndarray:
+        """The nearest velocity (3,) within them, in the same direction where `speed` limits it."""
+        found = np.clip(velocity, np.minimum(self.low, 0.0), np.maximum(self.high, 0.0))
+        found[:2] *= min(self.speed / max(np.hypot(found[0], found[1]), 1e-9), 1.0)
+        return found
+
+    @property
+    def fastest(self) -> tuple[float, float]:
+        """Speed, m/s, and turn rate, rad/s, that no command exceeds."""
+        most = np.maximum(np.abs(self.low), np.abs(self.high))
+        return float(min(np.hypot(most[0], most[1]), self.speed)), float(most[2])
+
 
 def window(velocity: np.ndarray, low: np.ndarray, high: np.ndarray, acceleration: np.ndarray,
            duration: float, least: np.ndarray | float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """The least and the greatest velocity (3,) that can be had in `duration`, s, within limits.
 
-    A velocity outside the limits is brought back as fast as the acceleration allows. `least` (3,):
-    the slowest that is worth commanding. Who comes below it can have it at once in either
-    direction: else a robot would never come from standing to turning, or to driving from a turn.
+    From a velocity outside the limits it is the nearest within: what was measured must not lead to
+    commands beyond them. `least` (3,): the slowest that is worth commanding. Who comes below it can
+    have it at once in either direction: else a robot would never come from standing to turning, or
+    to driving from a turn.
     """
     reach = np.asarray(acceleration) * duration
     lowest, highest = velocity - reach, velocity + reach
     lowest = np.where(lowest < least, np.minimum(lowest, -np.asarray(least)), lowest)
     highest = np.where(highest > -np.asarray(least), np.maximum(highest, least), highest)
-    lowest, highest = (np.minimum(np.maximum(low, lowest), np.maximum(velocity + reach, lowest)),
-                       np.maximum(np.minimum(high, highest), np.minimum(velocity - reach, highest)))
-    return lowest, np.maximum(lowest, highest)
+    lowest = np.clip(lowest, low, high)
+    return lowest, np.maximum(lowest, np.clip(highest, low, high))
 
 
 def samples(low: float, high: float, count: int) -> np.ndarray:
@@ -66,8 +92,10 @@ def turning(angle: float, omega: float, least: float, most: float, acceleration:
     """The next omega, rad/s, of a turn by `angle`, rad, that ends standing.
 
     Between `least` and `most`, no faster than can be braked over the angle that is left, and no
-    further from the present `omega` than the acceleration allows in a period.
+    further from the present `omega` than the acceleration allows in a period, but never above
+    `most`.
     """
     fastest = min(most, np.sqrt(2 * acceleration * abs(angle)))
     wanted = np.sign(angle) * max(min(fastest, abs(angle) / period), min(least, most))
-    return float(np.clip(wanted, omega - acceleration * period, omega + acceleration * period))
+    near = np.clip(wanted, omega - acceleration * period, omega + acceleration * period)
+    return float(np.clip(near, -most, most))
