@@ -57,3 +57,9 @@ def test_when_nobody_misses_it_any_more_it_is_back(late):
     late.find("odom", "laser", rospy.Time(7))
     assert late.newest_pose("odom", "base", 3.0) is not None
     assert set(late._complaints.back) == {"new transform from odom to base"}
+
+
+def test_a_stamp_of_another_age_is_not_asked_of_tf_which_would_abort(late):
+    assert late.pose("odom", "base", rospy.Time(2**32 - 1)) is None
+    assert late.find("odom", "laser", rospy.Time(2**32 - 1)) is None
+    assert late._complaints.missed

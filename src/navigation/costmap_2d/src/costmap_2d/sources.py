@@ -16,12 +16,11 @@ from costmap_2d.news import News
 from nav_algorithms.costmap.obstacles import Observation
 from nav_nodes.complaints import Complaints
 from nav_nodes.silence import why_silent
-from nav_nodes.transforms import Transforms
+from nav_nodes.transforms import Transforms, is_far
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 WAITING = 10   # messages that wait for their transform; upstream's queue is 50
 SILENCE = 5.0  # s of wall time until a line, where no expected_update_rate says otherwise
-FAR = 2.0e9    # s from now; a process in which tf2 subtracts stamps of 68 years apart is aborted
 
 
 class _Arrival(NamedTuple):
@@ -116,14 +115,14 @@ class Source:
         return [observation for _, observation in self._seen]
 
     def _take(self, message: Any) -> None:
-        now, stamp = rospy.Time.now(), message.header.stamp.to_sec()
-        near = abs(stamp - now.to_sec()) < FAR
+        now, stamp = rospy.Time.now(), message.header.stamp
+        near = not is_far(stamp)
         with self._lock:
             self._heard = True
             if near:
                 self._waiting.append(_Arrival(message, now))
         if not near:
-            self._pass_over(f"a message dated {stamp:.0f} s has come at {now.to_sec():.0f} s")
+            self._pass_over(f"a message dated {stamp.secs} s has come at {now.to_sec():.0f} s")
         self._heard_at = now
         self._complaints.present(self._what)
 

@@ -18,6 +18,7 @@ NEWEST = rospy.Time(0)
 POLL = 0.01  # s of wall time
 LATE = 0.5   # s; transforms that are older than that are late, whatever was asked for
 ODD = 3.0    # s that messages may be dated oddly before that is said
+FAR = 2.0e9  # s from now; a process in which tf2 subtracts stamps of 68 years apart is aborted
 
 
 class Transforms:
@@ -52,8 +53,8 @@ class Transforms:
              wait_s: float = 0.0) -> np.ndarray | None:
         """(x, y, yaw) of `child` in `parent` at `stamp` (0: the newest), waited for `wait_s`."""
         end = time.monotonic() + wait_s
-        while (not self.buffer.can_transform(parent, child, stamp) and time.monotonic() < end
-               and not rospy.is_shutdown()):
+        while (not is_far(stamp) and not self.buffer.can_transform(parent, child, stamp)
+               and time.monotonic() < end and not rospy.is_shutdown()):
             time.sleep(POLL)
         found = self.find(parent, child, stamp)
         return None if found is None else _in_the_plane(found)
@@ -72,10 +73,12 @@ class Transforms:
 
     def _look_up(self, parent: str, child: str, stamp: rospy.Time) -> TransformStamped | None:
         try:
-            return self.buffer.lookup_transform(parent, child, stamp)
+            if not is_far(stamp):
+                return self.buffer.lookup_transform(parent, child, stamp)
         except tf2_ros.TransformException:
-            self._blame(parent, child, stamp)
-            return None
+            pass
+        self._blame(parent, child, stamp)
+        return None
 
     def _blame(self, parent: str, child: str, stamp: rospy.Time) -> None:
         link = weakest(known_links(self.buffer), parent, child, self.chain)
@@ -114,6 +117,11 @@ def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
     return (f"{name} at the stamps of messages",
             f"they are {abs(ahead):.1f} s {'ahead of' if ahead > 0 else 'behind'} the newest one; "
             f"do the clocks of all machines agree?", ODD)
+
+
+def is_far(stamp: rospy.Time) -> bool:
+    """Whether it is too far from now to be asked of tf2; 0, the newest, never is."""
+    return not stamp.is_zero() and abs(stamp.to_sec() - rospy.Time.now().to_sec()) > FAR
 
 
 def _in_the_plane(found: Transform) -> np.ndarray:
