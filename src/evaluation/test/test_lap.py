@@ -75,7 +75,7 @@ def test_leaving_the_course_says_where_and_when():
     assert scorer.samples[-1].x == pytest.approx(x, abs=2 * SPEED / RATE_HZ)
     assert f"x={scorer.samples[-1].x:.2f}, y=0.00" in scorer.why
     assert f"time {scorer.samples[-1].time:.1f} s" in scorer.why
-    assert "right of the yellow line" in scorer.why
+    assert "right of the line" in scorer.why
 
 
 def test_a_car_that_stops_on_its_way_has_stalled():

@@ -135,8 +135,8 @@ def lap_colour(number: int) -> tuple[int, int, int]:
 def _draw_legend(image: np.ndarray, drive: LapScorer, laps: int, fine: int) -> None:
     """What the lines mean, where the course leaves room for it."""
     entries = [
-        (YELLOW, "yellow line: what the car follows"),
-        (WHITE, "white line: right edge of the lane"),
+        (YELLOW, "yellow: what the car follows"),
+        (WHITE, "white: right edge of the lane"),
     ]
     shown = min(laps, len(LAP_COLOURS))
     for number in range(shown):
