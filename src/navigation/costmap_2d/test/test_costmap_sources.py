@@ -177,6 +177,31 @@ def test_a_transform_that_comes_after_its_scan_makes_nothing_old(make):
     assert oldest == pytest.approx(0.22, abs=0.011)
 
 
+def test_a_quick_sensor_waits_for_slow_transforms(make):
+    """At 40 scans a second and tf 0.4 s late none must be pushed out before it can be placed."""
+    source, frames = make()
+    for step in range(1, 120):
+        make.at["now"] = now = 10.0 + step / 40
+        frames.until = now - 0.4
+        source._take(cloud(now))
+        if step % 8 == 0:
+            source.collect()
+        if now > 10.6:
+            assert source.news().placed < 0.45
+
+
+def test_a_scan_after_a_damaged_one_is_news_at_once(make, lines):
+    source, frames = make(data_type="LaserScan")
+    for now, increment in ((11.0, float("nan")), (12.0, 0.0)):
+        make.at["now"] = frames.until = now
+        message = LaserScan(ranges=[1.0], range_max=5.0, time_increment=increment)
+        message.header.stamp, message.header.frame_id = rospy.Time.from_sec(now), "laser"
+        source._take(message)
+        if now == 11.0:
+            assert source.collect() == [] and source.news().placed == 1.0
+    assert source.news().placed == 0.0
+
+
 def test_who_sees_nothing_sees(make):
     """Of a scan of no numbers, as of an empty one, the costmap learns what is free: nothing."""
     for ranges in ([], [float("nan")] * 3, [float("inf")] * 3):

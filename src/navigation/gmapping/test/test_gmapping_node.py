@@ -73,6 +73,17 @@ def test_scans_of_two_lasers_are_mapped_one_at_a_time(node):
     assert met == [False, False]
 
 
+def test_a_scan_of_before_a_reset_is_not_mapped_after_it(node):
+    """It had its odometry already, and waited for another laser's to be mapped."""
+
+    def pose(*_):
+        node._newest = rospy.Time(1)
+        return np.zeros(3)
+
+    node._transforms.pose = pose
+    assert take(node, 50.0) == []
+
+
 def test_a_laser_that_waits_for_its_odometry_does_not_hold_up_another(node):
     waits, is_over = threading.Event(), threading.Event()
     late = threading.Thread(target=take, args=(node, 0.0))

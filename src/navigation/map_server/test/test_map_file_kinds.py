@@ -2,11 +2,13 @@
 
 import os
 import threading
+import tracemalloc
 
 import pytest
 
 from map_server import image
 from map_server.errors import MapImageError, MapMissingError
+from map_server.files import read_file
 from map_server.map_files import read_map
 
 NO_FILE = "cannot be read: it is a pipe or device, not a file"
@@ -58,3 +60,15 @@ def test_a_name_that_no_file_can_have(tmp_path):
         read_map(tmp_path / ("x" * 300))
     with pytest.raises(MapMissingError, match="there is no such file"):
         read_map(tmp_path / ("x" * 252))  # with .yaml behind it, it is too long
+
+
+def test_a_small_file_takes_little_memory(tmp_path):
+    """Python makes room for all that is asked for before it reads."""
+    path = tmp_path / "small.pgm"
+    path.write_bytes(b"P5 1 1 255 0")
+    tracemalloc.start()
+    try:
+        assert read_file(path, 2**30) == b"P5 1 1 255 0"
+        assert tracemalloc.get_traced_memory()[1] < 10**6
+    finally:
+        tracemalloc.stop()

@@ -142,7 +142,7 @@ def watched():
     return _watched
 
 
-def _watched(odometry, news, said=None, fault=""):
+def _watched(odometry, news, said=None, fault="", timeout=0.6):
     costmap = SimpleNamespace(global_frame="map", robot_pose=lambda: np.zeros(3),
                               is_ready=lambda: True, is_current=lambda: True,
                               news=lambda: [News("laser", "placed laser", *news)])
@@ -151,7 +151,7 @@ def _watched(odometry, news, said=None, fault=""):
     said = {} if said is None else said
     complaints = SimpleNamespace(missing=lambda what, why, **_: said.update({what: why}),
                                  present=lambda what: said.pop(what, None))
-    return Watch((costmap, costmap), base, None, complaints).can_drive(1.0, 0.6, False)
+    return Watch((costmap, costmap), base, None, complaints).can_drive(1.0, timeout, False)
 
 
 @pytest.mark.parametrize(("odometry", "scan", "drives"), [
@@ -206,6 +206,12 @@ def test_odometry_that_cannot_be_counts_as_missing(base, lines, watched, wrong):
     assert "it says" in said["odometry on /odom"] and "stands" in said["odometry on /odom"]
     base._take(odometry(0.1, 0.0))
     assert base.velocity.tolist() == [0.1, 0.0, 0.0] and not base.odometry_fault
+
+
+def test_the_robot_stands_by_impossible_odometry_whatever_the_timeout(watched):
+    """Planners would go on from the velocity of before it for ever."""
+    assert watched(0.2, (9.0, 9.0), timeout=0.0)
+    assert not watched(0.2, (9.0, 9.0), fault="it says 1e8 rad/s", timeout=0.0)
 
 
 @pytest.mark.parametrize("pushed", [(4.9, 0.0), (-3.0, 9.0)])

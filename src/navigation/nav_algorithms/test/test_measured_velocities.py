@@ -65,3 +65,14 @@ def test_limits():
     assert limits.clip(np.array([0.4, 0.3, -9.0])) == pytest.approx(
         [0.1 * 5 ** 0.5, 0.05 * 5 ** 0.5, -1.0])
     assert limits.fastest == (0.25, 2.0)
+
+
+@pytest.mark.parametrize("slowest", [0.0, -0.2])
+def test_a_turn_at_the_goal_goes_to_the_right_too(costmap, slowest):
+    """min_vel_theta is of the way; clipped to it, such a turn would never come."""
+    planner = TrajectoryRollout(TrajectoryRolloutSettings(min_vel_theta=slowest))
+    planner.set_path(np.array([[0.0, 0.0, 0.0], [0.01, 0.0, -1.0]]))
+    velocity = np.zeros(3)
+    for _ in range(5):  # it speeds up
+        velocity = planner.command(costmap, SQUARE, np.zeros(3), velocity).velocity
+    assert velocity[2] <= -0.4

@@ -33,7 +33,7 @@ def parse_options(arguments: list[str]) -> Options:
     return Options(
         load_house(given.house),
         whole("--goals (GOALS=)", given.goals, least=1),
-        whole("--seed (SEED=)", given.seed),
+        whole("--seed (SEED=)", given.seed, most=999_999_999),
         pace(given.real_time_factor),
         given.out.resolve(),
         given.map.resolve() if given.map else None,

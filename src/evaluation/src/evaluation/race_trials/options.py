@@ -8,6 +8,7 @@ from pathlib import Path
 from evaluation.command_line import Parser, whole
 from evaluation.course_run.failure import RunError
 
+LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 
 
@@ -25,8 +26,8 @@ class Options:
 def parse_options(arguments: list[str]) -> Options:
     """Options from the command line, or RunError."""
     given = _parser().parse_args(arguments)
-    first_seed = whole("--first-seed", given.first_seed)
-    first_track = whole("--first-track", given.first_track)
+    first_seed = whole("--first-seed", given.first_seed, most=LARGEST_SEED)
+    first_track = whole("--first-track", given.first_track, most=LARGEST_SEED)
     seeds = range(first_seed, first_seed + whole("--seeds", given.seeds))
     tracks = range(first_track, first_track + whole("--tracks", given.tracks))
     if not seeds and not tracks:

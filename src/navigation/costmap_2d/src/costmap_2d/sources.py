@@ -19,7 +19,7 @@ from nav_nodes.silence import why_silent
 from nav_nodes.transforms import Transforms, is_far
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
-WAITING = 10   # messages that wait for their transform; upstream's queue is 50
+WAITING = 50   # messages that wait for their transform, as upstream's queue
 SILENCE = 5.0  # s of wall time until a line, where no expected_update_rate says otherwise
 
 
@@ -195,16 +195,18 @@ class Source:
         """
         message = arrival.message
         stamp, frame = message.header.stamp, message.header.frame_id.lstrip("/")
+        start = self._transform(frame, stamp)
+        if start is None:
+            return None
         try:
             points, when = self._points(message)
         except ValueError as error:
             self._pass_over(str(error))
             self._drop([arrival])
             return None
-        start = self._transform(frame, stamp)
         end = self._transform(frame, stamp + rospy.Duration(when[-1])) if when.any() else start
         sensor = self._transform(self._sensor_frame or frame, stamp)
-        if start is None or end is None or sensor is None:
+        if end is None or sensor is None:
             return None
         origin, points = sensor[1], placed(points, start, end, when)
         settings = self.settings
@@ -216,9 +218,11 @@ class Source:
     def _can_be_placed(self, message: Any) -> bool:
         """As `_placed` would, without a word where it cannot be yet; clouds are not looked into."""
         stamp, frame = message.header.stamp, message.header.frame_id
-        if self._fault or not (self._is_known(frame, stamp)
-                               and self._is_known(self._sensor_frame or frame, stamp)):
+        if not (self._is_known(frame, stamp)
+                and self._is_known(self._sensor_frame or frame, stamp)):
             return False
+        if self._fault and self.settings["data_type"] != "LaserScan":
+            return False  # it would take too long to look at each
         try:
             sweep = self._sweep(message)
         except ValueError:

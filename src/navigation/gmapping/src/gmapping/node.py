@@ -77,7 +77,8 @@ class SlamNode:
         if mount is None or odometry is None:
             return
         with self._lock:
-            self._map_scan(scan, odometry, mount)
+            if (scan.header.stamp - self._newest).to_sec() <= 0.0:  # else the clock went back
+                self._map_scan(scan, odometry, mount)
 
     def _look_at_clock(self, stamp: rospy.Time) -> None:
         behind = (self._newest - stamp).to_sec()

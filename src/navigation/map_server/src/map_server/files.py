@@ -14,10 +14,11 @@ def read_file(path: Path, largest: int) -> bytes:
     keep its reader for ever.
     """
     try:
-        kind = path.stat().st_mode
+        found = path.stat()
     except ValueError:
         raise OSError(errno.EINVAL, "its name has a zero byte in it") from None
+    kind = found.st_mode
     if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):  # of a folder, open says it
         raise OSError(errno.EINVAL, "it is a pipe or device, not a file")
     with path.open("rb") as file:
-        return file.read(largest + 1)
+        return file.read(min(found.st_size, largest) + 1)  # as much memory is taken at once

@@ -42,11 +42,12 @@ class Watch:
         With `map_required` so is a map whose publisher has gone.
 
         A timeout of 0 asks, as upstream, only for costmaps, poses and what an
-        `expected_update_rate` was set for.
+        `expected_update_rate` was set for, and that odometry is none that cannot be.
         """
         poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, for what they say
         located = all(pose is not None for pose in poses)
-        return ((timeout <= 0.0 or self._all_speak(now, timeout, located)) and located
+        return ((self._all_speak(now, timeout, located) if timeout > 0.0
+                 else self._odometry_can_be()) and located
                 and not (map_required and self._miss_maps())
                 and all(costmap.is_ready() for costmap in self._costmaps)
                 and self._sensors_are_current())
@@ -93,6 +94,11 @@ class Watch:
         silent = heard is None or abs(now - heard.to_sec()) > timeout
         self._say(f"odometry on {self._base.odom_topic}", silent, self._base.odometry_fault)
         return not silent
+
+    def _odometry_can_be(self) -> bool:
+        fault = self._base.odometry_fault
+        self._say(f"odometry on {self._base.odom_topic}", bool(fault), fault)
+        return not fault
 
     def _is_localised(self, now: float, timeout: float) -> bool:
         """Whether the place of the odometry's frame in the map's is still being told."""

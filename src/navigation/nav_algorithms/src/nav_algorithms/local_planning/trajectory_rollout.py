@@ -89,7 +89,8 @@ class TrajectoryRollout(LocalPlanner):
     def limits(self) -> Limits:
         s = self.settings
         strafe = max(STRAFES) if s.holonomic_robot else 0.0
-        return Limits((min(s.escape_vel, s.min_vel_x), -strafe, s.min_vel_theta),
+        in_place = min(s.min_in_place_vel_theta, s.max_vel_theta)  # at the goal, to either side
+        return Limits((min(s.escape_vel, s.min_vel_x), -strafe, min(s.min_vel_theta, -in_place)),
                       (max(s.max_vel_x, s.min_vel_x), strafe, s.max_vel_theta))
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
