@@ -16,7 +16,7 @@ class MultisimStory(unittest.TestCase):
     def test_nodes_and_services_are_in_their_namespaces(self):
         wait_until(lambda: {"/turtlesim1/spawn", "/turtlesim2/spawn"} <= service_names(), "spawn")
         nodes = {"/turtlesim1/sim", "/turtlesim2/sim", "/mimic"}
-        self.assertLessEqual(nodes, set(rosnode.get_node_names()))
+        wait_until(lambda: nodes <= set(rosnode.get_node_names()), "nodes")
         self.assertTrue(rospy.has_param("/turtlesim1/sim/background_r"))
 
     def test_the_second_turtle_does_as_the_first(self):
