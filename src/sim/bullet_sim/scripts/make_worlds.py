@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes data/worlds/rubble.world (a heap of boxes and cylinders), stacks.world and heightmap.world
-with its terrain image.
+"""Writes data/worlds/rubble.world (a heap of boxes and cylinders), stacks.world, heightmap.world
+with its terrain image, and the worlds that only include models.
 
     python3 src/sim/bullet_sim/scripts/make_worlds.py
 
@@ -52,6 +52,24 @@ MODEL = """    <model name="{name}">
 """
 
 
+INCLUDE = """    <include>
+      <uri>model://{folder}</uri>
+      <name>{name}</name>
+      <pose>{pose}</pose>
+    </include>
+"""
+# Worlds of included models: folder, name in the world, pose.
+INCLUDED = {
+    "camera.world": [("camera", "camera", [0] * 6), ("camera", "camera 2", [2, 0, 0, 0, 0, 0])],
+    "depth_camera.world": [("depth_camera", "depth_camera", [0] * 6),
+                           ("unit_box", "box", [3, 0, 0.5, 0, 0, 0])],
+    "empty_bullet.world": [("cordless_drill", "drill", [0] * 6)],
+    "robocup14_spl_field.world": [
+        ("robocup14_spl_field", "RoboCup 14 SPL Field", [0, 0, -0.005, 0, 0, 0]),
+        ("robocup14_spl_goal", "left goal", [-4.5, 0, 0, 0, 0, 3.1416]),
+        ("robocup14_spl_goal", "right goal", [4.5, 0, 0, 0, 0, 0]),
+        ("robocup_spl_ball", "RoboCup SPL Ball", [0, 0, 0, 0, 0, 0])],
+}
 SIDE = 129  # px of the terrain image, and m of the ground: one pixel is a metre
 TALLEST = 10.0  # m, of white
 FLAT = 10.0  # m round the origin that are level
@@ -134,6 +152,13 @@ def stacks() -> str:
     return HEAD + GROUND + "".join(models) + TAIL
 
 
+def included(models: list[tuple[str, str, list[float]]]) -> str:
+    """Models of the database on the ground plane."""
+    return HEAD + GROUND + "".join(
+        INCLUDE.format(folder=folder, name=name, pose=_numbers(pose))
+        for folder, name, pose in models) + TAIL
+
+
 def heightmap() -> str:
     """A wide bowl of soil, grass and moss with a box of 1 m in each corner, as Gazebo's."""
     corners = ((-63, -63, "Red"), (-63, 63, "Green"), (63, 63, "Blue"), (63, -63, "White"))
@@ -187,7 +212,8 @@ def _numbers(values: list[float]) -> str:
 
 def files() -> dict[str, str]:
     """What the script writes: text by name in data/worlds."""
-    return {"rubble.world": rubble(), "stacks.world": stacks(), "heightmap.world": heightmap()}
+    return {"rubble.world": rubble(), "stacks.world": stacks(), "heightmap.world": heightmap(),
+            **{name: included(models) for name, models in INCLUDED.items()}}
 
 
 if __name__ == "__main__":

@@ -399,6 +399,25 @@ def test_one_of_a_heap_that_is_pushed_moves_and_the_heap_rests_again(counted):
     assert barrels[1].pose.position[0] > before + 0.01
 
 
+def test_a_force_on_one_of_a_heap_and_a_ball_that_hits_it_move_it(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 2)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    before = barrels[1].pose.position[0]
+    for _ in range(300):
+        barrels[1].link("link").apply_force((40.0, 0.0, 0.0))
+        world.step()
+    assert barrels[1].pose.position[0] > before + 0.02
+    counted.run(4.0)
+    left = barrels[0].pose.position[0]
+    ball = world.spawn(single("ball", Sphere(0.2), mass=20.0), Pose((left - 1.0, 0.0, 0.2)))
+    ball.set_velocity(Twist((4.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(1.0)
+    assert barrels[0].pose.position[0] > left + 0.05
+
+
 def test_what_a_disabled_heap_stands_on_can_be_taken_away(counted):
     world = counted.world
     world.spawn(ground(1.0))

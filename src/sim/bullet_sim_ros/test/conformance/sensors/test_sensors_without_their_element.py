@@ -52,7 +52,7 @@ def test_a_laser_has_640_rays_straight_ahead(bench, kind, plugin, inside):
 
 def test_an_imu_has_no_noise(bench):
     bench.spawn(SENSOR.format("imu", "", "libgazebo_ros_imu_sensor.so",
-                              "<topicName>imu</topicName><frameName>imu</frameName>"))
+                              "<frameName>imu</frameName><updateRateHZ>20</updateRateHZ>"))
     (topic,) = [topic for topic, type_ in bench.advertised().items() if type_ is Imu]
     readings = bench.listen(topic)
     bench.run(0.3)
