@@ -412,6 +412,21 @@ def test_a_force_on_one_of_a_disabled_heap_moves_it(counted):
     assert barrels[1].pose.position[0] > before + 0.02
 
 
+def test_one_of_a_disabled_heap_is_put_elsewhere_in_flight_and_another_deleted(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 3)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    barrels[2].set_velocity(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    world.delete("b2")
+    barrels[1].set_pose(Pose((5.0, 0.0, 3.0)))
+    barrels[1].set_velocity(Twist((2.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(0.5)
+    assert barrels[1].pose.position[0] == pytest.approx(6.0, abs=0.02)
+    assert barrels[1].pose.position[2] == pytest.approx(3.0 - 4.9 * 0.25, abs=0.03)
+
+
 def test_what_slides_into_a_disabled_heap_moves_it(counted):
     world = counted.world
     world.spawn(ground(1.0))

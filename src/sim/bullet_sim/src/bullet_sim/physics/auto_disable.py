@@ -55,13 +55,15 @@ class AutoDisable:
         self._poses: dict[int, deque] = {}  # by number, of looks between which it was quiet
         self._disabled: set[int] = set()
         self._deaf: set[int] = set()  # of the disabled, those of the last look
-        self._late: list[tuple[Callable, tuple]] = []
+        self._waking: set[int] = set()  # enabled since the last step; the next leaves them out yet
+        self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be given again
 
     def after_step(self, looking: bool) -> None:
         """`looking`: at a look of `rest`, disable what has been quiet."""
         for push, args in self._late:
             self._read(push, *args)
         self._late.clear()
+        self._waking.clear()
         if not looking:
             return
         poses = {body.number: self._read(pybullet.getBasePositionAndOrientation, body.number)
@@ -88,18 +90,20 @@ class AutoDisable:
         """Enable what a pybullet call concerns; whether that was anything."""
         if function in MOTORS:
             return False
-        if function in PUSHES:
-            self._poses.pop(args[0], None)  # whoever pushes all the time is not to be held up
-        if not self._disabled:
-            return False
-        concerned = self._disabled & {args[0]} if function in PUSHES else set(self._disabled)
+        push = function in PUSHES
+        concerned = self._disabled & {args[0]} if push else set(self._disabled)
         for number in concerned:
             self._change(number, pybullet.ACTIVATION_STATE_WAKE_UP)
             self._change(number, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
             self._poses.pop(number, None)
-        if concerned and function in PUSHES:
-            self._late.append((function, args))  # the engine leaves it out of the next step yet
         self._disabled -= concerned
+        self._waking |= concerned
+        if push:
+            self._poses.pop(args[0], None)  # whoever pushes all the time is not to be held up
+            if args[0] in self._waking:
+                self._late.append((function, args))
+        elif function is pybullet.removeBody:
+            self._late = [late for late in self._late if late[1][0] != args[0]]
         return bool(concerned)
 
     def _disable(self, ready: set[int]) -> None:
