@@ -1,0 +1,51 @@
+"""Debian's `nodelet`, but what is a Python node here is started as one, in the same name.
+
+A node in place of a nodelet has the same parameters, topics and remappings: those of the process
+that would have loaded it. Only what nodelets of one manager save, copying messages, is not saved.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import rospkg
+from roslib.packages import find_node
+
+DEBIANS = "/usr/lib/nodelet/nodelet"
+
+# Type of a nodelet -> package and executable that do its work.
+NODES = {
+    "depthimage_to_laserscan/DepthImageToLaserScanNodelet":
+        ("depthimage_to_laserscan", "depthimage_to_laserscan"),
+    "pointcloud_to_laserscan/pointcloud_to_laserscan_nodelet":
+        ("pointcloud_to_laserscan", "pointcloud_to_laserscan_node"),
+    "pointcloud_to_laserscan/laserscan_to_pointcloud_nodelet":
+        ("pointcloud_to_laserscan", "laserscan_to_pointcloud_node"),
+    "yocs_cmd_vel_mux/CmdVelMuxNodelet": ("yocs_cmd_vel_mux", "cmd_vel_mux"),
+    "cmd_vel_mux/CmdVelMuxNodelet": ("yocs_cmd_vel_mux", "cmd_vel_mux"),
+    "robot_localization/EkfNodelet": ("robot_localization", "ekf_localization_node"),
+    "robot_localization/UkfNodelet": ("robot_localization", "ukf_localization_node"),
+}
+
+
+def node_instead(words: Sequence[str]) -> list[str] | None:
+    """The command line that does what `nodelet WORDS` would, or None where that is Debian's."""
+    if len(words) < 2 or words[0] not in ("load", "standalone") or words[1] not in NODES:
+        return None
+    package, executable = NODES[words[1]]
+    try:
+        folder = rospkg.RosPack().get_path(words[1].split("/")[0])
+        if "<nodelet" in (Path(folder) / "package.xml").read_text(encoding="utf-8"):
+            return None  # a package of the learner's own that has the real one
+    except (rospkg.ResourceNotFound, OSError):
+        pass  # it is known here by another package's name
+    found = find_node(package, executable)
+    return [found[0], *(word for word in words[2:] if ":=" in word)] if found else None
+
+
+def main() -> None:
+    """Become the node, or Debian's nodelet."""
+    words = sys.argv[1:]
+    command = node_instead(words) or [DEBIANS, *words]
+    os.execv(command[0], command)
