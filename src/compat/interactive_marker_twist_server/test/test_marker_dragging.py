@@ -30,5 +30,5 @@ def test_parameters_of_all_ages():
     assert read_axes(0.4, "linear_scale") == {"x": 0.4}
     assert read_axes({"x": 1, "y": 2}, "linear_scale") == {"x": 1.0, "y": 2.0}
     for wrong in ("fast", {"yaw": 1.0}, {"x": "a"}):
-        with pytest.raises(ValueError, match="linear_scale is .* numbers for x, y, z"):
+        with pytest.raises(ValueError, match=r"linear_scale is .* numbers for x, y, z"):
             read_axes(wrong, "linear_scale")

@@ -4,7 +4,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from python_nodelets.front import NODES, node_instead
+from python_nodelets.front import INSTALLABLE, NODES, missing, node_instead
 from roslib.packages import find_node
 
 
@@ -31,6 +31,14 @@ def test_a_package_of_the_learners_with_the_real_nodelet_is_loaded(tmp_path, mon
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     kind = "depthimage_to_laserscan/DepthImageToLaserScanNodelet"
     assert node_instead(["load", kind, "manager"]) is None
+
+
+@pytest.mark.parametrize("package", sorted(INSTALLABLE))
+def test_what_debian_has_is_named_until_it_is_installed(package):
+    there = Path(f"/usr/share/{package}/nodelet_plugins.xml").exists()
+    line = missing(["load", f"{package}/anything", "manager"])
+    assert line == "" if there else line.endswith(f"apt-get install {INSTALLABLE[package]}")
+    assert missing(["manager"]) == missing(["load", "my_package/mine", "manager"]) == ""
 
 
 @pytest.mark.parametrize("name", ["nodelet", "list_nodelets", "declared_nodelets"])

@@ -14,6 +14,12 @@ from roslib.packages import find_node
 
 DEBIANS = "/usr/lib/nodelet/nodelet"
 
+# Packages of nodelets that Debian has, and what to install for them.
+INSTALLABLE = {"depth_image_proc": "libdepth-image-proc-dev", "image_proc": "libimage-proc-dev",
+               "image_rotate": "libimage-rotate-dev", "image_view": "libimage-view-dev",
+               "image_publisher": "libimage-publisher-dev",
+               "stereo_image_proc": "libstereo-image-proc-dev"}
+
 # Type of a nodelet -> package and executable that do its work.
 NODES = {
     "depthimage_to_laserscan/DepthImageToLaserScanNodelet":
@@ -44,8 +50,21 @@ def node_instead(words: Sequence[str]) -> list[str] | None:
     return [found[0], *(word for word in words[2:] if ":=" in word)] if found else None
 
 
+def missing(words: Sequence[str]) -> str:
+    """What to type if the nodelet is one that Debian has and is not installed; else empty."""
+    if len(words) < 2 or words[0] not in ("load", "standalone"):
+        return ""
+    package = words[1].split("/")[0]
+    plugins = Path("/usr/share") / package / "nodelet_plugins.xml"
+    if package not in INSTALLABLE or plugins.exists():
+        return ""
+    return f"{words[1]} is not installed. Type: sudo apt-get install {INSTALLABLE[package]}"
+
+
 def main() -> None:
     """Become the node, or Debian's nodelet."""
     words = sys.argv[1:]
+    if line := missing(words):
+        sys.exit(f"nodelet: {line}")
     command = node_instead(words) or [DEBIANS, *words]
     os.execv(command[0], command)
