@@ -7,6 +7,8 @@ import pytest
 from python_nodelets.front import INSTALLABLE, NODES, missing, node_instead
 from roslib.packages import find_node
 
+pytestmark = pytest.mark.processes
+
 
 @pytest.mark.parametrize("words", [["manager"], ["unload", "a", "b"], ["load"], [],
                                    ["load", "image_proc/rectify", "manager"]])
