@@ -1,4 +1,4 @@
-"""`steer_bot_hardware_gazebo/...`: which joints of a car one virtual wheel and one steering move."""
+"""`steer_bot_hardware_gazebo/...`: the joints that a virtual wheel and a virtual steering move."""
 
 from __future__ import annotations
 
