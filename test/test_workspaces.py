@@ -128,6 +128,7 @@ def test_the_learners_folders_come_first_and_once(built):
     assert path.split(":").count(f"{ROOT}/.venv/bin") == 1
 
 
+@pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
 @pytest.mark.parametrize("shell", ["sh", "bash"])
 def test_each_shell_can_source_it(built, shell):
     line = (f"cd {built[0]}/devel && . ./setup.{shell} && rospack find learning_topic && "
@@ -155,7 +156,7 @@ def free_port() -> int:
         return found.getsockname()[1]
 
 
-@pytest.fixture(scope="module", params=["catkin_make"])
+@pytest.fixture(scope="module")
 def running(built, tmp_path_factory):
     """Everything of workspaces/running.launch, with a master of its own."""
     port = free_port()
@@ -183,6 +184,7 @@ def running(built, tmp_path_factory):
     log.close()
 
 
+@pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
 @pytest.mark.parametrize(("command", "wanted"), [
     ("rostopic echo -n1 /heard_cpp", "data: 42.0"),
     ("rostopic echo -n1 /heard_nodelet", "data: 42.0"),
@@ -194,11 +196,12 @@ def running(built, tmp_path_factory):
     ("rosservice call /gazebo/get_world_properties", "shape_course"),
     ("rostopic echo -n1 /camera/rgb/image_raw/width", "64"),
 ])
-def test_nodes_of_the_workspace_work_together(running, command, wanted):
+def test_nodes_of_the_workspace_work_together(built, running, command, wanted):
     running(command, wanted)
 
 
-def test_the_tutorials_robot_drives_and_its_script_runs(running):
+@pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
+def test_the_tutorials_robot_drives_and_its_script_runs(built, running):
     running("rostopic echo -n1 /odom/pose/pose/position/x", "---")
     running("bash -c 'timeout 5 roslaunch turtlebot3_gazebo turtlebot3_simulation.launch; "
             "rosservice call /gazebo/get_model_state turtlebot3_waffle world | grep -A1 position'",

@@ -31,6 +31,10 @@ class RobotFacts:
         """The joint's child link."""
         return self._joint(name).child
 
+    def joints_on(self, name: str) -> list[str]:
+        """The joints whose parent is that joint's child: those of a wheel's rollers."""
+        return [joint.name for joint in self._joints.values() if joint.parent == self.child(name)]
+
     def pose(self, name: str) -> Pose:
         """The joint's frame in the root link's, with every joint at zero."""
         pose, joint = IDENTITY, self._joint(name)

@@ -91,7 +91,11 @@ class MobileBaseController(Controller):
             self._complain(f"{senders} publishers of cmd_vel, but allow_multiple_cmd_vel_publishers"
                            " is false: it brakes")
             return lambda: self.base.command(self.host.world_time(), 0.0, 0.0)
-        return lambda: self.base.command(self.host.world_time(), msg.linear.x, msg.angular.z)
+        return lambda: self.give(msg)
+
+    def give(self, msg: Twist) -> None:
+        """Hand a good command to the drive; in the loop."""
+        self.base.command(self.host.world_time(), msg.linear.x, msg.angular.z)
 
     def _publish(self) -> None:
         tf_wanted = self.enable_odom_tf and self._transforms.get_num_connections()
@@ -109,13 +113,14 @@ class MobileBaseController(Controller):
 def read_options(parameters: ControllerParameters) -> BaseOptions:
     """What all bases have by the same names."""
     return BaseOptions(
-        _limits(parameters, "linear/x"), _limits(parameters, "angular/z"),
+        read_limits(parameters, "linear/x"), read_limits(parameters, "angular/z"),
         parameters.number("cmd_vel_timeout", 0.5),
         round(parameters.number("velocity_rolling_window_size", 10)),
         parameters.flag("open_loop", False))
 
 
-def _limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
+def read_limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
+    """Of a speed, by the name that its group of parameters has."""
     def bounds(quantity: str) -> tuple[float, float]:
         if not parameters.flag(f"{group}/has_{quantity}_limits", False):
             return UNBOUNDED

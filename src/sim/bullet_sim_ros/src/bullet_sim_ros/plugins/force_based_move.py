@@ -35,12 +35,12 @@ FAMILIES = {
     "libwpr_plugin.so": Family(ForceGains(40000.0, 30000.0, 500.0)),
     "libridgeback_ros_force_based_move.so": Family(
         ForceGains(100000.0, 100000.0, 10000.0), False, "cmdVelTimeOut", 0.25),
-    "librobotnik_force_based_move.so": Family(
-        timeout_tag="commandWatchdog", timeout=2.0),
+    "librobotnik_force_based_move.so": Family(timeout_tag="commandWatchdog", timeout=2.0),
 }
 
 
-@plugin(*FAMILIES)
+@plugin("libhector_gazebo_ros_force_based_move.so", "libwpr_plugin.so",
+        "libridgeback_ros_force_based_move.so", "librobotnik_force_based_move.so")
 class ForceBasedMovePlugin:
     """Odometry starts at zero where the model is spawned, and does not know what it bumped into."""
 

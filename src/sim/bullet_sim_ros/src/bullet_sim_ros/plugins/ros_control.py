@@ -19,13 +19,15 @@ from bullet_sim_ros.control import controllers, services  # noqa: F401  (control
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
 from bullet_sim_ros.control.manager import ControllerManager
+from bullet_sim_ros.control.steer_bot import open_steer_bot
 from bullet_sim_ros.control.urdf_parameter import with_urdf
 from bullet_sim_ros.plugins.host import Host
 from bullet_sim_ros.plugins.registry import plugin
 
 log = logging.getLogger("bullet_sim.control")
 
-SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim")
+SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim",
+                    "steer_bot_hardware_gazebo/SteerBotHardwareGazebo", "SteerBotHardwareGazebo")
 ROUNDING = 1e-9  # of a step
 NO_ROBOT = fromstring('<robot name="nobody"><link name="nobody"/></robot>')
 MOST_STEPS = 1e15  # of a control period: that is for ever
@@ -42,8 +44,9 @@ class RosControlPlugin:
         self._namespace = names.join(p.namespace(missing=host.model.name, empty="/"), "")
         simulation_type = p.text("robotSimType", SIMULATION_TYPES[0])
         if simulation_type not in SIMULATION_TYPES:
-            log.warning("%s: <robotSimType> is %r; only %s is known here, and used",
-                        host.describe(), simulation_type, SIMULATION_TYPES[0])
+            log.warning("%s: <robotSimType> is %r; there are: %s and %s; the first is used",
+                        host.describe(), simulation_type, *SIMULATION_TYPES[::2])
+        self._steer_bot = simulation_type in SIMULATION_TYPES[2:]
         self._control_period = p.number("controlPeriod", 0.0)  # s; 0: every step
         self._emergency = self._restart = False
         self._emergency_topic = p.text("eStopTopic")
@@ -95,6 +98,8 @@ class RosControlPlugin:
     def _open_hardware(self, urdf: str) -> tuple[RobotHardware, RobotFacts]:
         element = self._urdf(urdf)
         robot = RobotFacts(element)
+        if self._steer_bot:
+            return open_steer_bot(self._host.model, self._namespace, robot), robot
         transmissions = read_transmissions(element)
         if not transmissions and element is not NO_ROBOT:
             log.warning("%s: the URDF has no usable <transmission>, so there is no joint to "

@@ -10,9 +10,13 @@ from bullet_sim_ros.control.mobile_base import MobileBaseController, read_option
 from bullet_sim_ros.control.registry import controller
 
 
-@controller("ackermann_steering_controller/AckermannSteeringController")
+@controller("ackermann_steering_controller/AckermannSteeringController",
+            "steer_drive_controller/SteerDriveController")
 class AckermannSteeringController(MobileBaseController):
-    """angular.z of cmd_vel is the steering joint's angle, as upstream has it."""
+    """angular.z of cmd_vel is the steering joint's angle, as upstream has it.
+
+    steer_drive_controller is what upstream called it before; its parameters are the same.
+    """
 
     def __init__(self, host: ControllerHost):
         p = host.parameters

@@ -1,0 +1,82 @@
+"""Mecanum drive: four wheels whose rollers stand at 45 degrees to the axle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
+from bullet_sim.control.controllers.timed_command import TimedCommand
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.errors import SimulationError
+
+# What leftward speed and yaw rate add to a wheel's rim speed: front left, back left, back right,
+# front right. Seen from above the rollers' axes make an X; those on the ground a diamond.
+SIGNS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
+
+
+@dataclass(frozen=True)
+class MecanumGeometry:
+    """Lengths in m."""
+
+    reach: float  # half the wheelbase and half the track together
+    wheel_radius: float
+
+    def __post_init__(self):
+        for name in ("reach", "wheel_radius"):
+            if not getattr(self, name) > 0.0:
+                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+
+
+class MecanumDrive(MobileBase):
+    """`turning` is the rate of yaw (rad/s); odometry always comes from the wheels."""
+
+    def __init__(self, wheels: Sequence[CommandHandle], geometry: MecanumGeometry,
+                 options: BaseOptions, sideways_limits: SpeedLimits = UNLIMITED):
+        """Wheels in the order of `SIGNS`; `sideways_limits` are of the leftward speed (m/s)."""
+        super().__init__(replace(options, open_loop=False))
+        self._wheels, self._geometry = tuple(wheels), geometry
+        self._sideways = TimedCommand(1, options.command_timeout)
+        self._sideways_limiter = SpeedLimiter(sideways_limits)
+        self._leftward = 0.0
+        self._travelled = [0.0] * len(self._wheels)
+
+    def command(self, time: float, forward: float, turning: float, leftward: float = 0.0) -> None:
+        """What to do from now (s, simulated) on; m/s, rad/s, m/s."""
+        self._sideways.give(time, leftward)
+        super().command(time, forward, turning)
+
+    def start(self, time: float) -> None:
+        """Stand still; odometry goes on where it was."""
+        self._sideways.clear()
+        self._sideways_limiter.restart()
+        super().start(time)
+
+    def update(self, time: float, period: float) -> None:
+        """One control period."""
+        self._leftward = self._sideways_limiter.limit(self._sideways.at(time)[0], period)
+        super().update(time, period)
+
+    def stop(self) -> None:
+        """Brake at once."""
+        self._leftward = 0.0
+        super().stop()
+
+    def _drive(self, forward: float, turning: float) -> None:
+        g = self._geometry
+        for wheel, (sideways, around) in zip(self._wheels, SIGNS, strict=True):
+            rim = forward + sideways * self._leftward + around * g.reach * turning
+            wheel.command = rim / g.wheel_radius
+
+    def _moved(self) -> tuple[float, float, float]:
+        g, before = self._geometry, self._travelled
+        self._travelled = [wheel.joint.position for wheel in self._wheels]
+        ways = [(now - then) * g.wheel_radius / 4
+                for now, then in zip(self._travelled, before, strict=True)]
+        leftward = sum(way * sideways for way, (sideways, _) in zip(ways, SIGNS, strict=True))
+        turned = sum(way * around for way, (_, around) in zip(ways, SIGNS, strict=True))
+        return sum(ways), leftward, turned / g.reach
+
+    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
+        return forward, turning
