@@ -23,8 +23,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         from rosdep2.main import rosdep_main
     except ImportError:
-        print("rosdep: Debian's package python3-rosdep2 is missing: make setup, or as root "
-              "apt-get install python3-rosdep2", file=sys.stderr)
+        print("rosdep: its Python package is missing: make setup", file=sys.stderr)
         return 1
     if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user's own sources, and then rosdep's own ways
         return _code(rosdep_main, args)
