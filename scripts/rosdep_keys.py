@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Writes src/workspace_needs/rosdep/: the keys by which `rosdep` knows Debian's and our packages.
 
-    python3 scripts/rosdep_keys.py --ours         our packages only; after a new one, needs no network
+    python3 scripts/rosdep_keys.py --ours         after a new package of ours; needs no network
     python3 scripts/rosdep_keys.py                and Debian's, from the lists of a mirror (120 MB)
-    python3 scripts/rosdep_keys.py --lists DIR    the same from DIR/RELEASE-{Packages.xz,Contents-*.gz}
+    python3 scripts/rosdep_keys.py --lists DIR    the same from what was fetched to DIR
     python3 scripts/rosdep_keys.py --ours --check exit code 1 if they are not what would be written
 """
 

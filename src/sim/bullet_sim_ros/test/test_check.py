@@ -374,3 +374,21 @@ def test_a_name_of_a_million_letters_is_one_short_line(check):
 def test_an_encoding_that_there_is_not(check):
     code, said = check("a.launch", '<?xml version="1.0" encoding="no-such-code"?><launch/>')
     assert code == 1 and "PROBLEM       launch file: " in said
+
+
+def test_a_workspace_before_it_is_built(tmp_path, capsys):
+    for name, component in (("arm", "moveit_core"), ("wheel", "roscpp")):
+        folder = tmp_path / "src" / name
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(
+            f"<package format='2'><name>{name}</name><version>1.0.0</version><license>BSD</license>"
+            "<description>d</description><maintainer email='a@example.com'>a</maintainer>"
+            "</package>")
+        (folder / "CMakeLists.txt").write_text(
+            f"find_package(catkin REQUIRED COMPONENTS {component})")
+    code = main([str(tmp_path)])
+    said = capsys.readouterr().out
+    assert code == 1
+    assert "PROBLEM       build: it is left out: moveit_core: MoveIt is not in Debian" in said
+    wheel = said[said.index("package wheel"):]
+    assert "works         build" in wheel or "roscpp needs it: make deps WS=" in wheel

@@ -9,8 +9,9 @@ import subprocess
 import sys
 
 NO_NETWORK = re.compile(
-    r"Temporary failure|Could not (resolve|connect)|Unable to connect|Cannot initiate the connection"
-    r"|Network is unreachable|Connection (refused|timed out|failed)|Failed to fetch")
+    r"Temporary failure|Could not (resolve|connect)|Unable to connect"
+    r"|Cannot initiate the connection|Network is unreachable|Connection (refused|timed out|failed)"
+    r"|Failed to fetch")
 STALE = re.compile(r"Unable to locate package (\S+)|404 +Not Found|has no installation candidate")
 OPTIONS = ("-y", "-qq", "--no-install-recommends", "-o", "Dpkg::Use-Pty=0",
            "-o", "DPkg::Lock::Timeout=600", "-o", "Acquire::Retries=1")

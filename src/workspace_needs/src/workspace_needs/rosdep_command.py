@@ -23,8 +23,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         from rosdep2.main import rosdep_main
     except ImportError:
-        print("rosdep: Debian's package python3-rosdep2 is missing: make setup, or as root "
-              "apt-get install python3-rosdep2", file=sys.stderr)
+        print("rosdep: its Python package is missing: make setup", file=sys.stderr)
         return 1
     if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user's own sources, and then rosdep's own ways
         return _code(rosdep_main, args)
@@ -86,7 +85,6 @@ class Watch:
 
     def __init__(self, tables: Tables):
         self._tables = tables
-        self._here = set(rospkg.RosPack().list())
         self._askers: dict[str, set[str]] = {}  # by key the packages that ask for it
         self._not_had: list[str] = []
         self.failure = ""
@@ -139,7 +137,7 @@ class Watch:
     def _other(self, key: str) -> tuple[str, ...]:
         """Packages for a key that rosdep's files have not; none where nobody has it."""
         answer = self._tables.answer(key)
-        if answer.kind not in (OURS, DEBIAN) and key not in self._here:
+        if answer.kind not in (OURS, DEBIAN):
             self._not_had.append(key)
         return answer.packages
 
@@ -149,7 +147,8 @@ class Watch:
         rosdep also looks up what Debian's packages ask for, which apt sees to.
         """
         absent, unknown = [], []
-        for key in sorted(set(self._not_had) & set(self._askers)):
+        here = set(rospkg.RosPack().list())  # by now with the folders of --from-paths
+        for key in sorted(set(self._not_had) & set(self._askers) - here):
             answer = self._tables.answer(key)
             line = f"rosdep: {key} (for {', '.join(sorted(self._askers[key]))}): {answer.why}"
             (absent if answer.kind == ABSENT else unknown).append(line)

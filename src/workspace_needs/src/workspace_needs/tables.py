@@ -105,7 +105,8 @@ def read_absences(path: Path) -> list[Absence]:
         where = f"{path.name}, row {number}"
         for key in row:
             if key not in ("what", "why", "keys", "headers"):
-                raise TableError(f"{where}: unknown key {key!r}; there are what, why, keys, headers")
+                raise TableError(f"{where}: unknown key {key!r}; there are what, why, keys, "
+                                 "headers")
         for key in ("what", "why", "keys"):
             if not row.get(key):
                 raise TableError(f"{where}: {key} is missing")

@@ -50,7 +50,7 @@ class Package:
 
 
 def source_folder(path: Path) -> Path:
-    """The src/ of a workspace, or the folder of packages itself; WorkspaceError if it is neither."""
+    """The src/ of a workspace, or a folder of packages itself; WorkspaceError if neither."""
     path = path.expanduser()
     if not path.is_dir():
         raise WorkspaceError(f"{path}: there is no such folder; give the workspace's, such as "
@@ -103,7 +103,7 @@ def _declared(manifest) -> list[str]:
 def _built_with(path: Path) -> Iterator[Asked]:
     """What find_package(catkin COMPONENTS ...) and find_package(NAME REQUIRED) ask for."""
     text = COMMENT.sub("", _text(path))
-    variables = {name: value for name, value in SET.findall(text)}
+    variables = dict(SET.findall(text))
     for name, rest in FIND_PACKAGE.findall(text):
         words = VARIABLE.sub(lambda found: variables.get(found.group(1), ""), rest).split()
         stops = "REQUIRED" in words

@@ -19,6 +19,7 @@ from bullet_sim_ros.check.findings import (
 )
 from bullet_sim_ros.check.launches import LaunchChecker
 from bullet_sim_ros.check.texts import TextChecker
+from bullet_sim_ros.check.workspaces import is_workspace, workspace_findings
 from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 
@@ -27,6 +28,7 @@ EPILOG = """examples:
   rosrun bullet_sim_ros check my_world.world                 a world
   rosrun bullet_sim_ros check learning_topic                 all robots, worlds, launch files of it
   rosrun bullet_sim_ros check learning_topic 0course.launch  what this launch file starts
+  rosrun bullet_sim_ros check ~/catkin_ws                    which packages of a workspace build
 exit code: 0 if all of it will work, if need be approximated; 1 if something will be missing"""
 INCLUDED = re.compile(r"<(?:xacro:)?include\b[^>]*filename=[\"']([^\"']+)[\"']")
 
@@ -34,10 +36,11 @@ INCLUDED = re.compile(r"<(?:xacro:)?include\b[^>]*filename=[\"']([^\"']+)[\"']")
 def main(argv: list[str] | None = None) -> int:
     """Print the table; 0, or 1 if something will be missing, or 2 if there is nothing to check."""
     parser = argparse.ArgumentParser(
-        prog="check", description="Says what of a robot, world or package will work here.",
+        prog="check",
+        description="Says what of a robot, world, package or workspace will work here.",
         epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch), model folder, "
-                                     "or package")
+                                     "package or workspace")
     parser.add_argument("launch", nargs="?", help="launch file of the package")
     parser.add_argument("arguments", nargs="*", metavar="name:=value", help="for xacro or launch")
     parser.add_argument("--all", action="store_true", help="also list accepted tags without effect")
@@ -79,6 +82,8 @@ class Check:
             return self._file(path.resolve())
         if path.is_dir() and (path / "model.sdf").is_file():
             return self._file((path / "model.sdf").resolve())
+        if is_workspace(path):
+            return workspace_findings(path.resolve())
         try:
             folder = Path(rospkg.RosPack().get_path(what))
         except rospkg.ResourceNotFound:

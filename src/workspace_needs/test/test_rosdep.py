@@ -1,0 +1,103 @@
+"""`rosdep` as it is typed, with an empty home and no network, and apt's answers."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from workspaces import add_package, turtlebot3_style
+
+from workspace_needs import apt
+
+pytest.importorskip("rosdep2", reason="rosdep is not installed: make setup")
+ROSDEP = Path(__file__).resolve().parents[1] / "scripts/rosdep"
+
+
+@pytest.fixture
+def rosdep(tmp_path):
+    """Runs it; exit code, output and errors."""
+    home = tmp_path / "home"
+    home.mkdir()
+    # A proxy at a closed port: whatever asks the network fails.
+    nowhere = dict.fromkeys(("http_proxy", "https_proxy"), "http://127.0.0.1:9")
+    environment = {**os.environ, **nowhere, "HOME": str(home), "ROS_DISTRO": "Debian"}
+    for name in ("ROS_HOME", "ROSDEP_SOURCE_PATH", "ROSDISTRO_INDEX_URL"):
+        environment.pop(name, None)
+
+    def run(*words: str) -> tuple[int, str, str]:
+        done = subprocess.run([sys.executable, str(ROSDEP), *words], capture_output=True, text=True,
+                              env=environment, cwd=tmp_path, timeout=60, check=False)
+        return done.returncode, done.stdout, done.stderr
+    return run
+
+
+def test_without_init_update_and_network(rosdep, tmp_path):
+    assert rosdep("resolve", "roscpp")[1].split()[:2] == ["#apt", "libroscpp-dev"]
+    assert rosdep("resolve", "bullet_sim_ros")[0] == 0
+    code, said, _ = rosdep("update")
+    assert code == 0 and "no network is needed" in said and said.count("\n") == 1
+    assert rosdep("init")[0] == 0
+    code, _, said = rosdep("resolve", "moveit_core")
+    assert code == 1 and "MoveIt is not in Debian" in said
+    assert [path.name for path in (tmp_path / "home/.ros").iterdir()] == ["rosdep-courses"]
+
+
+@pytest.mark.parametrize("distro", [(), ("--rosdistro", "noetic"), ("--rosdistro=melodic",)])
+def test_install_of_a_workspace_like_turtlebot3s(rosdep, tmp_path, distro):
+    turtlebot3_style(tmp_path)
+    code, said, errors = rosdep("install", "--from-paths", "src", "--ignore-src", "-y", "-s",
+                                *distro)
+    assert (code, errors) == (0, "")
+    assert said == "" or said.startswith("#[apt] Installation commands:\n")
+
+
+def test_what_nobody_has_does_not_stop_it_and_a_mistyped_key_is_named(rosdep, tmp_path):
+    add_package(tmp_path / "src", "arm", "moveit_core roscpp")
+    words = ("install", "--from-paths", "src", "--ignore-src", "-y", "-s")
+    code, _, said = rosdep(*words)
+    assert code == 0
+    assert said.startswith("rosdep: moveit_core (for arm): MoveIt is not in Debian")
+    add_package(tmp_path / "src", "wheel", "rospyy")
+    code, _, said = rosdep(*words)
+    assert code == 1 and "rosdep: rospyy (for wheel): nobody has that name; is rospy meant?" in said
+    assert said.count("\n") == 2
+
+
+OFFLINE = "Err:1 http://deb.debian.org\n  Could not connect to 127.0.0.1:9\nE: Failed to fetch x\n"
+UNKNOWN = "E: Unable to locate package libno-dev\n"
+
+
+@pytest.mark.parametrize("answers, words", [
+    ([(100, OFFLINE)], "no network: apt cannot fetch the packages; connect and run this again"),
+    ([(100, UNKNOWN), (0, OFFLINE)], "no network: apt cannot fetch"),
+    ([(100, UNKNOWN), (0, ""), (100, UNKNOWN)], "apt knows no package libno-dev"),
+    ([(100, "E: dpkg was interrupted\n")], "apt-get failed: dpkg was interrupted"),
+])
+def test_apt_says_in_a_line_what_is_wrong(monkeypatch, answers, words):
+    left = iter(answers)
+    monkeypatch.setattr(apt, "_run", lambda command: next(left))
+    with pytest.raises(apt.AptError, match=words):
+        apt.install(["libno-dev"])
+
+
+def test_neither_root_nor_sudo(monkeypatch):
+    monkeypatch.setattr(apt.os, "geteuid", lambda: 1000)
+    monkeypatch.setattr(apt.shutil, "which", lambda name: None)
+    with pytest.raises(apt.AptError, match="you are not root and there is no sudo"):
+        apt.install(["libno-dev"])
+
+
+def test_a_new_home_gets_the_usual_cache_and_an_old_one_keeps_its_own(tmp_path):
+    for home, kept in (("new", None), ("old", "theirs")):
+        usual = tmp_path / home / "rosdep" / "sources.cache"
+        if kept:
+            usual.mkdir(parents=True)
+            (usual / "index").write_text(kept, encoding="utf-8")
+        (tmp_path / home).mkdir(exist_ok=True)
+        environment = {**os.environ, "ROS_HOME": str(tmp_path / home)}
+        environment.pop("ROSDEP_SOURCE_PATH", None)
+        subprocess.run([sys.executable, "-m", "workspace_needs.cache"], env=environment, check=True,
+                       timeout=60)
+        index = (usual / "index").read_text(encoding="utf-8")
+        assert index == kept or (kept is None and "debian.yaml" in index)

@@ -1,0 +1,94 @@
+"""What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
+
+import pytest
+from workspace_needs.catkin_make_command import left_out_options
+from workspace_needs.verdicts import judge
+from workspace_needs.workspace import WorkspaceError, source_folder
+from workspaces import add_package, turtlebot3_style
+
+from workspace_needs import command
+from workspace_needs import verdicts as verdicts_module
+
+
+@pytest.fixture
+def bare(monkeypatch):
+    """A machine on which nothing is installed."""
+    monkeypatch.setattr(verdicts_module, "installed_packages", lambda names: set())
+    monkeypatch.setattr(verdicts_module.rospkg, "RosPack", lambda: type("R", (), {
+        "list": lambda self: []})())
+
+
+def of(source, name):
+    return next(verdict for verdict in judge(source) if verdict.name == name)
+
+
+def test_a_workspace_like_turtlebot3s_needs_what_debian_has(tmp_path, bare):
+    source = turtlebot3_style(tmp_path)
+    bringup, simulation = of(source, "burger_bringup"), of(source, "burger_gazebo")
+    assert bringup.missing["libroscpp-dev"] == "roscpp"
+    assert "libinteractive-markers-dev" in bringup.missing  # only CMakeLists.txt asks for it
+    assert "ros-image-view" in simulation.missing  # only a launch file does
+    assert bringup.builds and simulation.builds and not simulation.left_out
+
+
+def test_what_nobody_has_stops_its_package_and_those_built_on_it(tmp_path, bare):
+    source = tmp_path / "src"
+    add_package(source, "arm", "moveit_core", "moveit_core")
+    add_package(source, "hand", "arm", "roscpp arm")
+    add_package(source, "wheel", "roscpp rospyy", "roscpp")
+    assert of(source, "arm").stops["moveit_core"].startswith("MoveIt is not in Debian")
+    assert of(source, "hand").stops == {"arm": "it is left out itself"}
+    wheel = of(source, "wheel")
+    assert wheel.builds and "is rospy meant?" in wheel.lacks["rospyy"]
+
+
+def test_a_plugin_of_gazebo_in_cpp_is_left_out_alone(tmp_path, bare):
+    folder = add_package(tmp_path / "src", "plugin", "gazebo_ros", "gazebo_ros",
+                         "find_package(gazebo REQUIRED)")
+    (folder / "src" / "p.cpp").write_text("#include <gazebo/gazebo.hh>\n", encoding="utf-8")
+    verdict = of(tmp_path / "src", "plugin")
+    assert verdict.builds and "includes <gazebo/gazebo.hh>" in verdict.left_out["src/p.cpp"]
+
+
+def test_a_debian_name_is_its_own_key_and_a_broken_package_is_said(tmp_path, bare):
+    source = tmp_path / "src"
+    add_package(source, "a", "libxdo-dev no-such-library-dev")
+    (add_package(source, "b") / "package.xml").write_text("<package>", encoding="utf-8")
+    found = of(source, "a")
+    assert "no-such-library-dev" in found.lacks
+    assert "libxdo-dev" in found.missing or "libxdo-dev" in found.lacks  # apt may have no lists
+    assert "package.xml" in of(source, "b").stops
+
+
+@pytest.mark.parametrize("made, words", [
+    ("", "there is no such folder"), ("ws", "it has no src/ with packages"),
+    ("ws/src", "there is no package in it")])
+def test_a_workspace_that_is_none(tmp_path, capsys, made, words):
+    if made:
+        (tmp_path / made).mkdir(parents=True)
+    with pytest.raises(WorkspaceError, match=words):
+        source_folder(tmp_path / "ws")
+    assert command.main([str(tmp_path / "ws")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("deps: ") and words in said and said.count("\n") == 1
+
+
+def test_deps_says_what_it_would_install_and_what_nobody_has(tmp_path, capsys, bare):
+    source = turtlebot3_style(tmp_path)
+    add_package(source, "arm", "moveit_core", "moveit_core")
+    assert command.main(["--simulate", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("4 packages: to be installed: ") and "libtf-dev" in said
+    assert said.count("MoveIt is not in Debian") == 1
+
+
+def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypatch, bare):
+    add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
+    add_package(tmp_path / "src", "wheel", "", "")
+    assert left_out_options(["-C", str(tmp_path)]) == ["-DCATKIN_BLACKLIST_PACKAGES=arm"]
+    assert capsys.readouterr().out.startswith("arm is left out: moveit_core: MoveIt is not")
+    monkeypatch.chdir(tmp_path)
+    assert left_out_options(["-j2"]) == ["-DCATKIN_BLACKLIST_PACKAGES=arm"]
+    assert left_out_options(["-DCATKIN_WHITELIST_PACKAGES=arm"]) == []
+    monkeypatch.chdir(tmp_path / "src")
+    assert left_out_options([]) == []  # catkin_make says that this is no workspace

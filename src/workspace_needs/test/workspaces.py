@@ -1,0 +1,41 @@
+"""Workspaces written for tests, in the style of those that pages have people clone."""
+
+from pathlib import Path
+
+MANIFEST = """<?xml version="1.0"?>
+<package format="{format}"><name>{name}</name><version>1.0.0</version><description>d</description>
+<maintainer email="who@example.com">who</maintainer><license>BSD</license>
+<buildtool_depend>catkin</buildtool_depend>{depends}</package>
+"""
+
+
+def add_package(source: Path, name: str, depends: str = "", components: str = "", cmake: str = "",
+                style: int = 2) -> Path:
+    """A package below `source`; `depends` are its keys, `components` those of CMakeLists.txt."""
+    folder = source / name
+    (folder / "src").mkdir(parents=True)
+    tags = ("build_depend", "run_depend") if style == 1 else ("depend",)
+    declared = "".join(f"<{tag}>{key}</{tag}>" for key in depends.split() for tag in tags)
+    (folder / "package.xml").write_text(
+        MANIFEST.format(name=name, format=style, depends=declared), encoding="utf-8")
+    (folder / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\n"
+        f"find_package(catkin REQUIRED{' COMPONENTS' if components else ''} {components})\n"
+        f"{cmake}\ncatkin_package()\n", encoding="utf-8")
+    return folder
+
+
+def turtlebot3_style(workspace: Path) -> Path:
+    """Messages, a C++ node with tf, a package of launch files; the src/ of it."""
+    source = workspace / "src"
+    add_package(source, "burger_msgs", "std_msgs message_generation message_runtime",
+                "std_msgs message_generation")
+    add_package(source, "burger_bringup", "roscpp rospy tf diagnostic_msgs burger_msgs python-yaml",
+                "roscpp tf  # and what package.xml forgot\n  interactive_markers diagnostic_msgs")
+    simulation = add_package(source, "burger_gazebo", "gazebo_ros burger_bringup", "gazebo_ros",
+                             "find_package(gazebo REQUIRED)", style=1)
+    (simulation / "launch").mkdir()
+    (simulation / "launch" / "a.launch").write_text(
+        '<launch><node pkg="image_view" type="image_view" name="v"/>'
+        '<include file="$(find burger_bringup)/b.launch"/></launch>', encoding="utf-8")
+    return source
