@@ -70,7 +70,8 @@ def version(when: int) -> str:
     told = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty=.changed",
                            "--exclude=*"], capture_output=True, text=True, check=False)
     commit = f".{told.stdout.strip()}" if told.returncode == 0 else ""
-    return f"{manifest.findtext('version')}+{time.strftime('%Y%m%d%H%M', time.gmtime(when))}{commit}"
+    minute = time.strftime("%Y%m%d%H%M", time.gmtime(when))
+    return f"{manifest.findtext('version')}+{minute}{commit}"
 
 
 def control(prefix: str, version: str, architecture: str, size_kib: int, packages: str) -> str:

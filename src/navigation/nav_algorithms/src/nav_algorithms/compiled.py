@@ -48,7 +48,7 @@ class _StampOfAllSources:
 
 
 class BesideSource(_StampOfAllSources, caching.InTreeCacheLocator):
-    """In __pycache__ beside the source, unless that is installed: there even root writes nothing."""
+    """In __pycache__ beside the source of a checkout; where it is installed nobody writes."""
 
     @classmethod
     def from_function(cls, py_func: Callable, py_file: str) -> BesideSource | None:
