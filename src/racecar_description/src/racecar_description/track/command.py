@@ -76,7 +76,7 @@ def main(words: list[str], package: Path) -> int:
 def _make(words: list[str], package: Path) -> int:
     options = parser().parse_args(_signed_values(words))
     name = options.name or "track"
-    out = options.out or (package if _in_checkout(package) else Path("out/tracks"))
+    out = options.out or (Path("out/tracks") if _is_installed(package) else package)
     try:
         name = _name(options)
         if name in TAKEN_NAMES:
@@ -99,9 +99,9 @@ def _make(words: list[str], package: Path) -> int:
     return 0
 
 
-def _in_checkout(package: Path) -> bool:
-    """Whether the package is a source folder; an installed one is not to be written in."""
-    return (package / "CMakeLists.txt").exists()
+def _is_installed(package: Path) -> bool:
+    """Whether it lies in an install space, where nobody's tracks belong."""
+    return package.parent.name == "share" and (package.parent.parent / "setup.sh").exists()
 
 
 def _course(options: argparse.Namespace, name: str) -> tuple[Course, list[str]]:
