@@ -52,6 +52,11 @@ fail_with_log() {
     END {sub(/^ +/, "", told); print cmake ? cmake " " told : last}' "$state/$2.log")
   fail "$1${why:+: $why} (all of it in .setup/$2.log)"
 }
+# The same for a build: the first cause in the build's own lines.
+fail_with_cause() {
+  python3 "$root/scripts/build_cause.py" "$state/build.log" >&2
+  fail "$1 (all of it in .setup/build.log)"
+}
 network_failed() {
   grep -qaE 'Temporary failure|Could not resolve|Failed to fetch|Could not connect|Network is unreachable|Connection (refused|timed out)|NewConnectionError|ConnectTimeout|NameResolution|ProxyError|Max retries' "$state/$1.log"
 }
@@ -161,10 +166,13 @@ build_inputs() {
     find src -name __init__.py | sort)
 }
 build_workspace() {
+  local told
+  told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
   build_inputs >"$state/build-inputs.now"
   if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
     cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi
   step 5 "building the workspace"
+  [ -z "$told" ] || say "$told"
   # Left-overs of an interrupted build, of another folder or of a package that is gone would be taken for good.
   if [ -e "$state/build-unfinished" ] || ! same_packages; then rm -rf "$root/build" "$root/devel"; fi
   touch "$state/build-unfinished"
@@ -172,7 +180,8 @@ build_workspace() {
   # The venv's python, since catkin writes it into the wrappers of installed scripts.
   cd "$root"
   logged build catkin_make --no-color -DPYTHON_EXECUTABLE="$venv/bin/python3" ||
-    fail_with_log "catkin_make failed" build
+    fail_with_cause "catkin_make failed"
+  grep -a ': target .* is left out: ' "$state/build.log" || true
   if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
     PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
       fail_with_log "compiling the inner loops of navigation failed" compile

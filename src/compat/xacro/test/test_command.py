@@ -101,14 +101,3 @@ def test_an_expression_without_end_is_one_line_that_quotes_it(folder):
 def test_wrong_use_is_exit_code_2(folder, words):
     result = run(folder, *words)
     assert result.returncode == 2 and "error" in result.stderr
-
-
-def test_the_hook_puts_the_workspace_first_once(tmp_path):
-    hook = HERE / "env-hooks/99.xacro_command.sh"
-    workspace = tmp_path / "a workspace"
-    script = f'. "{hook}"; . "{hook}"; echo "$PATH"'
-    environment = {"PATH": f"/venv/bin:{workspace}/bin:/usr/bin:/bin",
-                   "CATKIN_ENV_HOOK_WORKSPACE": str(workspace)}
-    result = subprocess.run(["/bin/sh", "-euc", script], env=environment, text=True,
-                            capture_output=True, check=True)
-    assert result.stdout == f"{workspace}/bin:/venv/bin:/usr/bin:/bin\n"

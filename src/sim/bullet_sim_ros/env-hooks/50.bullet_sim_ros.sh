@@ -1,17 +1,21 @@
-# Sourced by devel/setup.*sh: the workspace's Python comes first, and the tutorials' robot is the waffle.
+# Sourced by devel/setup.*sh: the workspace's Python before the system's, and the tutorials' robot.
+# The Python environment stands behind this workspace's bin folder, whose xacro answers
+# $(find package), and so behind those of workspaces on top of it: a learner's programs win.
 _bullet_sim_bin="${CATKIN_ENV_HOOK_WORKSPACE%/*}/.venv/bin"
 if [ -x "$_bullet_sim_bin/python3" ]; then
   _bullet_sim_path=":$PATH:"
-  while :; do
-    case "$_bullet_sim_path" in
-      *":$_bullet_sim_bin:"*)
-        _bullet_sim_path="${_bullet_sim_path%%":$_bullet_sim_bin:"*}:${_bullet_sim_path#*":$_bullet_sim_bin:"}" ;;
-      *) break ;;
-    esac
+  while [ "${_bullet_sim_path#*:"$_bullet_sim_bin":}" != "$_bullet_sim_path" ]; do
+    _bullet_sim_path="${_bullet_sim_path%%:"$_bullet_sim_bin":*}:${_bullet_sim_path#*:"$_bullet_sim_bin":}"
   done
+  _bullet_sim_own=":$CATKIN_ENV_HOOK_WORKSPACE/bin:"
+  case "$_bullet_sim_path" in
+    *"$_bullet_sim_own"*)
+      _bullet_sim_path="${_bullet_sim_path%%"$_bullet_sim_own"*}$_bullet_sim_own$_bullet_sim_bin:${_bullet_sim_path#*"$_bullet_sim_own"}" ;;
+    *) _bullet_sim_path=":$_bullet_sim_bin$_bullet_sim_path" ;;
+  esac
   _bullet_sim_path="${_bullet_sim_path#:}"
-  export PATH="$_bullet_sim_bin:${_bullet_sim_path%:}"
-  unset _bullet_sim_path
+  export PATH="${_bullet_sim_path%:}"
+  unset _bullet_sim_path _bullet_sim_own
 fi
 unset _bullet_sim_bin
 export TURTLEBOT3_MODEL="${TURTLEBOT3_MODEL:-waffle}"

@@ -1,0 +1,92 @@
+"""Finds in a build's output what went wrong first, in catkin's, CMake's or the compiler's own lines.
+
+    build_cause.py LOG        prints at most six lines; nothing where it finds none
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+MOST = 6
+COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: |^\S*ld: |undefined reference to |"
+                      r"^collect2: error")
+CMAKE = re.compile(r"^CMake Error")
+NOT_FOUND = re.compile(r'provided by "([^"]+)"|required component \'([^\']+)\'')
+GENERATOR = re.compile(r"^(ERROR|Error|.*Error\(s\) in |.*RuntimeError: |.*InvalidPackage|"
+                       r"Multiple packages found|The workspace contains|.*SyntaxError: )")
+PYTHON = re.compile(r"^Traceback \(most recent call last\):")
+STOPPED = re.compile(r"No space left on device|virtual memory exhausted|Killed signal|"
+                     r"^c\+\+: fatal error: ")
+
+
+def block(lines: list[str]) -> list[str]:
+    """A CMake error's paragraphs up to its call stack, without blank lines."""
+    kept = [lines[0]]
+    for line in lines[1:]:
+        if line.startswith(("Call Stack", "-- ", "CMake ")) or (line and not line.startswith(" ")):
+            break
+        if line.strip():
+            kept.append(line)
+    return kept
+
+
+def compiler_block(lines: list[str]) -> list[str]:
+    """A compiler's error and the source line that it shows."""
+    kept = [lines[0]]
+    for line in lines[1:3]:
+        if not re.match(r"^ +\d* *\|", line):
+            break
+        kept.append(line)
+    return kept
+
+
+def traceback_block(lines: list[str]) -> list[str]:
+    """The last file that a Python traceback names, and its error."""
+    for position, line in enumerate(lines[1:], 1):
+        if line and not line.startswith(" "):
+            files = [text for text in lines[1:position] if text.lstrip().startswith("File ")]
+            return [*files[-1:], line]
+    return lines[:2]
+
+
+def cause(text: str) -> list[str]:
+    """The lines that tell the first cause in a build's output; none if nothing looks like one."""
+    lines = text.splitlines()
+    for position, line in enumerate(lines):
+        rest = lines[position:]
+        if CMAKE.search(line):
+            return block(rest)[:MOST]
+        if COMPILER.search(line) or STOPPED.search(line):
+            return compiler_block(rest)
+        if PYTHON.search(line):
+            return traceback_block(rest)
+        if GENERATOR.search(line):
+            return [line for line in rest[:MOST] if line.strip()][:3]
+    return []
+
+
+def advice(lines: list[str]) -> str | None:
+    """What to type, where a package is what is missing."""
+    for line in lines:
+        if found := NOT_FOUND.search(line):
+            name = found.group(1) or found.group(2)
+            return (f"{name} is not installed: `make deps` installs what Debian has of the packages "
+                    f"in src/; `source devel/setup.bash; rosrun bullet_sim_ros check src` tells "
+                    "which nobody has")
+    return None
+
+
+def main() -> int:
+    """Always 0: the build has failed already."""
+    lines = cause(Path(sys.argv[1]).read_text(errors="replace"))
+    for line in lines:
+        print(f"  {line}")
+    if hint := advice(lines):
+        print(f"  {hint}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,22 @@
+# Debian's pluginlib is ROS 2's, patched to find the plugins of catkin packages. Its CMake file
+# defines a target and none of catkin's variables.
+if(NOT TARGET pluginlib::pluginlib)
+  set(_pluginlib_own_dir "${pluginlib_DIR}")
+  set(_pluginlib_own_headers "${pluginlib_INCLUDE_DIRS}")
+  set(pluginlib_DIR /usr/share/pluginlib/cmake)
+  include(${pluginlib_DIR}/pluginlibConfig.cmake OPTIONAL RESULT_VARIABLE _pluginlib_found)
+  set(pluginlib_DIR "${_pluginlib_own_dir}")
+  set(pluginlib_INCLUDE_DIRS "${_pluginlib_own_headers}")
+  if(NOT _pluginlib_found)
+    message(FATAL_ERROR "pluginlib: Debian's package pluginlib-dev is not installed")
+  endif()
+endif()
+set(pluginlib_FOUND TRUE)
+set(pluginlib_LIBRARIES pluginlib::pluginlib)
+foreach(_pluginlib_target pluginlib class_loader rcutils rcpputils ament_index_cpp)
+  get_target_property(_pluginlib_folders ${_pluginlib_target}::${_pluginlib_target}
+    INTERFACE_INCLUDE_DIRECTORIES)
+  if(_pluginlib_folders)
+    list(APPEND pluginlib_INCLUDE_DIRS ${_pluginlib_folders})
+  endif()
+endforeach()

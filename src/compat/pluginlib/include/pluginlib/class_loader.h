@@ -1,0 +1,3 @@
+// The name that this header has in ROS 1.
+#pragma once
+#include <pluginlib/class_loader.hpp>

@@ -1,0 +1,177 @@
+# Included by find_package(gazebo), and by each package here whose upstream has C++ headers that
+# are not here. At the end of the CMakeLists.txt that asked, every target that includes such a
+# header is built without its sources, with one line that says so: a workspace with one Gazebo
+# plugin in C++ must still build its other packages. A header that is found (Debian's, or the
+# workspace's own copy) leaves nothing out.
+
+# A learner's cmake_minimum_required may be of 2010; the lines below must not depend on it.
+cmake_policy(PUSH)
+cmake_policy(VERSION 3.19)
+
+# The first folder of the missing headers, and whose they are.
+set(_missing_headers_gazebo gazebo gazebo_plugins gazebo_ros_control ignition sdf)
+set(_missing_headers_ros_control
+  ackermann_steering_controller combined_robot_hw control_toolbox controller_interface
+  controller_manager diff_drive_controller effort_controllers force_torque_sensor_controller
+  forward_command_controller four_wheel_steering_controller gripper_action_controller
+  hardware_interface imu_sensor_controller joint_limits_interface joint_state_controller
+  joint_trajectory_controller position_controllers realtime_tools transmission_interface
+  velocity_controllers)
+set(_missing_headers_navigation
+  amcl base_local_planner carrot_planner clear_costmap_recovery costmap_2d dwa_local_planner
+  global_planner gmapping map_server move_base move_slow_and_clear nav_core navfn rotate_recovery
+  voxel_grid)
+
+# Sets `out` to the reason why a header that was not found is missing, or to nothing.
+function(_missing_headers_reason header out)
+  string(REGEX REPLACE "/.*" "" folder "${header}")
+  set(reason "")
+  if(header MATCHES "/")
+    if(folder IN_LIST _missing_headers_gazebo)
+      set(reason "the C++ API of Gazebo")
+    elseif(folder IN_LIST _missing_headers_ros_control)
+      set(reason "the C++ API of ros_control")
+    elseif(folder IN_LIST _missing_headers_navigation)
+      set(reason "the C++ API of navigation")
+    endif()
+  endif()
+  set(${out} "${reason}" PARENT_SCOPE)
+endfunction()
+
+# Sets `out` to the file that an include directive of `file` leads to, or to nothing.
+function(_missing_headers_find header file folders out)
+  get_filename_component(own "${file}" DIRECTORY)
+  set(${out} "" PARENT_SCOPE)
+  foreach(folder IN LISTS own folders ITEMS /usr/include /usr/local/include)
+    if(EXISTS "${folder}/${header}")
+      set(${out} "${folder}/${header}" PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
+# Sets `out` to "FILE includes <HEADER>, and WHAT is not here" for the first missing header that
+# the target's sources, and headers of its own project, lead to; to nothing if there is none.
+function(_missing_headers_of target out)
+  set(${out} "" PARENT_SCOPE)
+  get_target_property(base ${target} SOURCE_DIR)
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(folders ${target} INCLUDE_DIRECTORIES)
+  string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>" "\\1" folders "${folders}")
+  set(waiting "")
+  foreach(source IN LISTS sources)
+    get_filename_component(source "${source}" ABSOLUTE BASE_DIR "${base}")
+    list(APPEND waiting "${source}")
+  endforeach()
+  set(seen "")
+  while(waiting)
+    list(POP_FRONT waiting file)
+    if(file IN_LIST seen OR NOT EXISTS "${file}" OR IS_DIRECTORY "${file}")
+      continue()
+    endif()
+    list(APPEND seen "${file}")
+    file(STRINGS "${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"][^>\"]+[>\"]")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"]+)[>\"].*" "\\1" header "${line}")
+      _missing_headers_find("${header}" "${file}" "${folders}" found)
+      if(found)
+        string(FIND "${found}" "${PROJECT_SOURCE_DIR}/" position)
+        if(position EQUAL 0)
+          list(APPEND waiting "${found}")
+        endif()
+        continue()
+      endif()
+      _missing_headers_reason("${header}" reason)
+      if(reason)
+        file(RELATIVE_PATH shown "${PROJECT_SOURCE_DIR}" "${file}")
+        set(${out} "${shown} includes <${header}>, and ${reason} is not here" PARENT_SCOPE)
+        return()
+      endif()
+    endforeach()
+  endwhile()
+endfunction()
+
+# The target keeps its name, so that install() and dependencies on it stay valid: a library
+# becomes an empty one, a program one that says why it is not there.
+function(_missing_headers_leave_out target reason)
+  message(NOTICE "${PROJECT_NAME}: target ${target} is left out: ${reason}. \
+What the simulator has in its place: rosrun bullet_sim_ros check ${PROJECT_NAME}")
+  set(stub "${CMAKE_CURRENT_BINARY_DIR}/missing_headers/${target}.cpp")
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE")
+    set(text "#include <cstdio>
+int main() {
+  std::fputs(R\"line(${target} was left out when ${PROJECT_NAME} was built: ${reason}.
+)line\", stderr);
+  return 1;
+}
+")
+  else()
+    set(text "// ${target} is left out: ${reason}.\n")
+  endif()
+  file(CONFIGURE OUTPUT "${stub}" CONTENT "${text}" @ONLY)
+  set_target_properties(${target} PROPERTIES
+    SOURCES "${stub}" LINK_LIBRARIES "" LINKER_LANGUAGE CXX COMPILE_OPTIONS "" COMPILE_FLAGS ""
+    LEFT_OUT_FOR_MISSING_HEADERS TRUE)
+endfunction()
+
+# Sets `out` to the targets of a folder and of the folders below it that compile something.
+function(_missing_headers_targets folder out)
+  get_property(found DIRECTORY "${folder}" PROPERTY BUILDSYSTEM_TARGETS)
+  set(all "")
+  foreach(target IN LISTS found)
+    get_target_property(type ${target} TYPE)
+    if(type MATCHES "^(EXECUTABLE|(SHARED|STATIC|MODULE|OBJECT)_LIBRARY)$")
+      list(APPEND all ${target})
+    endif()
+  endforeach()
+  get_property(below DIRECTORY "${folder}" PROPERTY SUBDIRECTORIES)
+  foreach(child IN LISTS below)
+    _missing_headers_targets("${child}" more)
+    list(APPEND all ${more})
+  endforeach()
+  set(${out} "${all}" PARENT_SCOPE)
+endfunction()
+
+# Sets `out` to the reason why a target that links to others cannot be there, or to nothing.
+function(_missing_headers_linked target out)
+  set(${out} "" PARENT_SCOPE)
+  get_target_property(linked ${target} LINK_LIBRARIES)
+  foreach(library IN LISTS linked)
+    if(TARGET "${library}")
+      get_target_property(left_out "${library}" LEFT_OUT_FOR_MISSING_HEADERS)
+      if(left_out)
+        set(${out} "it links to ${library}, which is left out" PARENT_SCOPE)
+        return()
+      endif()
+    endif()
+  endforeach()
+endfunction()
+
+function(_missing_headers_examine)
+  _missing_headers_targets("${CMAKE_CURRENT_SOURCE_DIR}" waiting)
+  foreach(target IN LISTS waiting)
+    _missing_headers_of(${target} reason)
+    if(reason)
+      _missing_headers_leave_out(${target} "${reason}")
+    endif()
+  endforeach()
+  set(again TRUE)
+  while(again)
+    set(again FALSE)
+    foreach(target IN LISTS waiting)
+      _missing_headers_linked(${target} reason)
+      if(reason)
+        _missing_headers_leave_out(${target} "${reason}")
+        set(again TRUE)
+      endif()
+    endforeach()
+  endwhile()
+endfunction()
+
+get_property(_missing_headers_asked DIRECTORY PROPERTY MISSING_HEADERS_ASKED)
+if(NOT _missing_headers_asked)
+  set_property(DIRECTORY PROPERTY MISSING_HEADERS_ASKED TRUE)
+  cmake_language(DEFER CALL _missing_headers_examine)
+endif()
+cmake_policy(POP)

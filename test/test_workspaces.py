@@ -1,0 +1,210 @@
+"""A learner's workspace on top of ours: it builds with each tool, runs, and wins over ours.
+
+`workspaces/shapes` holds a package of each shape that learners bring, `workspaces/tutorial_a`
+packages with the names, dependencies and kinds of targets of those that tutorial A clones.
+"""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.processes
+
+ROOT = Path(__file__).resolve().parent.parent
+WORKSPACES = ROOT / "test/workspaces"
+LIMIT = 60.0  # s, wall, for anything that a running node must show
+BUILDS = {
+    "catkin_make": "catkin_make --no-color -DCATKIN_ENABLE_TESTING=OFF",
+    "catkin build": "catkin build --no-status --no-color --no-notify "
+                    "--cmake-args -DCATKIN_ENABLE_TESTING=OFF",
+}
+LEFT_OUT = {
+    "shape_controller": ["includes <controller_interface/controller.h>, and the C++ API of "
+                         "ros_control is not here"],
+    "shape_planner": ["includes <nav_core/base_global_planner.h>, and the C++ API of navigation "
+                      "is not here"],
+    "shape_plugin": ["include/shape_gazebo/plugin.h includes <gazebo/gazebo.hh>, and the C++ API "
+                     "of Gazebo is not here", "rosrun bullet_sim_ros check shape_gazebo"],
+    "uses_plugin": ["it links to shape_plugin, which is left out"],
+    "shape_old_plugin": ["includes <gazebo_plugins/gazebo_ros_utils.h>"],
+}
+PROGRAMS = [
+    ("rosrun shape_python plain.py", "42.0 4."),
+    ("rosrun shape_python plain3.py", "42.0 4."),
+    ("rosrun shape_python installed.py", "42.0 4."),
+    ("rosrun shape_library_user count_links", "1"),
+    ("rosrun shape_plugins load_shape", "4 sides"),
+    ("rosrun shape_gazebo beside", "beside the plugin 1.0"),
+    ("rosrun shape_diagnostics diagnose", "0.500"),
+    ("rosrun turtlebot3_teleop whose", "the learner"),
+    ("roslaunch --files turtlebot3_teleop whose.launch",
+     "/src/turtlebot3_teleop/launch/whose.launch"),
+    ("rospack find turtlebot3_gazebo", "/src/turtlebot3_simulations/turtlebot3_gazebo"),
+    ("rospack find learning_topic", "/src/learning_topic"),
+    ("rospack find racecar_description", str(ROOT / "src/racecar_description")),
+    ("python -c 'import turtlebot3_teleop as t; print(t.__file__)'", "/devel/lib/python3/"),
+    ("rosmsg show shape_msgs/Reading", "float64 value"),
+    ("rosmsg show turtlebot3_msgs/VersionInfo", "string firmware"),
+    ("xacro $(rospack find shape_description)/urdf/box.urdf.xacro", '<box size="0.2 0.2 0.2"'),
+]
+REFUSED = [
+    ("rosrun shape_gazebo uses_plugin", "uses_plugin was left out when shape_gazebo was built"),
+    ("rosrun shape_python old.py", "line 2: Missing parentheses"),
+]
+
+
+def environment(port: int | None = None) -> dict[str, str]:
+    """What a new terminal has, and a master of the test's own."""
+    kept = {name: os.environ[name] for name in ("HOME", "LANG", "ROS_LOG_DIR") if name in os.environ}
+    kept |= {"PATH": "/usr/local/bin:/usr/bin:/bin", "TERM": "dumb", "ROS_HOSTNAME": "localhost"}
+    for name in os.environ:
+        if name.startswith("RUN_TESTS"):  # by these the test's processes are known
+            kept[name] = os.environ[name]
+    return kept | ({"ROS_MASTER_URI": f"http://localhost:{port}"} if port else {})
+
+
+def in_terminal(command: str, setup: Path, port: int | None = None,
+                limit: float = LIMIT) -> subprocess.CompletedProcess:
+    """Runs a line in a terminal that has sourced a setup.bash; both streams in stdout."""
+    return subprocess.run(["bash", "-c", f". {setup}\n{command}"], env=environment(port),
+                          text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          stdin=subprocess.DEVNULL, timeout=limit)
+
+
+@pytest.fixture(scope="module", params=BUILDS)
+def built(request, tmp_path_factory) -> tuple[Path, str]:
+    """A workspace with all packages, built by one tool; its folder and what the tool printed."""
+    folder = tmp_path_factory.mktemp("catkin_ws")
+    for kind in ("shapes", "tutorial_a"):
+        shutil.copytree(WORKSPACES / kind, folder / "src", dirs_exist_ok=True)
+    ours = ROOT / "devel/setup.bash"
+    made = in_terminal(f"cd {folder}/src && catkin_create_pkg learning_topic rospy std_msgs "
+                       "sensor_msgs cv_bridge", ours)
+    assert made.returncode == 0, made.stdout
+    scripts = folder / "src/learning_topic/scripts"
+    scripts.mkdir()
+    shutil.copy(ROOT / "src/learning_topic/scripts/05follower_proporation.py", scripts)
+    done = in_terminal(f"cd {folder} && {BUILDS[request.param]}", ours, limit=280)
+    assert done.returncode == 0, done.stdout[-4000:]
+    return folder, done.stdout
+
+
+@pytest.mark.parametrize("target", LEFT_OUT)
+def test_one_line_for_each_target_that_cannot_be_built(built, target):
+    lines = [line for line in built[1].splitlines() if f": target {target} is left out: " in line]
+    assert len(lines) == 1
+    for said in LEFT_OUT[target]:
+        assert said in lines[0]
+
+
+def test_nothing_else_is_left_out(built):
+    assert built[1].count(" is left out: ") == len(LEFT_OUT)
+
+
+@pytest.mark.parametrize(("command", "said"), PROGRAMS)
+def test_a_program_runs(built, command, said):
+    done = in_terminal(command, built[0] / "devel/setup.bash")
+    assert done.returncode == 0 and said in done.stdout, done.stdout
+
+
+@pytest.mark.parametrize(("command", "said"), REFUSED)
+def test_what_cannot_run_says_why_in_one_line(built, command, said):
+    done = in_terminal(command, built[0] / "devel/setup.bash")
+    assert done.returncode != 0 and said in done.stdout, done.stdout
+    assert done.stdout.count("\n") == 1
+
+
+def test_the_learners_folders_come_first_and_once(built):
+    twice = f". {built[0]}/devel/setup.bash; echo $CMAKE_PREFIX_PATH; echo $PATH"
+    done = in_terminal(twice, built[0] / "devel/setup.bash")
+    prefixes, path = done.stdout.splitlines()
+    assert prefixes == f"{built[0]}/devel:{ROOT}/devel"
+    assert path.split(":").count(f"{ROOT}/.venv/bin") == 1
+
+
+@pytest.mark.parametrize("shell", ["sh", "bash", "zsh"])
+def test_each_shell_can_source_it(built, shell):
+    if not shutil.which(shell):
+        pytest.skip(f"{shell} is not installed")
+    line = (f"cd {built[0]}/devel && . ./setup.{shell} && rospack find learning_topic && "
+            "rosrun shape_gazebo beside")
+    done = subprocess.run([shell, "-c", line], env=environment(), text=True, timeout=LIMIT,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert "beside the plugin" in done.stdout, done.stdout
+
+
+def test_the_workspace_installs(built):
+    """Left-out targets have install rules, too."""
+    if not (built[0] / "build/Makefile").exists():
+        pytest.skip("catkin build installs with an option of its own")
+    done = in_terminal(f"cd {built[0]} && catkin_make --no-color install", ROOT / "devel/setup.bash",
+                       limit=200)
+    assert done.returncode == 0, done.stdout[-3000:]
+    done = in_terminal("rosrun shape_gazebo beside; roslaunch --files shape_gazebo world.launch",
+                       built[0] / "install/setup.bash")
+    assert "beside the plugin" in done.stdout
+    assert "/install/share/shape_gazebo/launch/world.launch" in done.stdout
+
+
+def free_port() -> int:
+    with socket.socket() as found:
+        found.bind(("localhost", 0))
+        return found.getsockname()[1]
+
+
+@pytest.fixture(scope="module")
+def running(built, tmp_path_factory):
+    """Everything of workspaces/running.launch, with a master of its own."""
+    port = free_port()
+    log = (tmp_path_factory.mktemp("running") / "roslaunch.log").open("w+")
+    process = subprocess.Popen(
+        ["bash", "-c", f". {built[0]}/devel/setup.bash\n"
+         f"exec roslaunch -p {port} {WORKSPACES}/running.launch"],
+        env=environment(port), stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+        start_new_session=True)
+
+    def ask(command: str, wanted: str) -> None:
+        """Types a line until its output has what is wanted."""
+        until = time.monotonic() + LIMIT
+        while True:
+            done = in_terminal(f"timeout 20 {command}", built[0] / "devel/setup.bash", port)
+            if wanted in done.stdout:
+                return
+            log.seek(0)
+            assert time.monotonic() < until, f"{command}: {done.stdout}\n{log.read()[-3000:]}"
+            assert process.poll() is None, log.read()[-3000:]
+
+    yield ask
+    process.send_signal(signal.SIGINT)
+    process.wait(LIMIT)
+    log.close()
+
+
+@pytest.mark.parametrize(("command", "wanted"), [
+    ("rostopic echo -n1 /heard_cpp", "data: 42.0"),
+    ("rostopic echo -n1 /heard_nodelet", "data: 42.0"),
+    ("rosservice call /scale 4", "scaled: 8.0"),
+    ("rosrun dynamic_reconfigure dynparam get /shape_speed", "'speed': 0.5"),
+    ("rosrun dynamic_reconfigure dynparam get /shape_speed_cpp", "'speed': 0.5"),
+    ("rostopic echo -n1 /tf", "child_frame_id:"),
+    ("rosnode list", "/turtlebot3_marker_server"),
+    ("rosservice call /gazebo/get_world_properties", "shape_course"),
+    ("rostopic echo -n1 /camera/rgb/image_raw/width", "64"),
+])
+def test_nodes_of_the_workspace_work_together(running, command, wanted):
+    running(command, wanted)
+
+
+def test_the_tutorials_robot_drives_and_its_script_runs(running):
+    running("rostopic echo -n1 /odom/pose/pose/position/x", "0.0")
+    running("bash -c 'timeout 5 roslaunch turtlebot3_gazebo turtlebot3_simulation.launch; "
+            "rosservice call /gazebo/get_model_state turtlebot3_waffle world | grep -A1 position'",
+            "x: 0.")
+    running("bash -c 'timeout 10 rosrun learning_topic 05follower_proporation.py & "
+            "timeout 8 rostopic echo -n1 /cmd_vel; wait'", "angular")

@@ -1,0 +1,2 @@
+#include <controller_interface/controller.h>
+#include <hardware_interface/joint_command_interface.h>

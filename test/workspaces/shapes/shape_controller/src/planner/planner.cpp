@@ -1,0 +1,1 @@
+#include <nav_core/base_global_planner.h>

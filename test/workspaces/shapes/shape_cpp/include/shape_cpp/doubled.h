@@ -1,0 +1,2 @@
+#pragma once
+inline double doubled(double value) { return 2.0 * value; }

@@ -1,0 +1,1 @@
+#include <gazebo_plugins/gazebo_ros_utils.h>

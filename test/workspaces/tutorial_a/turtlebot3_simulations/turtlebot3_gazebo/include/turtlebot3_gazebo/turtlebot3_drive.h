@@ -1,0 +1,2 @@
+#pragma once
+constexpr double kLinear = 0.3;
