@@ -32,6 +32,11 @@ case "$1" in remove|deconfigure)
   find {prefix} -name __pycache__ -type d -prune -exec rm -rf {{}} + ;;
 esac
 """
+# dpkg takes /opt away with the last package in it, which no machine was installed without.
+POSTRM = """#!/bin/sh
+set -e
+mkdir -p /opt
+"""
 
 
 def sections(text: str) -> dict[str, list[str]]:
@@ -123,8 +128,9 @@ def main() -> int:
     (about / "control").write_text(control(prefix, number, architecture, size, packages),
                                    encoding="utf-8")
     (about / "md5sums").write_text(checksums(stage), encoding="utf-8")
-    (about / "prerm").write_text(PRERM.format(prefix=prefix), encoding="utf-8")
-    (about / "prerm").chmod(0o755)
+    for name, text in (("prerm", PRERM.format(prefix=prefix)), ("postrm", POSTRM)):
+        (about / name).write_text(text, encoding="utf-8")
+        (about / name).chmod(0o755)
     settle_times(stage, when)
     print(f"{NAME}_{number}_{architecture}.deb")
     return 0
