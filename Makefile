@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deps lint clean
+.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deps deb lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -72,6 +72,9 @@ build: ## build the workspace again
 
 deps: ## install what Debian has of what a workspace asks for [WS=~/catkin_ws]
 	@scripts/deps.sh $(if $(WS),"$(WS)")
+
+deb: ## make one Debian package of the whole, into out/
+	@scripts/deb.sh
 
 lint: ## check the style of the Python code
 	@scripts/lint.sh

@@ -7,6 +7,7 @@ import yaml
 
 from evaluation.course_run.course_file import load_course
 from evaluation.course_run.failure import RunError
+from evaluation.program import NOT_RUN, run_program
 
 COURSES = Path(__file__).parent.parent / "courses"
 
@@ -24,6 +25,21 @@ def test_our_own_courses_are_whole(name):
     course = load_course(name)
     assert course.track_path().is_file()
     assert course.camera in course.sensors
+
+
+@pytest.mark.parametrize("name", ["course", "race", "lane", "lane_empty"])
+def test_followers_are_found_wherever_the_package_is(name):
+    course = load_course(name)
+    assert course.follower in {path.name for path in course.follower_files()}
+
+
+def test_a_folder_that_is_not_ours_is_one_line(capsys):
+    def write() -> int:
+        raise PermissionError(13, "Permission denied", "/out")
+
+    assert run_program("course_run", write) == NOT_RUN
+    assert capsys.readouterr().err == (
+        "course_run: you may not write /out: cd to a folder of yours, or give one with --out\n")
 
 
 @pytest.mark.parametrize("values, said", [

@@ -150,6 +150,18 @@ def test_one_seed_gives_the_same_bytes_and_another_gives_others(make_track, tmp_
     assert a["tracks/same.yaml"] != c["tracks/same.yaml"]
 
 
+def test_an_installed_package_is_left_alone(tmp_path, monkeypatch, capsys):
+    package = tmp_path / "courses" / "share" / "racecar_description"
+    package.mkdir(parents=True)
+    (tmp_path / "courses" / "setup.sh").touch()
+    (tmp_path / "home").mkdir()
+    monkeypatch.chdir(tmp_path / "home")
+    assert main(["--random", "7"], package) == 0
+    assert not list(package.iterdir())
+    assert (tmp_path / "home/out/tracks/worlds/random_7.world").is_file()
+    assert "GAZEBO_MODEL_PATH=" in capsys.readouterr().out
+
+
 def test_other_folders_are_told_to_gazebo(make_track, tmp_path):
     code, output, _ = make_track("--random", 1, "--out", tmp_path / "else where")
     assert code == 0

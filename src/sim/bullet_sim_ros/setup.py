@@ -1,10 +1,6 @@
 """Tells catkin where the Python package is."""
 
 from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import setup
+from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(
-    packages=["bullet_sim_ros", "bullet_sim_ros.cameras", "bullet_sim_ros.plugins",
-              "bullet_sim_ros.services"],
-    package_dir={"": "src"},
-))
+setup(**generate_distutils_setup(packages=find_packages("src"), package_dir={"": "src"}))

@@ -18,6 +18,10 @@ def run_program(name: str, work: Callable[[], int]) -> int:
     try:
         with interruptible():
             return work()
+    except PermissionError as refused:
+        complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
+                                "or give one with --out"))
+        return NOT_RUN
     except (RunError, TrackError, OSError) as failure:
         complain(name, failure)
         return NOT_RUN
@@ -38,4 +42,5 @@ def chart_writer(module: str) -> Callable:
     try:
         return importlib.import_module(module).write_chart
     except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench") from error
+        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench, "
+                       "or apt install python3-matplotlib") from error

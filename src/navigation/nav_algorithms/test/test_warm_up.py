@@ -1,5 +1,11 @@
 """Machine code that was kept is stale when a file that it was made from has changed."""
 
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 from nav_algorithms import compiled
 
 
@@ -31,3 +37,22 @@ def test_the_stamp_changes_with_what_is_called(tmp_path, monkeypatch):
     callee.write_text("one = 2\n")
     assert stamp() != before
     compiled._text.cache_clear()
+
+
+def test_an_installed_package_keeps_its_machine_code_with_the_user(tmp_path):
+    modules, home = tmp_path / "lib/python3/dist-packages", tmp_path / "home"
+    (modules / "nav_algorithms").mkdir(parents=True)
+    for name in ("__init__.py", "compiled.py"):
+        shutil.copy(Path(compiled.__file__).parent / name, modules / "nav_algorithms")
+    (modules / "nav_algorithms/one.py").write_text(
+        "from nav_algorithms.compiled import compiled\n"
+        "@compiled('i8(i8)')\ndef one(x):\n    return x + 1\n")
+    environment = {"HOME": str(home), "PYTHONPATH": str(modules), "PATH": os.environ["PATH"],
+                   "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, "-c", "from nav_algorithms.one import one; print(one(1))"]
+    first, second = (subprocess.run(command, env=environment, capture_output=True, text=True,
+                                    timeout=120, check=True) for _ in range(2))
+    assert first.stdout == second.stdout == "2\n"
+    assert first.stderr.count("compiling the inner loops") == 1 and not second.stderr
+    assert str(home / ".cache") in first.stderr
+    assert list(home.rglob("*.nbi")) and not list(modules.rglob("*.nbi"))

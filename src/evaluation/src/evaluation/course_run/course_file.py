@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import os
 import re
@@ -21,7 +22,8 @@ class Course:
 
     launch: tuple[str, str]  # package and launch file, which has an argument `follower`
     follower_package: str
-    followers: str  # files of that package among which those that drive are, with * for any text
+    followers: str  # files among which those that drive are, with * for any text: below the
+    # package's folder, or python://PACKAGE/... for modules
     follower: str  # the script that drives unless another is asked for
     drives_by: str  # a word that stands in files that drive
     robot: str  # model name in the simulator; {VARIABLE:default} is taken from the environment
@@ -54,6 +56,14 @@ class Course:
         within = f"{self.controllers}/"
         return {topic.removeprefix(within).partition("/")[0] for topic in self.lockstep
                 if self.controllers and topic.startswith(within)}
+
+    def follower_files(self) -> list[Path]:
+        """All files that `followers` fits."""
+        package, _, rest = self.followers.removeprefix("python://").partition("/")
+        if not self.followers.startswith("python://"):
+            return list(find_package(self.follower_package).glob(self.followers))
+        folders = importlib.import_module(package).__path__
+        return [path for folder in folders for path in Path(folder).glob(rest)]
 
     def track_path(self) -> Path:
         """Where the track file is."""

@@ -153,7 +153,7 @@ def _prepare(options: Options) -> CourseRun:
         for name in RESULTS:  # what is there afterwards is of this run
             (options.out / name).unlink(missing_ok=True)
         return CourseRun(options, track_file, Progress())
-    except (TrackError, OSError) as error:
+    except TrackError as error:
         raise RunError(str(error)) from error
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evaluation.command_line import Parser
-from evaluation.course_run.course_file import Course, find_package, load_course
+from evaluation.course_run.course_file import Course, load_course
 from evaluation.course_run.failure import RunError
 
 USUAL_COURSE = "course"
@@ -193,8 +193,7 @@ def _launch_args(
 
 
 def _check_follower(course: Course, name: str) -> None:
-    found = find_package(course.follower_package).glob(course.followers)
-    known = sorted(path.name for path in found if _drives(course, path))
+    known = sorted({path.name for path in course.follower_files() if _drives(course, path)})
     if name not in known:
         listed = ", ".join(known) or "none"
         raise RunError(f"no follower {name!r} that drives (FOLLOWER=); there are: {listed}")

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import lane_keeping.methods
+
 from evaluation.command_line import Parser, whole
-from evaluation.course_run.course_file import find_package
 from evaluation.course_run.failure import RunError
 
 
@@ -63,8 +64,8 @@ def parse_bench(arguments: list[str]) -> BenchOptions:
 
 def known_methods() -> list[str]:
     """Names of all methods; sliding_windows comes first."""
-    folder = find_package("lane_keeping") / "src" / "lane_keeping" / "methods"
-    names = sorted(path.stem for path in folder.glob("*.py")
+    folders = (Path(folder) for folder in lane_keeping.methods.__path__)
+    names = sorted(path.stem for folder in folders for path in folder.glob("*.py")
                    if "def plan" in path.read_text(encoding="utf-8"))
     return sorted(names, key=lambda name: name != "sliding_windows")
 

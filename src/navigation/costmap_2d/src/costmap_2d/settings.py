@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import rospkg
 import rospy
 import yaml
 
 from nav_nodes.parameters import Parameter, ParameterError, load_table
 
-PARAMS = Path(__file__).resolve().parents[2] / "params"
+PARAMS = Path(rospkg.RosPack().get_path("costmap_2d")) / "params"
 
 STATIC, OBSTACLE, VOXEL, INFLATION = "StaticLayer", "ObstacleLayer", "VoxelLayer", "InflationLayer"
 TABLES = {STATIC: ("static_layer",), OBSTACLE: ("obstacle_layer",),

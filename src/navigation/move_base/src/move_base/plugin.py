@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import rospkg
 import rospy
 
 from nav_nodes.parameters import (
@@ -18,7 +19,7 @@ from nav_nodes.parameters import (
     serve_changes,
 )
 
-PARAMS = Path(__file__).resolve().parents[2] / "params"
+PARAMS = Path(rospkg.RosPack().get_path("move_base")) / "params"
 
 
 @cache

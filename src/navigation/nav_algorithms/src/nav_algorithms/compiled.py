@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -12,11 +13,12 @@ import numba
 from numba.core import caching
 
 PACKAGE = Path(__file__).parent
+INSTALLED = "dist-packages"  # the folder of Python modules in an install space
 OURS = re.compile(rf"^from {PACKAGE.name}(?:\.([\w.]+))? import (\([^)]*\)|.*)", re.MULTILINE)
 
 
 def compiled(signature: str) -> Callable[[Callable], Callable]:
-    """Decorator: machine code for one signature, at import, kept beside the source.
+    """Decorator: machine code for one signature, at import, kept beside the source of a checkout.
 
     `signature` is Numba's, such as "f8(f8[:,::1], i8)". The first import compiles, every later one
     reads what was kept: a node that compiled when its first scan came would miss many. The lock is
@@ -46,11 +48,29 @@ class _StampOfAllSources:
 
 
 class BesideSource(_StampOfAllSources, caching.InTreeCacheLocator):
-    """In __pycache__ beside the source."""
+    """In __pycache__ beside the source of a checkout; where it is installed nobody writes."""
+
+    @classmethod
+    def from_function(cls, py_func: Callable, py_file: str) -> BesideSource | None:
+        """None where it cannot be kept there."""
+        return None if INSTALLED in PACKAGE.parts else super().from_function(py_func, py_file)
 
 
 class InHome(_StampOfAllSources, caching.UserWideCacheLocator):
     """In the user's cache folder, where the source's folder is not ours to write in."""
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder; what is compiled then for the first time takes a while, so say so."""
+        folder = Path(self.get_cache_path())
+        if not folder.exists():
+            _say_once(folder.parent)
+        super().ensure_cache_path()
+
+
+@cache
+def _say_once(folder: Path) -> None:
+    print(f"{PACKAGE.name}: compiling the inner loops for this processor, once: about half a "
+          f"minute (kept in {folder})", file=sys.stderr, flush=True)
 
 
 def _sources(file: Path) -> set[Path]:

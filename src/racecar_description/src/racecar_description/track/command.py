@@ -56,7 +56,8 @@ def parser() -> argparse.ArgumentParser:
     add("--start", type=_point, metavar="X,Y", help="m, where laps begin, by the preview's rulers")
     add("--min-radius", type=_length, default=1.2, metavar="M", help="of random bends (1.2)")
     add("--name", help="of model, world and map (the file's)")
-    add("--out", type=Path, metavar="DIR", help="where to write (the package racecar_description)")
+    add("--out", type=Path, metavar="DIR", help="where to write (the package racecar_description; "
+        "out/tracks where that is installed)")
     return result
 
 
@@ -75,7 +76,7 @@ def main(words: list[str], package: Path) -> int:
 def _make(words: list[str], package: Path) -> int:
     options = parser().parse_args(_signed_values(words))
     name = options.name or "track"
-    out = options.out or package
+    out = options.out or (Path("out/tracks") if _is_installed(package) else package)
     try:
         name = _name(options)
         if name in TAKEN_NAMES:
@@ -96,6 +97,11 @@ def _make(words: list[str], package: Path) -> int:
         return _fail(f"{error.filename}: {error.strerror}; write elsewhere with --out DIR")
     print("\n".join(_summary(course, remarks, out, package)))
     return 0
+
+
+def _is_installed(package: Path) -> bool:
+    """Whether it lies in an install space, where nobody's tracks belong."""
+    return package.parent.name == "share" and (package.parent.parent / "setup.sh").exists()
 
 
 def _course(options: argparse.Namespace, name: str) -> tuple[Course, list[str]]:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import rospkg
 import yaml
 
-FOLDER = Path(__file__).resolve().parents[2] / "interface"
 WORKS, APPROXIMATED, ACCEPTED, ABSENT = STATUSES = ("works", "approximated", "accepted", "absent")
 KINDS = ("sensor", "actuator", "world", "visual")  # what a plugin is for
 
@@ -56,8 +56,12 @@ class Section:
     rows: tuple[Row, ...]
 
 
-def read_interface(folder: Path = FOLDER) -> list[Section]:
-    """All sections, by file name; InterfaceError names what is wrong."""
+def read_interface(folder: Path | None = None) -> list[Section]:
+    """All sections, by file name; InterfaceError names what is wrong.
+
+    `folder`: where the files are, if not in the package's interface/.
+    """
+    folder = folder or Path(rospkg.RosPack().get_path("bullet_sim_ros")) / "interface"
     sections = [_read_section(path) for path in sorted(folder.glob("*.yaml"))]
     seen: dict[str, str] = {}
     for section in sections:
