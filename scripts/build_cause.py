@@ -1,4 +1,4 @@
-"""Finds in a build's output what went wrong first, in catkin's, CMake's or the compiler's own lines.
+"""Finds in a build's output what went wrong first, in the build tools' own lines.
 
     build_cause.py LOG        prints at most six lines; nothing where it finds none
 """
@@ -72,9 +72,7 @@ def advice(lines: list[str]) -> str | None:
     for line in lines:
         if found := NOT_FOUND.search(line):
             name = found.group(1) or found.group(2)
-            return (f"{name} is not installed: `make deps` installs what Debian has of the packages "
-                    f"in src/; `source devel/setup.bash; rosrun bullet_sim_ros check src` tells "
-                    "which nobody has")
+            return f"{name} is not installed: `make deps` installs it, or says why nobody has it"
     return None
 
 

@@ -5,7 +5,7 @@
 #
 # Exit code 0: all that can be had is installed; 1: apt could not; 2: there is no such workspace.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-[ -f "$root/devel/setup.bash" ] || fail "this workspace is not built yet: make setup"
+python3 -c 'import catkin_pkg, rospkg, yaml' 2>/dev/null || fail "Debian's ROS is not installed yet: make setup"
 arguments=() workspace=$root
 for word in "$@"; do
   case $word in
@@ -14,5 +14,6 @@ for word in "$@"; do
     *) workspace=$word ;;
   esac
 done
-enter_workspace
-exec rosrun workspace_needs deps "${arguments[@]}" "$workspace"
+# Not by `rosrun`: what is missing may be what keeps this workspace from being built.
+export PYTHONPATH=$root/src/workspace_needs/src ROS_PACKAGE_PATH=$root/src:/usr/share
+exec python3 -m workspace_needs.command "${arguments[@]}" "$workspace"

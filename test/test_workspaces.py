@@ -61,10 +61,10 @@ REFUSED = [
 
 def environment(port: int | None = None) -> dict[str, str]:
     """What a new terminal has, and a master of the test's own."""
-    kept = {name: os.environ[name] for name in ("HOME", "LANG", "ROS_LOG_DIR") if name in os.environ}
-    kept |= {"PATH": "/usr/local/bin:/usr/bin:/bin", "TERM": "dumb", "ROS_HOSTNAME": "localhost"}
-    for name in os.environ:
-        if name.startswith("RUN_TESTS"):  # by these the test's processes are known
+    kept = {"PATH": "/usr/local/bin:/usr/bin:/bin", "TERM": "dumb", "ROS_HOSTNAME": "localhost"}
+    # By the last the test's processes are known to the runner of all tests.
+    for name in ("HOME", "LANG", "ROS_HOME", "ROS_LOG_DIR", "RUN_TESTS_MARK"):
+        if name in os.environ:
             kept[name] = os.environ[name]
     return kept | ({"ROS_MASTER_URI": f"http://localhost:{port}"} if port else {})
 
@@ -141,8 +141,8 @@ def test_each_shell_can_source_it(built, shell):
 @pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
 def test_the_workspace_installs(built):
     """Left-out targets have install rules, too."""
-    done = in_terminal(f"cd {built[0]} && catkin_make --no-color install", ROOT / "devel/setup.bash",
-                       limit=200)
+    done = in_terminal(f"cd {built[0]} && catkin_make --no-color install",
+                       ROOT / "devel/setup.bash", limit=200)
     assert done.returncode == 0, done.stdout[-3000:]
     done = in_terminal("rosrun shape_gazebo beside; roslaunch --files shape_gazebo world.launch",
                        built[0] / "install/setup.bash")

@@ -57,3 +57,7 @@ def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
         lines += [f"{verdict.name} will be without {key}: {why}"
                   for key, why in verdict.lacks.items()]
     return lines
+
+
+if __name__ == "__main__":
+    sys.exit(main())
