@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deb lint clean
+.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deps deb lint clean
 
 help: ## list the verbs
 	@scripts/help.sh
@@ -69,6 +69,9 @@ setup: ## install what is missing, and build
 
 build: ## build the workspace again
 	@scripts/setup.sh --build
+
+deps: ## install what Debian has of what a workspace asks for [WS=~/catkin_ws]
+	@scripts/deps.sh $(if $(WS),"$(WS)")
 
 deb: ## make one Debian package of the whole, into out/
 	@scripts/deb.sh

@@ -5,10 +5,19 @@ import importlib.util
 import math
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
-from bullet_sim.description import Box, Cylinder, Geometry, ModelDescription, Plane, Sphere
+from bullet_sim.description import (
+    Box,
+    Cylinder,
+    Geometry,
+    Heightmap,
+    ModelDescription,
+    Plane,
+    Sphere,
+)
 from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats import Resources, load_model, load_world
 from bullet_sim.formats.resources import DATA_FOLDER
@@ -71,6 +80,12 @@ def test_files_are_what_their_script_writes(maker):
         assert (folder / name).read_text(encoding="utf-8") == text, f"python3 {SCRIPTS}/{maker}.py"
 
 
+def test_the_terrain_image_is_what_its_script_draws():
+    maker = script("make_worlds")
+    image = cv2.imread(str(DATA_FOLDER / maker.TERRAIN), cv2.IMREAD_UNCHANGED)
+    assert image.dtype == np.uint16 and (image == np.array(maker.terrain())).all()
+
+
 def test_they_are_small():
     assert sum(path.stat().st_size for path in DATA_FOLDER.rglob("*.*")) < 1_000_000
 
@@ -122,8 +137,8 @@ def test_a_world_loads_and_steps(name, caplog):
     assert not caplog.records
     for model in world.models.values():
         assert np.isfinite(model.pose.position).all() and model.pose.position[2] > -0.05, model.name
-    flat = (Plane, Box, Cylinder, Sphere)
-    assert all(isinstance(part.geometry, flat) for model in world.models.values()
+    plain = (Plane, Box, Cylinder, Sphere, Heightmap)
+    assert all(isinstance(part.geometry, plain) for model in world.models.values()
                for link in model.description.links for part in link.visuals)
 
 
@@ -164,7 +179,7 @@ def test_a_mesh_of_a_prop_that_is_not_here_is_the_props_own_shapes(caplog, folde
 
 
 def test_other_missing_meshes_are_left_out(caplog):
-    for text in (saved("2 2 2"), saved(folder="model://no_such"), saved(folder="model://..")):
+    for text in (saved("2 0 2"), saved(folder="model://no_such"), saved(folder="model://..")):
         caplog.clear()
         link = load_model(text, RESOURCES).links[0]
         assert not link.visuals and not link.collisions

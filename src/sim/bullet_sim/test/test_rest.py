@@ -364,3 +364,104 @@ def test_a_weightless_link_floats_when_gravity_changes(counted):
     world.configure_physics(gravity=(0.0, 0.0, -1.6))
     counted.run(1.0)
     assert model.pose.position == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+
+
+# --- heaps
+
+def crowd(world: World, count: int = 9) -> list:
+    """Barrels on wide feet, put closer than their feet allow, as a saved world has them."""
+    foot = Collision("foot", Cylinder(0.5, 0.03), Pose((0.0, 0.0, 0.015)))
+    drum = Collision("drum", Cylinder(0.3, 1.0), Pose((0.0, 0.0, 0.53)))
+    link = replace(body("link", Sphere(0.1)), collisions=(foot, drum), inertial=Inertial(
+        1.0, Pose((0.0, 0.0, 0.5)), inertia(1.0, 0.8)))
+    barrel = ModelDescription("barrel", links=(link,))
+    return [world.spawn(barrel, Pose(((number % 3) * 0.65, number // 3 * 0.65, 0.0)), f"b{number}")
+            for number in range(count)]
+
+
+def test_barrels_on_one_anothers_feet_come_to_rest(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    crowd(world)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0, "never sleeps"
+
+
+def test_one_of_a_heap_that_is_pushed_moves_and_the_heap_rests_again(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 2)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    before = barrels[1].pose.position[0]
+    barrels[1].set_velocity(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(0.3)
+    assert barrels[1].pose.position[0] > before + 0.01
+
+
+def test_a_force_on_one_of_a_disabled_heap_moves_it(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 2)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    before = barrels[1].pose.position[0]
+    for _ in range(300):
+        barrels[1].link("link").apply_force((40.0, 0.0, 0.0))
+        world.step()
+    assert barrels[1].pose.position[0] > before + 0.02
+
+
+def test_one_of_a_disabled_heap_is_put_elsewhere_in_flight_and_another_deleted(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 3)
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    barrels[2].set_velocity(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    world.delete("b2")
+    barrels[1].set_pose(Pose((5.0, 0.0, 3.0)))
+    barrels[1].set_velocity(Twist((2.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(0.5)
+    assert barrels[1].pose.position[0] == pytest.approx(6.0, abs=0.02)
+    assert barrels[1].pose.position[2] == pytest.approx(3.0 - 4.9 * 0.25, abs=0.03)
+
+
+def test_what_slides_into_a_disabled_heap_moves_it(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 2)
+    crate = world.spawn(single("crate", Box((0.4, 0.4, 0.4)), mass=20.0), Pose((-1.5, 0.0, 0.2)))
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    before = [barrel.pose.position[0] for barrel in barrels]
+    crate.set_velocity(Twist((4.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(1.0)
+    assert all(barrel.pose.position[0] > x + 0.02
+               for barrel, x in zip(barrels, before, strict=True))
+
+
+def test_what_a_disabled_heap_stands_on_can_be_taken_away(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    world.spawn(replace(single("slab", Box((6.0, 6.0, 1.0))), static=True), Pose((0, 0, 0.5)))
+    barrels = crowd(world, 2)
+    for barrel in barrels:
+        x, y, _ = barrel.pose.position
+        barrel.set_pose(Pose((x, y, 1.0)))
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    world.delete("slab")
+    counted.run(0.4)
+    assert all(barrel.pose.position[2] < 0.9 for barrel in barrels)
+
+
+def test_a_model_that_must_not_be_disabled_goes_on(counted):
+    """`<allow_auto_disable>0`: it trembles for as long as it likes."""
+    # conforms: sdf model/allow_auto_disable
+    world = counted.world
+    world.spawn(ground(1.0))
+    for barrel in crowd(world, 4):
+        barrel.description = replace(barrel.description, auto_disables=False)
+        barrel.note_weightless()
+    assert counted.run(3.0) == 3000

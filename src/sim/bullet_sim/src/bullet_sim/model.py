@@ -168,6 +168,10 @@ class Model:
         """Which links gravity does not pull at."""
         self._weightless = [] if self.static else [
             link for link in self.links.values() if not link.description.gravity]
+        described = self.description
+        for body in self.bodies:
+            body.may_auto_disable = described.auto_disables and not (
+                described.joints or self._weightless)
 
     def before_step(self, gravity: Vector3) -> None:
         """Forces that act every step; gravity in m/s^2."""

@@ -91,7 +91,7 @@ def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tu
     words = p.text(tag).split()
     if not words:
         return default
-    values = tuple(read_numbers(p.text(tag)))
+    values = tuple(read_numbers(p.text(tag))[0])
     if len(values) == 1:
         values *= len(default)
     if len(values) != len(default) or not all(map(math.isfinite, values)):

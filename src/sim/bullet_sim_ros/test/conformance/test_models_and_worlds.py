@@ -213,13 +213,21 @@ def test_the_lift_goes_up_when_called(make_bench):
                    "mud_pit_thin", "mud_pit_thick", "mud_patch"}),
     ("rubble.world", {"ground_plane", "cylinder_0", "box_1"}),
     ("stacks.world", {"ground_plane", "box_1", "sphere_1", "sphere_1a", "cylinder_1"}),
+    ("camera.world", {"ground_plane", "camera", "camera 2"}),
+    ("depth_camera.world", {"ground_plane", "depth_camera", "box"}),
+    ("empty_bullet.world", {"ground_plane", "drill"}),
+    ("robocup14_spl_field.world", {"ground_plane", "RoboCup 14 SPL Field", "left goal",
+                                   "right goal", "RoboCup SPL Ball"}),
+    ("heightmap.world", {"heightmap", "box1", "box2", "box3", "box4"}),
     ("cafe.world", {"ground_plane", "cafe", "table1", "table5", "actor1", "actor2"}),
 ])
 def test_a_world_of_gazebos_media_has_its_models(make_bench, world, models):
     # conforms: worlds/blank.world, worlds/empty.world, worlds/empty_sky.world
     # conforms: worlds/shapes.world, worlds/willowgarage.world, worlds/simple_arm.world
     # conforms: worlds/pioneer2dx.world, worlds/mud.world, worlds/rubble.world
-    # conforms: worlds/stacks.world, worlds/cafe.world
+    # conforms: worlds/stacks.world, worlds/cafe.world, worlds/heightmap.world
+    # conforms: worlds/camera.world, worlds/depth_camera.world, worlds/empty_bullet.world
+    # conforms: worlds/robocup14_spl_field.world
     bench = make_bench(text_of(DATA_FOLDER / "worlds" / world))
     names = bench.call("/gazebo/get_world_properties").model_names
     assert models <= set(names) and (len(names) == len(models) or world in BIG)

@@ -8,9 +8,9 @@ LINKS = """<link name="a"/><link name="b"><pose>0 0 1 0 0 0</pose></link>
   <joint name="j" type="revolute"><parent>a</parent><child>b</child></joint>"""
 
 
-def robot(plugin: str, tags: str) -> str:
+def robot(plugin: str, tags: str, name: str = "bot") -> str:
     """Two links and a joint, and a plugin in the model."""
-    return (f'<model name="bot">{LINKS}<plugin name="p" filename="{plugin}">{tags}</plugin>'
+    return (f'<model name="{name}">{LINKS}<plugin name="p" filename="{plugin}">{tags}</plugin>'
             "</model>")
 
 
@@ -26,7 +26,7 @@ def test_a_number_that_is_none(bench, caplog, plugin, tag, more):
     # conforms: libgazebo_grasp_plugin.so/max_grip_count, libgazebo_ros_control.so/controlPeriod
     # conforms: libhector_gazebo_ros_magnetic.so/inclination, libgazebo_ros_p3d.so/updateRate
     for word, why in (("inf", "not finite"), ("-inf", "not finite"), ("nan", "no number"),
-                      ("1_0", "no number"), ("1 2", "no number"), ("ten", "no number")):
+                      ("m1", "no number"), (",5", "no number"), ("ten", "no number")):
         caplog.clear()
         bench.spawn(robot(plugin, f"{more}<{tag}>{word}</{tag}>"))
         said = [record.message for record in caplog.records if record.levelname == "ERROR"]
@@ -37,12 +37,41 @@ def test_a_number_that_is_none(bench, caplog, plugin, tag, more):
 
 def test_a_vector_that_is_none(bench, caplog):
     # conforms: libgazebo_ros_p3d.so/xyzOffset
-    for word in ("nan 0 0", "inf 0 0", "1_0 0 0", "0 0", "a b c"):
+    for word in ("nan 0 0", "inf 0 0", "1_0 0 0", "0 0", "1 2m 3", "a b c"):
         caplog.clear()
         bench.spawn(robot("libgazebo_ros_p3d.so", "<bodyName>a</bodyName><topicName>t</topicName>"
                           f"<xyzOffset>{word}</xyzOffset>"))
         assert f"<xyzOffset> is '{word}', which is not three finite numbers" in caplog.text
         bench.delete("bot")
+
+
+@pytest.mark.parametrize("text, used", [
+    ("0.0 0.0 0.0", 0.0), ("0.25 7", 0.25), ("1.5f", 1.5), ("1,5", 1.0), ("0x10", 0.0),
+    (" -2e-1m ", -0.2), ("1_0", 1.0), (".5s", 0.5)])
+def test_more_than_a_number_is_read_as_far_as_it_goes(bench, caplog, text, used):
+    # conforms: libhector_gazebo_ros_magnetic.so/inclination
+    bench.spawn(robot("libhector_gazebo_ros_magnetic.so",
+                      f"<bodyName>a</bodyName><inclination>{text}</inclination>"))
+    said = [record.message for record in caplog.records if record.levelname in ("WARNING", "ERROR")]
+    assert said == [f"model bot: plugin p: <inclination> is {text.strip()!r}; {used:g} is used, as "
+                    "Gazebo reads it, and what follows is not"]
+    assert "/magnetic" in bench.advertised()
+
+
+def test_more_than_three_numbers_and_more_than_a_flag(bench, caplog):
+    # conforms: libgazebo_ros_p3d.so/xyzOffset
+    bench.spawn(robot("libgazebo_ros_p3d.so", "<bodyName>a</bodyName><topicName>t</topicName>"
+                      "<xyzOffset>1 2 3 4</xyzOffset>"))
+    truth = bench.listen("/t")
+    bench.run(0.01)
+    assert truth[-1].pose.pose.position.x == pytest.approx(1.0)
+    bench.spawn(robot("libhector_gazebo_ros_magnetic.so", "<bodyName>a</bodyName>"
+                      "<useMagneticFieldMsgs> True  false</useMagneticFieldMsgs>", "flagged"))
+    assert bench.advertised()["/magnetic"]._type == "sensor_msgs/MagneticField"
+    said = [record.message for record in caplog.records if record.levelname == "WARNING"]
+    assert [line.split(" is used")[0] for line in said] == [
+        "model bot: plugin p: <xyzOffset> is '1 2 3 4'; 1 2 3",
+        "model flagged: plugin p: <useMagneticFieldMsgs> is 'true  false'; true"]
 
 
 def test_the_longest_control_period(bench, caplog):

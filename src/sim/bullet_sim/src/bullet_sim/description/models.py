@@ -28,6 +28,7 @@ class ModelDescription:
     pose: Pose = IDENTITY  # in the world
     static: bool = False
     self_collide: bool = False
+    auto_disables: bool = True  # <allow_auto_disable>: whether what hardly moves is held still
     links: tuple[LinkDescription, ...] = ()
     joints: tuple[JointDescription, ...] = ()
     plugins: tuple[PluginDescription, ...] = ()

@@ -14,7 +14,7 @@ from bullet_sim.formats.sdf_light import read_light
 from bullet_sim.formats.sdf_sensor import read_sensor
 from bullet_sim.formats.sdf_shapes import read_collision, read_visual
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import amount, flag, pose, size
+from bullet_sim.formats.xml_values import amount, child_text, flag, pose, size
 from bullet_sim.pose import IDENTITY
 
 WORLD = "world"
@@ -37,10 +37,13 @@ def read_link(
         frames = Frames(source, model)
         frames.add(name, "", IDENTITY)
     place = _PartPlaces(name, frames, source, where)
-    visuals = [place(visual, part) for part in element.findall("visual")
-               for visual in read_parts(read_visual, part, source, where)]
+    said = len(source.said)
     collisions = [place(collision, part) for part in element.findall("collision")
-                  for collision in read_parts(read_collision, part, source, where)]
+                  for collision in read_parts(read_collision, part, source, where, name)]
+    if not collisions and len(source.said) == said:
+        _warn_of_lost_collisions(element, source, where)
+    visuals = [place(visual, part) for part in element.findall("visual")
+               for visual in read_parts(read_visual, part, source, where, name)]
     return LinkDescription(
         name=name,
         pose=frames.in_model(name),
@@ -56,6 +59,15 @@ def read_link(
         self_collide=flag(element, "self_collide", False),
         **_decay(element, where),
     )
+
+
+def _warn_of_lost_collisions(element: Element, source: Source, where: str) -> None:
+    """Of files that were not found, which another link may have been told of before."""
+    files = [child_text(shape, "uri") or child_text(shape, "filename")
+             for shape in element.findall("collision/geometry/*")]
+    if any(files):
+        source.warn_once(f"{where}: nothing collides with it, and it falls for ever if nothing "
+                         f"holds it: {', '.join(dict.fromkeys(filter(None, files)))} not found")
 
 
 def _decay(element: Element, where: str) -> dict[str, float]:

@@ -50,6 +50,7 @@ def read_model(
         pose=pose(element, where),
         static=flag(element, "static", False),
         self_collide=flag(element, "self_collide", False),
+        auto_disables=flag(element, "allow_auto_disable", True),
         links=tuple(links),
         joints=tuple(joints),
         plugins=read_plugins(element) + tuple(p for model in nested for p in model.plugins),

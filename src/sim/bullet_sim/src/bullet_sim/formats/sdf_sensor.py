@@ -13,6 +13,10 @@ from bullet_sim.formats.sdf_camera import read_camera
 from bullet_sim.formats.sdf_noise import read_imu, read_noise
 from bullet_sim.formats.xml_values import flag, integer, number, pose
 
+# Sensors whose `<camera>` or `<ray>` Gazebo asks for: sdformat makes a missing one of defaults.
+CAMERAS = ("camera", "wideanglecamera", "multicamera", "depth", "depth_camera", "rgbd_camera")
+RAYS = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+
 
 def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
     """The plugins directly below an element, as written."""
@@ -24,17 +28,18 @@ def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
 
 def read_sensor(element: Element, link: str) -> SensorDescription:
     """A sensor of a link, with the cameras or rays it has."""
-    name = element.get("name", "")
+    name, kind = element.get("name", ""), element.get("type", "")
     where = f"{link}, sensor {name!r}"
-    rays = element.find("ray") if element.find("ray") is not None else element.find("lidar")
+    cameras = element.findall("camera") or [Element("camera")] * (kind in CAMERAS)
+    rays = [*element.findall("ray"), *element.findall("lidar")] or [Element("ray")] * (kind in RAYS)
     return SensorDescription(
         name=name,
-        type=element.get("type", ""),
+        type=kind,
         pose=pose(element, where),
         update_rate=number(element, "update_rate", 0.0, where),
         always_on=flag(element, "always_on", False),
-        cameras=tuple(read_camera(camera, where) for camera in element.findall("camera")),
-        ray=None if rays is None else _ray(rays, f"{where} <{rays.tag}>"),
+        cameras=tuple(read_camera(camera, where) for camera in cameras),
+        ray=_ray(rays[0], f"{where} <{rays[0].tag}>") if rays else None,
         imu=read_imu(element.find("imu"), where),
         plugins=read_plugins(element),
         element=element,

@@ -48,6 +48,7 @@ class Body(LinkSide, JointSide):
         self.attached: list[Attachment] = []
         self._link_indices = list(range(len(tree.links) - 1))
         self.on_unload: list[Callable[[], None]] = []  # to be called before the engine loses it
+        self.may_auto_disable = True  # as far as its model says
         self.number = NOWHERE
         try:
             self.put_in(pose_world_model * self.base_pose_model)
@@ -182,6 +183,13 @@ class Body(LinkSide, JointSide):
         self.number = NOWHERE
 
     # --- rest
+
+    @property
+    def auto_disables(self) -> bool:
+        """Whether nothing but contacts and gravity acts on it."""
+        return self.may_auto_disable and not (
+            self.tree.fixed or self._joint_index or self._ball_index or self.attached
+            or self.acts_steadily)
 
     def speeds(self) -> tuple[float, float]:
         """Greatest speed, m/s, and rate of turn, rad/s, of base and joints; NaN if any is."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.physics.assembly import Tree
+from bullet_sim.physics.auto_disable import AutoDisable
 from bullet_sim.physics.embedded import Embedded
 from bullet_sim.physics.planes import Planes
 from bullet_sim.physics.quiet import STDOUT, EngineError, pybullet, quiet
@@ -42,6 +43,7 @@ class PhysicsClient:
         self.rest = Rest()
         self.planes = Planes(self._let_collide)
         self._embedded = Embedded(self.read, self.rest.bodies)
+        self._auto_disable = AutoDisable(self.read, self.rest.bodies)
         self.retro: dict[tuple[int, int], float] = {}  # laser_retro of engine links, where not 0
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
@@ -69,7 +71,7 @@ class PhysicsClient:
     def call(self, function, *args, **kwargs):
         """Run a pybullet function that changes something."""
         self.rest.disturb()
-        if function in PLACING:
+        if self._auto_disable.changed(function, args) or function in PLACING:
             self._embedded.watch()
         return function(*args, physicsClientId=self._id, **kwargs)
 
@@ -86,6 +88,7 @@ class PhysicsClient:
                 self.read(pybullet.setPhysicsEngineParameter, solverResidualThreshold=tolerance)
             self._embedded.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
+            self._auto_disable.after_step(self.rest.looks)
             if self.rest.near:
                 for body in self.rest.bodies:
                     body.keep_feedback()

@@ -65,12 +65,17 @@ class Rest:
         """Whether only one more look has to find everything still; `look_every` steps long."""
         return len(self._motions) >= LOOKS - 1 and not self.reached
 
+    @property
+    def looks(self) -> bool:
+        """Whether this step is one that ends in a look."""
+        return self._steps % self.look_every == 0
+
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be asked before each."""
         if self.reached:
             return False
         self._steps += 1
-        if self._steps % self.look_every == 0:
+        if self.looks:
             self._look()
         return True
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import rospy
 
 from bullet_sim_ros import params
-from bullet_sim_ros.errors import PluginError, told
+from bullet_sim_ros.errors import told
 
 if TYPE_CHECKING:
     from bullet_sim_ros.plugins.host import Host
@@ -22,6 +22,8 @@ POLL = 0.1  # s, wall
 
 def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None]) -> None:
     """Call `use(text)` in the loop: at once if the parameter is there, else as soon as it is.
+
+    The text is empty where the parameter holds none.
 
     Upstream waits here and holds up the whole world; a spawn service would not answer meanwhile.
     """
@@ -55,6 +57,4 @@ def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None])
 
 def _text(parameter: str) -> str:
     value = params.below(parameter)
-    if not isinstance(value, str) or not value.strip():
-        raise PluginError(f"parameter {parameter} is empty or no text, so it cannot be a URDF")
-    return value
+    return value if isinstance(value, str) else ""

@@ -52,7 +52,7 @@ class HarnessPlugin:
     @staticmethod
     def _axis(joint: Element) -> tuple[float, float, float]:
         text = joint.findtext("axis/xyz") or "0 0 1"
-        values = read_numbers(text)
+        values, _ = read_numbers(text, 3)
         if len(values) != 3 or not all(map(math.isfinite, values)):
             raise PluginError(f"<axis><xyz> is {text!r}, which is not three finite numbers")
         return (values[0], values[1], values[2])

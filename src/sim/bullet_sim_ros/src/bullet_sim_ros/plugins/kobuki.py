@@ -15,7 +15,8 @@ from bullet_sim.sensors.imu_sensor import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic
+from bullet_sim_ros.plugins.kobuki_core import CoreTopic
+from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
 from bullet_sim_ros.plugins.registry import plugin
 
@@ -48,8 +49,11 @@ class KobukiPlugin:
         self._subscribe(base)
         host.each_step(self._kobuki.update)
         host.every(RATE, self._output.publish)
-        for events in (bumper, *cliffs):
+        drop = WheelDropTopic(host, base, self._kobuki)
+        for events in (bumper, drop, *cliffs):
             host.every(RATE, events.look, events.wanted)
+        core = CoreTopic(host, base, self._kobuki, bumper, cliffs, drop)
+        host.every(RATE, core.publish, core.wanted)
         host.on_reset(self._kobuki.reset)
 
     def _subscribe(self, base: str) -> None:

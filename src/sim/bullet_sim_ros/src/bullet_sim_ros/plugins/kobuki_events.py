@@ -1,13 +1,15 @@
-"""What a Kobuki base tells when it happens: a bumper is pressed, the floor ends."""
+"""What a Kobuki base tells when it happens: a bumper is pressed, the floor ends, a wheel drops."""
 
 from __future__ import annotations
 
 import math
 
-from kobuki_msgs.msg import BumperEvent, CliffEvent
+from kobuki_msgs.msg import BumperEvent, CliffEvent, WheelDropEvent
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.bumper import SECTORS, pressed_bumpers
+from bullet_sim.drives.kobuki import Kobuki
+from bullet_sim.drives.wheel_drop import WheelDrop
 from bullet_sim.link import Link
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
@@ -16,22 +18,34 @@ from bullet_sim_ros.plugins.host import Host
 CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading for a distance in m
 
 
-class BumperTopic:
-    """`look` tells of each of the three that has changed."""
+class EventTopic:
+    """`look` publishes what has changed since it last looked."""
 
-    def __init__(self, host: Host, base: str, link: Link):
-        self._host, self._link = host, link
-        self._pressed: set[str] = set()
-        self._topic = host.advertise(names.join(base, "events/bumper"), BumperEvent, queue_size=1)
+    def __init__(self, host: Host, base: str, name: str, kind: type):
+        self._host = host
+        self._topic = host.advertise(names.join(base, f"events/{name}"), kind, queue_size=1)
 
     def wanted(self) -> int:
         """Whether anybody listens: contacts and rays cost time."""
         return self._topic.get_num_connections()
 
+
+class BumperTopic(EventTopic):
+    """Each of the three that has changed."""
+
+    def __init__(self, host: Host, base: str, link: Link):
+        super().__init__(host, base, "bumper", BumperEvent)
+        self._link = link
+        self._pressed: set[str] = set()
+
+    def pressed(self) -> set[str]:
+        """Names of `SECTORS`."""
+        return pressed_bumpers(self._host.world.contacts(), self._link.scoped_name,
+                               self._host.model.pose)
+
     def look(self) -> None:
         """After a step."""
-        pressed = pressed_bumpers(self._host.world.contacts(), self._link.scoped_name,
-                                  self._host.model.pose)
+        pressed = self.pressed()
         for name in SECTORS:
             if (name in pressed) != (name in self._pressed):
                 state = BumperEvent.PRESSED if name in pressed else BumperEvent.RELEASED
@@ -40,30 +54,57 @@ class BumperTopic:
         self._pressed = pressed
 
 
-class CliffTopic:
-    """`look` tells when the floor under one sensor goes away or comes back."""
+class WheelDropTopic(EventTopic):
+    """Each of the two wheels that lost the floor or found it."""
+
+    def __init__(self, host: Host, base: str, kobuki: Kobuki):
+        super().__init__(host, base, "wheel_drop", WheelDropEvent)
+        model = host.model
+        self._drop = WheelDrop({
+            side: f"{model.name}::{joint.description.child}"
+            for side, joint in zip(("left", "right"), kobuki.wheels, strict=True)},
+            host.world.time)
+        self._dropped: set[str] = set()
+
+    def dropped(self) -> set[str]:
+        """`left`, `right`."""
+        world = self._host.world
+        return self._drop.dropped(world.contacts(), world.time)
+
+    def look(self) -> None:
+        """After a step."""
+        dropped = self.dropped()
+        for side in sorted(dropped ^ self._dropped):
+            state = WheelDropEvent.DROPPED if side in dropped else WheelDropEvent.RAISED
+            self._topic.publish(WheelDropEvent(wheel=getattr(WheelDropEvent, side.upper()),
+                                               state=state))
+        self._dropped = dropped
+
+
+class CliffTopic(EventTopic):
+    """When the floor under one sensor goes away or comes back."""
 
     def __init__(self, host: Host, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):
         """`threshold` in m: a floor this far down is none."""
-        self._side = getattr(CliffEvent, side.upper())
+        super().__init__(host, base, "cliff", CliffEvent)
+        self.side = side
         self._threshold = threshold
         self._laser = Laser(host.world, link, sensor)
         self._cliff = False
-        self._topic = host.advertise(names.join(base, "events/cliff"), CliffEvent, queue_size=1)
 
-    def wanted(self) -> int:
-        """Whether anybody listens: contacts and rays cost time."""
-        return self._topic.get_num_connections()
+    def read(self) -> tuple[bool, int]:
+        """Whether there is no floor, and the converter's reading."""
+        distance = float(self._laser.sample().ranges[0])
+        reading = CONVERTER_SCALE * math.atan2(CONVERTER_GAP, max(distance, 0.0))
+        return distance >= self._threshold, int(reading) & 0xFFFF
 
     def look(self) -> None:
         """After a step."""
-        distance = float(self._laser.sample().ranges[0])
-        cliff = distance >= self._threshold
+        cliff, reading = self.read()
         if cliff == self._cliff:
             return
         self._cliff = cliff
-        reading = CONVERTER_SCALE * math.atan2(CONVERTER_GAP, max(distance, 0.0))
         self._topic.publish(CliffEvent(
-            sensor=self._side, state=CliffEvent.CLIFF if cliff else CliffEvent.FLOOR,
-            bottom=int(reading) & 0xFFFF))
+            sensor=getattr(CliffEvent, self.side.upper()),
+            state=CliffEvent.CLIFF if cliff else CliffEvent.FLOOR, bottom=reading))

@@ -23,7 +23,7 @@ class OdometryOutput:
         self._odom_frame = names.frame(self.prefix, p.text("odometryFrame", "odom"))
         self._base_frame = names.frame(self.prefix, p.text("robotBaseFrame", base_frame))
         self._transform, self._flat = transform, flat
-        self._variances, self._twist_variances = variances, twist_variances
+        self.variances, self.twist_variances = variances, twist_variances
         self._topic = host.advertise(names.join(namespace, p.text("odometryTopic", "odom")),
                                      Odometry, queue_size=1)
         if transform:
@@ -35,11 +35,11 @@ class OdometryOutput:
 
     def publish(self, reading: OdometryReading, others: tuple[TransformStamped, ...] = ()) -> None:
         """Send topic and transform, and other transforms with it."""
-        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame, self._variances)
+        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame, self.variances)
         if self._flat:
             msg.pose.pose.position.z = 0.0
-        if self._twist_variances:
-            msg.twist.covariance = convert.planar_covariance(*self._twist_variances)
+        if self.twist_variances:
+            msg.twist.covariance = convert.planar_covariance(*self.twist_variances)
         self._topic.publish(msg)
         transforms = list(others)
         if self._transform:

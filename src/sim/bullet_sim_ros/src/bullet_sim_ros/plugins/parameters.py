@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+import re
 
 from bullet_sim.description import PluginDescription
 from bullet_sim_ros.errors import PluginError
@@ -11,14 +12,30 @@ from bullet_sim_ros.errors import PluginError
 log = logging.getLogger("bullet_sim.plugins")
 
 TRUE, FALSE = ("true", "1"), ("false", "0")
+# How far a C++ stream reads a number: 1.5f, 0.3m and 1,5 are 1.5, 0.3 and 1, and 0x10 is 0.
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
+WORDS = ("inf", "nan", "infinity")  # that a stream does not know, but xacro and Python write
 
 
-def read_numbers(text: str) -> list[float]:
-    """What is written between white space; empty where a word is no number to a C++ reader."""
-    try:
-        return [math.nan if "_" in word else float(word) for word in text.split()]
-    except ValueError:
-        return []
+def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
+    """The numbers at the beginning of a text, `count` at most, and whether that was all of it.
+
+    As upstream's conversion: it goes on until something is no number any more.
+    """
+    values: list[float] = []
+    for word in text.split():
+        if len(values) == count:
+            return values, False
+        if word.lower().lstrip("+-") in WORDS:
+            values.append(float(word))
+            continue
+        found = NUMBER.match(word)
+        if not found:
+            return values, False
+        values.append(float(found.group()))
+        if found.end() < len(word):
+            return values, False
+    return values, True
 
 
 class PluginParameters:
@@ -57,8 +74,8 @@ class PluginParameters:
         text = self.text(tag)
         if not text:
             return default
-        values = read_numbers(text)
-        if len(values) != 1 or math.isnan(values[0]):
+        values = self._leading(tag, text, 1)
+        if not values or math.isnan(values[0]):
             raise PluginError(f"<{tag}> is {text!r}, which is no number")
         return values[0]
 
@@ -74,10 +91,13 @@ class PluginParameters:
         return self.text(tag) if self.has(tag) else default
 
     def flag(self, tag: str, default: bool) -> bool:
-        """true/1/false/0 in any case; anything else is a warning and the default."""
+        """true/1/false/0 in any case, of several words the first; else a warning, the default."""
         text = self.text(tag).lower()
-        if text in TRUE or text in FALSE:
-            return text in TRUE
+        word = text.split()[0] if text else ""
+        if word in TRUE or word in FALSE:
+            if word != text:
+                self._warn_of_rest(tag, text, word)
+            return word in TRUE
         if text:
             log.warning("model %s: plugin %s: <%s> is %r, neither true nor false; %s is used",
                         self._model, self._plugin, tag, text, str(default).lower())
@@ -86,10 +106,21 @@ class PluginParameters:
     def vector(self, tag: str) -> tuple[float, float, float]:
         """Three numbers; zeros if absent."""
         text = self.text(tag, "0 0 0")
-        values = read_numbers(text)
+        values = self._leading(tag, text, 3)
         if len(values) != 3 or not all(map(math.isfinite, values)):
             raise PluginError(f"<{tag}> is {text!r}, which is not three finite numbers")
         return (values[0], values[1], values[2])
+
+    def _leading(self, tag: str, text: str, count: int) -> list[float]:
+        """The first `count` numbers; what stands behind them is a warning."""
+        values, whole = read_numbers(text, count)
+        if len(values) == count and not whole:
+            self._warn_of_rest(tag, text, " ".join(f"{value:g}" for value in values))
+        return values
+
+    def _warn_of_rest(self, tag: str, text: str, used: str) -> None:
+        log.warning("model %s: plugin %s: <%s> is %r; %s is used, as Gazebo reads it, and what "
+                    "follows is not", self._model, self._plugin, tag, text, used)
 
     def namespace(self, missing: str, empty: str) -> str:
         """`robotNamespace`; families of plugins differ in what an absent or an empty one means."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+from xml.etree.ElementTree import Element, fromstring
 
 import rospy
 from std_msgs.msg import Bool
@@ -26,6 +27,7 @@ log = logging.getLogger("bullet_sim.control")
 
 SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim")
 ROUNDING = 1e-9  # of a step
+NO_ROBOT = fromstring('<robot name="nobody"><link name="nobody"/></robot>')
 MOST_STEPS = 1e15  # of a control period: that is for ever
 
 
@@ -48,7 +50,8 @@ class RosControlPlugin:
         self._set_period()
         self._check_period()
         rospy.loginfo("Starting gazebo_ros_control plugin in namespace: %s", self._namespace)
-        with_urdf(host, self._namespace, p.text("robotParam", "robot_description"), self._begin)
+        self._robot_parameter = p.text("robotParam", "robot_description")
+        with_urdf(host, self._namespace, self._robot_parameter, self._begin)
 
     def _set_period(self) -> None:
         """Count the control period in steps, from now."""
@@ -90,10 +93,10 @@ class RosControlPlugin:
         rospy.loginfo("Loaded gazebo_ros_control.")
 
     def _open_hardware(self, urdf: str) -> tuple[RobotHardware, RobotFacts]:
-        element = parse_xml(urdf, "the URDF parameter")
+        element = self._urdf(urdf)
         robot = RobotFacts(element)
         transmissions = read_transmissions(element)
-        if not transmissions:
+        if not transmissions and element is not NO_ROBOT:
             log.warning("%s: the URDF has no usable <transmission>, so there is no joint to "
                         "control", self._host.describe())
         joints = [transmission.joint for transmission in transmissions]
@@ -101,6 +104,17 @@ class RosControlPlugin:
                                  read_joint_limits(self._namespace, robot, joints),
                                  read_joint_gains(self._namespace, joints))
         return hardware, robot
+
+    def _urdf(self, text: str) -> Element:
+        """The `<robot>`; of an SDF, or of nothing, one without joints, as upstream has it."""
+        element = parse_xml(text, "the URDF parameter") if text.strip() else None
+        if element is not None and element.tag == "robot":
+            return element
+        found = "nothing" if element is None else f"a <{element.tag}>"
+        log.warning("%s: its parameter %s holds %s, not a URDF's <robot>: the controller manager "
+                    "starts, but there is no joint to control", self._host.describe(),
+                    self._robot_parameter, found)
+        return NO_ROBOT
 
     # --- in the loop
 

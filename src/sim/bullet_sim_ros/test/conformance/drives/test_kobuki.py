@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from kobuki_msgs.msg import BumperEvent, CliffEvent, MotorPower
+from kobuki_msgs.msg import BumperEvent, CliffEvent, MotorPower, WheelDropEvent
 from std_msgs.msg import Empty
 
 from bullet_sim.pose import Pose
@@ -148,3 +148,55 @@ def test_a_sensor_that_is_not_there_is_said(bench, base, caplog):
     # conforms: libgazebo_ros_kobuki.so/imu_name
     bench.spawn(base(imu_name="nope"))
     assert "the model has no sensor 'nope'; there are: gyro, bumpers, cliff_l" in caplog.text
+
+
+def test_the_core_says_what_all_sensors_read(bench, base, robots):
+    # conforms: libgazebo_ros_kobuki.so, libgazebo_ros_kobuki.so/cliff_detection_threshold
+    car = bench.spawn(base(robotNamespace="/", velocity_command_timeout=10), Pose((0, 0, 0.0)))
+    core = bench.listen("/mobile_base/sensors/core")
+    bench.send("/mobile_base/commands/velocity", robots.command(0.3))
+    bench.run(1.0)
+    assert len(core) == 50
+    last = core[-1]
+    assert (last.bumper, last.wheel_drop, last.cliff, last.charger) == (0, 0, 0, last.DISCHARGING)
+    ticks_per_turn = 2578.33
+    turned = car.joints["left_joint"].position / math.tau
+    assert last.left_encoder == pytest.approx(ticks_per_turn * turned, abs=2)
+    assert last.right_encoder == pytest.approx(last.left_encoder, abs=20)
+    assert last.time_stamp == pytest.approx(bench.world.time * 1000, abs=20)
+    assert len(last.bottom) == 3 and min(last.bottom) > 0
+    bench.send("/mobile_base/commands/velocity", robots.command(-0.3))
+    bench.run(1.5)
+    assert core[-1].left_encoder > 60000  # below zero, in 16 bits
+
+
+def test_a_lifted_base_tells_of_its_wheels(bench, base):
+    # conforms: libgazebo_ros_kobuki.so
+    car = bench.spawn(base(robotNamespace="/"))
+    events = bench.listen("/mobile_base/events/wheel_drop")
+    core = bench.listen("/mobile_base/sensors/core")
+    bench.run(0.5)
+    assert not events
+    car.set_pose(Pose((0, 0, 1.0)))
+    bench.run(0.3)
+    both = [(WheelDropEvent.LEFT, WheelDropEvent.DROPPED),
+            (WheelDropEvent.RIGHT, WheelDropEvent.DROPPED)]
+    assert [(event.wheel, event.state) for event in events] == both
+    assert (core[-1].wheel_drop, core[-1].cliff) == (3, 7)
+    bench.run(0.7)
+    assert [event.state for event in events[2:]] == [WheelDropEvent.RAISED] * 2
+    assert core[-1].wheel_drop == 0
+    bench.call("/gazebo/reset_simulation")
+    bench.run(0.3)
+    assert core[-1].wheel_drop == 0
+
+
+def test_the_core_has_a_bit_for_each_bumper(bench, base, robots):
+    # conforms: libgazebo_ros_kobuki.so/bumper_name
+    bench.spawn(base(robotNamespace="/", velocity_command_timeout=10))
+    wall = robots.link("body", "0 0 0 0 0 0", robots.box(0.1, 1.0, 0.2))
+    bench.spawn(f'<model name="wall"><static>true</static>{wall}</model>', Pose((0.25, 0, 0.1)))
+    core = bench.listen("/mobile_base/sensors/core")
+    bench.send("/mobile_base/commands/velocity", robots.command(0.3))
+    bench.run(0.5)
+    assert 2 in {message.bumper for message in core}  # the centre one

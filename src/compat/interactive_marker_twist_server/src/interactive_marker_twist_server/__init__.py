@@ -1,0 +1,1 @@
+"""What dragging the marker means, without ROS."""

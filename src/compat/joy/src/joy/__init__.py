@@ -1,0 +1,1 @@
+"""What a joystick's events mean, without ROS."""

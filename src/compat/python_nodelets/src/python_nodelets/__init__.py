@@ -1,0 +1,1 @@
+"""Nodelets that are Python nodes here."""

@@ -1,0 +1,7 @@
+"""Tells catkin where the package's module is."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(
+    packages=["robot_localization", "robot_localization.filtering"], package_dir={"": "src"}))

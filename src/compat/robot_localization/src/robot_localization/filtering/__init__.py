@@ -1,0 +1,1 @@
+"""Arithmetic of the filter: arrays in, arrays out, no ROS."""

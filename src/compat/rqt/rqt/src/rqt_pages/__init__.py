@@ -1,0 +1,1 @@
+"""What stands where rqt's windows would: the page in the browser, or a command."""

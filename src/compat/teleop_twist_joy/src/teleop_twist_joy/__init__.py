@@ -1,0 +1,1 @@
+"""What teleop_twist_joy makes of a joystick, without ROS."""

@@ -1,0 +1,78 @@
+"""Bases moved by force: hector's force_based_move and the three libraries made of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from geometry_msgs.msg import Twist
+
+from bullet_sim.drives.force import ForceDrive, ForceGains
+from bullet_sim_ros import names
+from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugins.odometry_output import OdometryOutput
+from bullet_sim_ros.plugins.registry import plugin
+
+VARIANCE = 1e-3  # m^2
+YAW_VARIANCES = (0.01, 100.0)  # rad^2: going straight, and turning
+STRAIGHT = 1e-4  # rad/s
+
+
+@dataclass(frozen=True)
+class Family:
+    """In what the libraries differ: their defaults, and the tag of a time-out if there is one."""
+
+    gains: ForceGains = ForceGains()
+    transform: bool = True
+    timeout_tag: str = ""
+    timeout: float = math.inf  # s
+
+
+FAMILIES = {
+    "libhector_gazebo_ros_force_based_move.so": Family(),
+    "libwpr_plugin.so": Family(ForceGains(40000.0, 30000.0, 500.0)),
+    "libridgeback_ros_force_based_move.so": Family(
+        ForceGains(100000.0, 100000.0, 10000.0), False, "cmdVelTimeOut", 0.25),
+    "librobotnik_force_based_move.so": Family(
+        timeout_tag="commandWatchdog", timeout=2.0),
+}
+
+
+@plugin(*FAMILIES)
+class ForceBasedMovePlugin:
+    """Odometry starts at zero where the model is spawned, and does not know what it bumped into."""
+
+    def __init__(self, host: Host):
+        p = host.parameters
+        self._host = host
+        family = FAMILIES[PurePosixPath(host.description.filename).name]
+        namespace = p.namespace(missing="/", empty="/")
+        gains = ForceGains(p.number("x_velocity_p_gain", family.gains.forward),
+                           p.number("y_velocity_p_gain", family.gains.leftward),
+                           p.number("yaw_velocity_p_gain", family.gains.yaw))
+        timeout = (p.bound(family.timeout_tag, family.timeout) if family.timeout_tag
+                   else family.timeout)
+        link = host.model.link(p.text("robotBaseFrame", "base_footprint"))
+        self._drive = ForceDrive(host.world, link, gains, timeout)
+        self._output = OdometryOutput(
+            host, namespace, transform=p.flag("publishOdometryTf", family.transform))
+        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                       self._take_command, queue_size=1, tcp_nodelay=True)
+        host.each_step(self._drive.update)
+        rate_hz = p.number("odometryRate", 20.0)
+        if rate_hz > 0:
+            host.every(rate_hz, self._publish, self._output.wanted)
+        host.on_reset(self._drive.reset)
+
+    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
+        if self._host.refuses("command", msg):
+            return None
+        return lambda: self._drive.command(msg.linear.x, msg.linear.y, msg.angular.z)
+
+    def _publish(self) -> None:
+        reading = self._drive.odometry()
+        yaw = YAW_VARIANCES[abs(reading.yaw_rate) >= STRAIGHT]
+        self._output.variances = self._output.twist_variances = (VARIANCE, VARIANCE, yaw)
+        self._output.publish(reading)

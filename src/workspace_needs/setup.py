@@ -1,0 +1,6 @@
+"""Tells catkin where the Python package is."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["workspace_needs"], package_dir={"": "src"}))

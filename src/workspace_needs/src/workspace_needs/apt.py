@@ -1,0 +1,76 @@
+"""Runs apt-get, and says in one line what is wrong where it fails."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+NO_NETWORK = re.compile(
+    r"Temporary failure|Could not (resolve|connect)|Unable to connect|Cannot initiate the connection"
+    r"|Network is unreachable|Connection (refused|timed out|failed)|Failed to fetch")
+STALE = re.compile(r"Unable to locate package (\S+)|404 +Not Found|has no installation candidate")
+OPTIONS = ("-y", "-qq", "--no-install-recommends", "-o", "Dpkg::Use-Pty=0",
+           "-o", "DPkg::Lock::Timeout=600", "-o", "Acquire::Retries=1")
+KEPT = ("http_proxy", "https_proxy", "no_proxy")  # for sudo, which drops what it does not know
+
+
+class AptError(RuntimeError):
+    """Nothing or not all was installed; the message is one line."""
+
+
+def as_root(command: list[str]) -> list[str]:
+    """The command with sudo where it is needed; AptError where there is none."""
+    settings = ["DEBIAN_FRONTEND=noninteractive", "LC_ALL=C",
+                *(f"{name}={os.environ[name]}" for name in KEPT if name in os.environ)]
+    if os.geteuid() == 0:
+        return ["env", *settings, *command]
+    if shutil.which("sudo") is None:
+        raise AptError("Debian packages are to be installed, you are not root and there is no "
+                       f"sudo: type `apt-get {' '.join(command[1:])}` once as root")
+    return ["sudo", "env", *settings, *command]
+
+
+def install(packages: list[str]) -> None:
+    """Installs Debian packages without recommended ones; AptError says why that was not possible.
+
+    apt's lists are fetched anew where it does not know a package or cannot find its file.
+    """
+    code, said = _run(as_root(["apt-get", "install", *OPTIONS, *packages]))
+    if code and STALE.search(said):
+        code, fetched = _run(as_root(["apt-get", "update", *OPTIONS]))
+        if code or NO_NETWORK.search(fetched):  # apt-get update only warns, and ends with 0
+            raise AptError(_why(fetched, said))
+        code, said = _run(as_root(["apt-get", "install", *OPTIONS, *packages]))
+    if code:
+        raise AptError(_why(said))
+
+
+def _run(command: list[str]) -> tuple[int, str]:
+    """Exit code and output, which the terminal gets meanwhile."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace") as process:
+        lines = []
+        for line in process.stdout:
+            if not line.startswith(("E: ", "W: ")):  # said in the one line at the end
+                sys.stdout.write(line)
+                sys.stdout.flush()
+            lines.append(line)
+    return process.returncode, "".join(lines)
+
+
+def _why(*outputs: str) -> str:
+    """The reason in words, of what apt said; the first that is known counts."""
+    for said in outputs:
+        if NO_NETWORK.search(said) and not re.search(r"404 +Not Found", said):
+            return "no network: apt cannot fetch the packages; connect and run this again"
+    said = outputs[-1]
+    if unknown := re.findall(r"Unable to locate package (\S+)", said):
+        return (f"apt knows no package {unknown[0]}: /etc/apt/sources.list needs Debian's own "
+                "archive (main)")
+    if "a password is required" in said or "not in the sudoers" in said:
+        return "sudo refused: run it once as root, or as a user who may use sudo"
+    errors = re.findall(r"^E: (.+)$", said, re.MULTILINE)
+    return f"apt-get failed: {errors[-1] if errors else said.strip().splitlines()[-1:]}"

@@ -1,0 +1,59 @@
+"""The command line of `make deps`: installs what Debian has, says what nobody has."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from workspace_needs import apt
+from workspace_needs.verdicts import Verdict, judge
+from workspace_needs.workspace import WorkspaceError, source_folder
+
+
+def main(argv: list[str] | None = None) -> int:
+    """0: all that can be had is installed; 1: apt could not; 2: there is no such workspace."""
+    parser = argparse.ArgumentParser(
+        prog="deps", description="Installs the Debian packages that a catkin workspace asks for.")
+    parser.add_argument("workspace", type=Path, help="its folder, such as ~/catkin_ws")
+    parser.add_argument("--simulate", action="store_true", help="only say what would be installed")
+    args = parser.parse_args(argv)
+    try:
+        verdicts = judge(source_folder(args.workspace))
+    except WorkspaceError as error:
+        print(f"deps: {error}", file=sys.stderr)
+        return 2
+    missing = sorted({name for verdict in verdicts for name in verdict.missing})
+    try:
+        _install(missing, len(verdicts), args.simulate)
+    except apt.AptError as error:
+        print(f"deps: {error}", file=sys.stderr)
+        return 1
+    for line in not_to_be_had(verdicts):
+        print(line)
+    return 0
+
+
+def _install(missing: list[str], packages: int, simulate: bool) -> None:
+    of = "1 package" if packages == 1 else f"{packages} packages"
+    if not missing:
+        print(f"{of}: all that Debian has for them is installed")
+    elif simulate:
+        print(f"{of}: to be installed: {' '.join(missing)}")
+    else:
+        print(f"{of}: installing {' '.join(missing)}", flush=True)
+        apt.install(missing)
+
+
+def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
+    """A line a package and thing: what will not be built, and what will be missing at run time."""
+    lines = []
+    for verdict in verdicts:
+        lines += [f"{verdict.name} cannot be built: {key}: {why}"
+                  for key, why in verdict.stops.items()]
+        lines += [f"{verdict.name}: {file} is left out: {why}"
+                  for file, why in verdict.left_out.items()]
+        lines += [f"{verdict.name} will be without {key}: {why}"
+                  for key, why in verdict.lacks.items()]
+    return lines

@@ -1,0 +1,156 @@
+"""`rosdep` as pages type it: Debian's own, on our files, without init, update and network."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import rospkg
+
+from workspace_needs import apt, cache
+from workspace_needs.tables import ABSENT, DEBIAN, OURS, Tables
+
+COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolve", "update",
+            "what-needs", "where-defined")
+OF_A_WORKSPACE = ("install", "check")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """rosdep's exit code; 1 where a key is unknown, which is named after the rest was installed."""
+    args = list(sys.argv[1:] if argv is None else argv)
+    try:
+        from rosdep2.main import rosdep_main
+    except ImportError:
+        print("rosdep: Debian's package python3-rosdep2 is missing: make setup, or as root "
+              "apt-get install python3-rosdep2", file=sys.stderr)
+        return 1
+    if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user's own sources, and then rosdep's own ways
+        return _code(rosdep_main, args)
+    command = next((word for word in args if word in COMMANDS), "")
+    if command == "init":
+        print("rosdep: no init is needed, its sources are part of this workspace")
+        return 0
+    try:
+        cache.enter()
+    except OSError as error:
+        print(f"rosdep: its cache cannot be written: {error}", file=sys.stderr)
+        return 1
+    tables = Tables()
+    if command == "update":
+        print(f"rosdep: its {len(tables.debian) + len(tables.ours)} keys are part of this "
+              "workspace and up to date; no network is needed")
+        return 0
+    _follow_distro(args)
+    if command in OF_A_WORKSPACE:
+        return _of_a_workspace(rosdep_main, args, command, tables)
+    code = _code(rosdep_main, args)
+    if code and command == "resolve":
+        for key in args[args.index(command) + 1:]:
+            if (answer := tables.answer(key)).kind not in (OURS, DEBIAN) and key[0] != "-":
+                print(f"rosdep: {key}: {answer.why}", file=sys.stderr)
+    return code
+
+
+def _code(rosdep_main: Callable, args: list[str]) -> int:
+    try:
+        return rosdep_main(args) or 0
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+
+
+def _follow_distro(args: list[str]) -> None:
+    """`--rosdistro noetic` on a terminal that says Debian is no mistake worth a warning."""
+    for word, value in zip(args, [*args[1:], ""]):
+        if word.startswith("--rosdistro"):
+            os.environ["ROS_DISTRO"] = word.partition("=")[2] or value
+
+
+def _of_a_workspace(rosdep_main: Callable, args: list[str], command: str, tables: Tables) -> int:
+    """install or check: what nobody has stops nothing, and is said at the end."""
+    simulate = bool({"-s", "--simulate"} & set(args))
+    watch = Watch(tables)
+    watch.patch(simulate)
+    code = _code(rosdep_main, [*args, "-n"])  # Debian knows what its packages need
+    absent, unknown = watch.told()
+    for line in absent + unknown:
+        print(line, file=sys.stderr)
+    if watch.failure:
+        print(f"rosdep: {watch.failure}", file=sys.stderr)
+    return code or int(bool(unknown))
+
+
+class Watch:
+    """Stands between rosdep and its tables, and remembers the keys that nobody has."""
+
+    def __init__(self, tables: Tables):
+        self._tables = tables
+        self._here = set(rospkg.RosPack().list())
+        self._askers: dict[str, set[str]] = {}  # by key the packages that ask for it
+        self._not_had: list[str] = []
+        self.failure = ""
+
+    def patch(self, simulate: bool) -> None:
+        """For the rest of this process."""
+        from rosdep2 import installers, lookup
+        from rosdep2.platforms import debian
+
+        view_lookup, get_rosdeps = lookup.RosdepView.lookup, lookup.RosdepLookup.get_rosdeps
+
+        def look_up(view, key: str):
+            try:
+                return view_lookup(view, key)
+            except KeyError:
+                return lookup.RosdepDefinition(key, {"debian": list(self._other(key))})
+
+        def ask(lookups, resource: str, implicit: bool = True):
+            keys = get_rosdeps(lookups, resource, implicit=implicit)
+            for key in keys:
+                self._askers.setdefault(key, set()).add(resource)
+            return keys
+
+        def one_command(installer, resolved, interactive=True, reinstall=False, quiet=False):
+            wanted = installer.get_packages_to_install(resolved, reinstall=reinstall)
+            yes = [] if interactive else ["-y"]
+            return [installer.elevate_priv(["apt-get", "install", *yes, *wanted])] if wanted else []
+
+        lookup.RosdepView.lookup = look_up
+        lookup.RosdepLookup.get_rosdeps = ask
+        debian.AptInstaller.get_install_command = one_command
+        if not simulate:
+            installers.subprocess = SimpleNamespace(call=self._install)
+
+    def _install(self, command: list[str]) -> int:
+        """In rosdep's place, for what `one_command` made."""
+        words = command[command.index("install") + 1:]
+        if "-y" not in words and sys.stdin.isatty():
+            answer = input(f"Install {len(words)} Debian packages ({' '.join(words)})? [Y/n] ")
+            if answer.strip().lower() not in ("", "y", "yes"):
+                self.failure = "nothing was installed"
+                return 1
+        try:
+            apt.install([word for word in words if word != "-y"])
+        except apt.AptError as error:
+            self.failure = str(error)
+            return 1
+        return 0
+
+    def _other(self, key: str) -> tuple[str, ...]:
+        """Packages for a key that rosdep's files have not; none where nobody has it."""
+        answer = self._tables.answer(key)
+        if answer.kind not in (OURS, DEBIAN) and key not in self._here:
+            self._not_had.append(key)
+        return answer.packages
+
+    def told(self) -> tuple[list[str], list[str]]:
+        """A line for each key that nobody has: those of which that is known, and the others.
+
+        rosdep also looks up what Debian's packages ask for, which apt sees to.
+        """
+        absent, unknown = [], []
+        for key in sorted(set(self._not_had) & set(self._askers)):
+            answer = self._tables.answer(key)
+            line = f"rosdep: {key} (for {', '.join(sorted(self._askers[key]))}): {answer.why}"
+            (absent if answer.kind == ABSENT else unknown).append(line)
+        return absent, unknown

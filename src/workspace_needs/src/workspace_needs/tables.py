@@ -1,0 +1,114 @@
+"""The tables as one: for a name that a package asks for, who has it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from workspace_needs.places import package_folder, release
+
+OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+# Debian's names of libraries have what ROS packages' never have; so one is not taken for another.
+DEBIAN_NAME = re.compile(r"lib[a-z0-9.+-]+|[a-z0-9][a-z0-9.+]*(-[a-z0-9.+]+)+")
+
+
+class TableError(ValueError):
+    """A file of data/ is not as it should be; the message names file and key."""
+
+
+@dataclass(frozen=True)
+class Absence:
+    """A row of data/absent.yaml."""
+
+    what: str
+    why: str
+    keys: tuple[str, ...]
+    headers: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Who has a key: OURS, DEBIAN with its packages, ABSENT with the reason, or UNKNOWN."""
+
+    kind: str
+    packages: tuple[str, ...] = ()
+    why: str = ""
+
+
+class Tables:
+    """rosdep/*.yaml and data/*.yaml for one release of Debian."""
+
+    def __init__(self, folder: Path | None = None, of_release: str | None = None):
+        self._folder = folder or package_folder()
+        self._release = of_release or release()
+        self.ours = frozenset(self._read("rosdep/ours.yaml"))
+        self.debian: dict[str, Any] = self._read("rosdep/debian.yaml")
+        self.cmake_names: dict[str, str] = self._read("data/cmake_names.yaml")
+        self.absences = read_absences(self._folder / "data/absent.yaml")
+
+    def _read(self, name: str) -> dict:
+        return yaml.load((self._folder / name).read_text("utf-8"), LOADER) or {}
+
+    def answer(self, key: str) -> Answer:
+        """Who has `key`; one that has Debian's own form of a name is looked up in apt's list."""
+        packages = self.debian.get(key, {}).get("debian", {}).get(self._release)
+        if packages is not None:
+            return Answer(DEBIAN, tuple(packages))
+        if key in self.ours:
+            return Answer(OURS)
+        if absence := self.absence(key):
+            return Answer(ABSENT, why=absence.why)
+        if DEBIAN_NAME.fullmatch(key) and key in self._apt_names:
+            return Answer(DEBIAN, (key,))
+        return Answer(UNKNOWN, why=self._nobody(key))
+
+    def absence(self, key: str) -> Absence | None:
+        """Why nobody has `key`, if that is known."""
+        return next((row for row in self.absences
+                     if any(fnmatchcase(key, pattern) for pattern in row.keys)), None)
+
+    def missing_header(self, header: str) -> Absence | None:
+        """Why `#include <header>` finds nothing here, if that is known."""
+        folder, slash, _ = header.partition("/")
+        return next((row for row in self.absences if slash and folder in row.headers), None)
+
+    def _nobody(self, key: str) -> str:
+        similar = get_close_matches(key, [*self.ours, *self.debian], 1, 0.85)
+        if similar:
+            return f"nobody has that name; is {similar[0]} meant?"
+        return ("neither Debian nor this repository has it; clone its source into src/, or mend "
+                "the name")
+
+    @cached_property
+    def _apt_names(self) -> frozenset[str]:
+        try:
+            listed = subprocess.run(["apt-cache", "pkgnames"], capture_output=True, text=True,
+                                    check=False).stdout
+        except OSError:
+            return frozenset()
+        return frozenset(listed.split())
+
+
+def read_absences(path: Path) -> list[Absence]:
+    """The rows; TableError names an unknown or missing key."""
+    rows = []
+    for number, row in enumerate(yaml.load(path.read_text("utf-8"), LOADER), 1):
+        where = f"{path.name}, row {number}"
+        for key in row:
+            if key not in ("what", "why", "keys", "headers"):
+                raise TableError(f"{where}: unknown key {key!r}; there are what, why, keys, headers")
+        for key in ("what", "why", "keys"):
+            if not row.get(key):
+                raise TableError(f"{where}: {key} is missing")
+        rows.append(Absence(row["what"], row["why"], tuple(row["keys"]),
+                            tuple(row.get("headers", ()))))
+    return rows

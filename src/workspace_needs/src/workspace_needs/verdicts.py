@@ -1,0 +1,114 @@
+"""Package by package: builds, needs Debian packages, or is left out and why."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import rospkg
+
+from workspace_needs.tables import ABSENT, DEBIAN, OURS, UNKNOWN, Answer, Tables
+from workspace_needs.workspace import Asked, Package, read_workspace
+
+# Names in find_package that come with CMake or catkin, or that its own script looks for.
+WITH_CMAKE = {"catkin", "Threads", "PkgConfig", "PythonInterp", "PythonLibs", "Python", "Python3",
+              "Doxygen", "OpenMP", "Java", "Git", "Matlab", "CUDA"}
+
+
+@dataclass
+class Verdict:
+    """What will become of one package."""
+
+    name: str
+    folder: Path
+    missing: dict[str, str] = field(default_factory=dict)  # Debian package: the key that needs it
+    stops: dict[str, str] = field(default_factory=dict)  # what keeps it from being built: why
+    lacks: dict[str, str] = field(default_factory=dict)  # what it will do without: why
+    left_out: dict[str, str] = field(default_factory=dict)  # source file: why it is not compiled
+
+    @property
+    def builds(self) -> bool:
+        """Once what is missing is installed."""
+        return not self.stops
+
+
+def judge(source: Path, tables: Tables | None = None) -> list[Verdict]:
+    """A verdict for each package below `source` that is not of this repository."""
+    tables = tables or Tables()
+    packages = [package for package in read_workspace(source) if not package.is_ours]
+    names = {package.name for package in packages}
+    known = names | set(rospkg.RosPack().list())
+    answers = {asked.key: _answer(asked.key, tables, names)
+               for package in packages for asked in package.asked}
+    installed = installed_packages(name for answer in answers.values() for name in answer.packages)
+    verdicts = [_verdict(package, answers, installed, known, tables) for package in packages]
+    _pass_on(packages, verdicts)
+    return verdicts
+
+
+def _answer(key: str, tables: Tables, names: set[str]) -> Answer:
+    if key in names or key in WITH_CMAKE:
+        return Answer(OURS)
+    answer = tables.answer(key)
+    if answer.kind in (UNKNOWN, ABSENT) and key in tables.cmake_names:
+        return tables.answer(tables.cmake_names[key])
+    return answer
+
+
+def _verdict(package: Package, answers: dict[str, Answer], installed: set[str], known: set[str],
+             tables: Tables) -> Verdict:
+    verdict = Verdict(package.name, package.folder)
+    if package.problem:
+        verdict.stops["package.xml"] = package.problem
+    for asked in package.asked:
+        answer = answers[asked.key]
+        if answer.kind == DEBIAN:
+            verdict.missing.update(
+                {name: asked.key for name in answer.packages if name not in installed})
+        elif not (answer.kind == OURS or asked.key in known or _is_answered(asked, answer)):
+            said = f"{answer.why} ({asked.where} asks for it)"
+            place = verdict.stops if asked.stops else verdict.lacks
+            place.setdefault(asked.key, said)
+    for header, file in package.includes:
+        absence = tables.missing_header(header)
+        if absence and not any(package.folder.glob(f"**/{header}")):
+            verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
+    for key in verdict.stops:
+        verdict.lacks.pop(key, None)
+    return verdict
+
+
+def _is_answered(asked: Asked, answer: Answer) -> bool:
+    """Whether CMake finds it although no table has it.
+
+    find_package(gazebo) is answered here, without headers; a name that nobody knows may be a
+    module of the package's own.
+    """
+    return asked.of_cmake and (asked.key == "gazebo" or answer.kind == UNKNOWN)
+
+
+def _pass_on(packages: list[Package], verdicts: list[Verdict]) -> None:
+    """What is built with a package that is left out is left out, too."""
+    by_name = {verdict.name: verdict for verdict in verdicts}
+    changed = True
+    while changed:
+        changed = False
+        for package in packages:
+            for asked in package.asked:
+                other = by_name.get(asked.key)
+                if asked.stops and other and other.stops and by_name[package.name].builds:
+                    by_name[package.name].stops[asked.key] = "it is left out itself"
+                    changed = True
+
+
+def installed_packages(names: Iterable[str]) -> set[str]:
+    """Those of Debian's packages `names` that are installed."""
+    wanted = sorted(set(names))
+    if not wanted:
+        return set()
+    listed = subprocess.run(
+        ["dpkg-query", "-W", "-f", "${Package} ${db:Status-Status}\n", *wanted],
+        capture_output=True, text=True, check=False).stdout
+    return {line.split()[0] for line in listed.splitlines() if line.endswith(" installed")}

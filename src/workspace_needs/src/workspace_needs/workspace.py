@@ -1,0 +1,130 @@
+"""What the packages of a workspace ask for: package.xml, CMakeLists.txt, launch files, includes."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from catkin_pkg.package import InvalidPackage, parse_package
+from catkin_pkg.packages import find_package_paths
+
+COMMENT = re.compile(r"#[^\n]*")
+FIND_PACKAGE = re.compile(r"\bfind_package\s*\(\s*([\w.+-]+)([^)]*)\)", re.IGNORECASE)
+SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^)]*)\)", re.IGNORECASE)
+VARIABLE = re.compile(r"\$\{(\w+)\}")
+INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
+NODE = re.compile(r"<node\b[^>]*\bpkg=[\"']([\w-]+)[\"']")
+FOUND = re.compile(r"\$\(find\s+([\w-]+)\s*\)")
+SOURCES = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp")
+OUR_ADDRESS = "courses@example.org"
+LARGEST = 1 << 20  # bytes of a file that is looked through
+
+
+class WorkspaceError(ValueError):
+    """There is no such workspace; the message says what to type."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A name that a package asks for, and the file that says so."""
+
+    key: str
+    where: str
+    stops: bool = False  # without it CMake stops
+    of_cmake: bool = False  # find_package(NAME), which need not be a ROS package
+
+
+@dataclass
+class Package:
+    """One package of the workspace."""
+
+    name: str
+    folder: Path
+    asked: list[Asked] = field(default_factory=list)
+    includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
+    problem: str = ""  # why its package.xml cannot be read
+    is_ours: bool = False  # of this repository: setup sees to what it asks for
+
+
+def source_folder(path: Path) -> Path:
+    """The src/ of a workspace, or the folder of packages itself; WorkspaceError if it is neither."""
+    path = path.expanduser()
+    if not path.is_dir():
+        raise WorkspaceError(f"{path}: there is no such folder; give the workspace's, such as "
+                             "~/catkin_ws")
+    for folder in (path / "src", path):
+        if folder.is_dir() and next(iter(find_package_paths(str(folder))), None) is not None:
+            return folder.resolve()
+    if (path / "src").is_dir():
+        raise WorkspaceError(f"{path}/src: there is no package in it; clone one into it first")
+    raise WorkspaceError(f"{path}: this is no workspace, it has no src/ with packages; give the "
+                         "folder above src/, such as ~/catkin_ws")
+
+
+def read_workspace(source: Path) -> list[Package]:
+    """All packages below `source`, by name."""
+    packages = [_read(source / path) for path in find_package_paths(str(source))]
+    return sorted(packages, key=lambda package: package.name)
+
+
+def _read(folder: Path) -> Package:
+    try:
+        manifest = parse_package(str(folder), warnings=[])
+        manifest.evaluate_conditions({"ROS_VERSION": "1", "ROS_PYTHON_VERSION": "3",
+                                      "ROS_DISTRO": os.environ.get("ROS_DISTRO", "noetic")})
+    except (InvalidPackage, OSError, ValueError) as error:
+        return Package(folder.name, folder, problem=" ".join(str(error).split()))
+    package = Package(manifest.name, folder)
+    package.is_ours = any(person.email == OUR_ADDRESS for person in manifest.maintainers)
+    package.asked += [Asked(key, "package.xml") for key in _declared(manifest)]
+    package.asked += _built_with(folder / "CMakeLists.txt")
+    for path in _files(folder):
+        shown = str(path.relative_to(folder))
+        if path.suffix in SOURCES:
+            package.includes += [(header, shown) for header in INCLUDE.findall(_text(path))]
+        elif ".launch" in path.suffixes:
+            text = _text(path)
+            package.asked += [Asked(key, shown) for key in
+                              dict.fromkeys(NODE.findall(text) + FOUND.findall(text))]
+    return package
+
+
+def _declared(manifest) -> list[str]:
+    kinds = ("build_depends", "buildtool_depends", "build_export_depends", "exec_depends",
+             "buildtool_export_depends", "test_depends")
+    return list(dict.fromkeys(
+        depend.name for kind in kinds for depend in getattr(manifest, kind)
+        if depend.evaluated_condition is not False))
+
+
+def _built_with(path: Path) -> Iterator[Asked]:
+    """What find_package(catkin COMPONENTS ...) and find_package(NAME REQUIRED) ask for."""
+    text = COMMENT.sub("", _text(path))
+    variables = {name: value for name, value in SET.findall(text)}
+    for name, rest in FIND_PACKAGE.findall(text):
+        words = VARIABLE.sub(lambda found: variables.get(found.group(1), ""), rest).split()
+        stops = "REQUIRED" in words
+        if name == "catkin":
+            _, _, parts = " ".join(words).partition("COMPONENTS")
+            for key in parts.split():
+                if re.fullmatch(r"[A-Za-z][\w-]*", key) and not key.isupper():
+                    yield Asked(key, path.name, stops)
+        elif stops:
+            yield Asked(name, path.name, stops=True, of_cmake=True)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for place, below, names in os.walk(folder):
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        yield from (Path(place) / name for name in sorted(names))
+
+
+def _text(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            return file.read(LARGEST).decode("utf-8", "replace")
+    except OSError:
+        return ""
