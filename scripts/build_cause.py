@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 MOST = 6
-COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: |^\S*ld: |undefined reference to |"
-                      r"^collect2: error")
+COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: ")
+LINKER = re.compile(r"undefined reference to |ld: cannot find ")
 CMAKE = re.compile(r"^CMake Error")
 NOT_FOUND = re.compile(r'provided by "([^"]+)"|required component \'([^\']+)\'')
 GENERATOR = re.compile(r"^(ERROR|Error|.*Error\(s\) in |.*RuntimeError: |.*InvalidPackage|"
@@ -60,6 +60,8 @@ def cause(text: str) -> list[str]:
             return block(rest)[:MOST]
         if COMPILER.search(line) or STOPPED.search(line):
             return compiler_block(rest)
+        if LINKER.search(line):
+            return [line]
         if PYTHON.search(line):
             return traceback_block(rest)
         if GENERATOR.search(line):
