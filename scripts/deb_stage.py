@@ -77,7 +77,7 @@ def compile_modules(stage: Path, folder: Path, epoch: int) -> None:
     for cached in list(folder.rglob("__pycache__")):
         shutil.rmtree(cached)
     settle_times(stage, epoch)  # a compiled module remembers its source's
-    for modules in (folder / MODULES, folder / "lib/python3/dist-packages"):
+    for modules in (folder / MODULES, folder / "rosdep", folder / "lib/python3/dist-packages"):
         compileall.compile_dir(
             modules, maxlevels=50, quiet=2, stripdir=str(stage), prependdir="/",
             workers=os.cpu_count() or 1, hardlink_dupes=False)
@@ -115,6 +115,8 @@ def main() -> int:
     stage, prefix = Path(sys.argv[1]), sys.argv[2]
     folder = stage / prefix.lstrip("/")
     add_packages(folder / MODULES)
+    shutil.copytree(Path(sys.prefix) / "rosdep", folder / "rosdep",
+                    ignore=shutil.ignore_patterns("__pycache__", "bin"))
     add_interpreter(folder)
     settle_interpreter(folder, prefix)
     compile_modules(stage, folder, epoch())

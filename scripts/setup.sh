@@ -140,13 +140,15 @@ python_environment() {
   echo "$venv" >"$state/venv"
 }
 python_packages() {
-  local file
-  for file in requirements.txt $([ "$tests" = no ] || echo requirements-test.txt) \
+  local file target
+  for file in requirements.txt requirements-rosdep.txt $([ "$tests" = no ] || echo requirements-test.txt) \
     $([ "$bench" = no ] || echo requirements-bench.txt); do
     ! cmp -s "$root/$file" "$state/$file" || continue
     step 4 "installing the Python packages of $file"
     touch "$state/venv-unfinished"
-    logged pip env -u PIP_USER -u PIP_TARGET -u PIP_PREFIX "$venv/bin/python3" -I -m pip install --no-user --no-input \
+    target=(--no-user)
+    if [ "$file" = requirements-rosdep.txt ]; then target=(--target "$venv/rosdep" --upgrade); fi
+    logged pip env -u PIP_USER -u PIP_TARGET -u PIP_PREFIX "$venv/bin/python3" -I -m pip install "${target[@]}" --no-input \
       --disable-pip-version-check --no-deps --only-binary :all: -r "$root/$file" || {
       ! network_failed pip || fail "no network: pip cannot reach its package index (.setup/pip.log says more); connect and run this again"
       fail_with_log "pip install failed" pip

@@ -3,7 +3,7 @@ for a thing as large as it is included: each of our stand-ins knows its own."""
 
 import numpy as np
 import pytest
-from test_props import RESOURCES, bounds, load
+from prop_models import RESOURCES, bounds, load
 
 from bullet_sim.description import Cylinder
 from bullet_sim.errors import FormatError

@@ -86,20 +86,3 @@ def _update() -> None:
             sources_list.update_sources_list(quiet=True)
     finally:
         yaml.safe_load = plain
-
-
-def main() -> None:
-    """Makes the cache, and rosdep's usual one from it where the user has none.
-
-    rosrun and rospack look for the usual one, and complain in each new home that lacks it.
-    """
-    parent = _home().parent
-    home = enter()
-    usual = parent / "rosdep" / "sources.cache"
-    if not usual.exists():
-        usual.parent.mkdir(exist_ok=True)
-        shutil.copytree(home / "rosdep" / "sources.cache", usual)
-
-
-if __name__ == "__main__":
-    main()

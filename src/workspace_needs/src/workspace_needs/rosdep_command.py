@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 
 import rospkg
@@ -15,6 +16,7 @@ from workspace_needs.tables import ABSENT, DEBIAN, OURS, Tables
 COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolve", "update",
             "what-needs", "where-defined")
 OF_A_WORKSPACE = ("install", "check")
+LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see requirements-rosdep.txt
 
 
 def main(argv: list[str] | None = None) -> int:
