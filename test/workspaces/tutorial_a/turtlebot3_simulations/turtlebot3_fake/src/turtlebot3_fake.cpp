@@ -1,3 +1,5 @@
+#include "turtlebot3_fake/turtlebot3_fake.h"
+
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 #include <tf/transform_broadcaster.h>
@@ -6,7 +8,7 @@
 int main(int argc, char** argv) {
   ros::init(argc, argv, "turtlebot3_fake_node");
   ros::NodeHandle node;
-  ros::Publisher odometry = node.advertise<nav_msgs::Odometry>("odom", 10);
+  ros::Publisher odometry = node.advertise<nav_msgs::Odometry>(kOdomFrame, 10);
   tf::TransformBroadcaster broadcaster;
   ros::spin();
   return 0;
