@@ -59,3 +59,16 @@ def test_clouds_that_are_none():
     with pytest.raises(BadCloud, match="2 rows of 2 points of 12 bytes, and has 5 bytes"):
         xyz_of(b"short", FIELDS, 2, 2, 12, 24, False)
     assert xyz_of(b"", FIELDS, 0, 0, 12, 0, False).shape == (0, 3)
+
+
+@pytest.mark.parametrize("field", [("x", 0, 0), ("z", 10, 7)])
+def test_a_field_that_no_point_can_hold_is_named(field):
+    fields = [entry for entry in FIELDS if entry[0] != field[0]] + [field]
+    with pytest.raises(BadCloud, match=f"field {field[0]} has type {field[2]} at byte {field[1]}"):
+        xyz_of(bytes(12), fields, 1, 1, 12, 12, False)
+
+
+@pytest.mark.parametrize("wrong", [{"angle_min": "a"}, {"use_inf": "yes"}, {"range_max": True}])
+def test_a_parameter_of_another_kind_is_named(wrong):
+    with pytest.raises(ValueError, match=f"parameter {next(iter(wrong))} is "):
+        Settings(**wrong)

@@ -33,3 +33,10 @@ def test_of_equals_the_first_holds():
 def test_files_that_cannot_be_used(file, said):
     with pytest.raises(BadFile, match=said):
         read_holding(file, "mux.yaml")
+
+
+def test_a_clock_that_goes_back_frees_the_robot():
+    holding = read_holding(FILE, "mux.yaml")
+    safety, teleop, _ = holding.subscribers
+    assert holding.take(safety, 100.0)
+    assert holding.take(teleop, 1.0) and holding.active == "teleop"

@@ -49,7 +49,7 @@ def scan_angles(camera: Pinhole) -> Angles:
 
 def rows_of(camera: Pinhole, scan_height: int) -> slice:
     """The `scan_height` rows around the optical axis."""
-    half = scan_height / 2.0
+    half = scan_height // 2  # as upstream, in whole rows
     if scan_height < 1 or half > camera.center_y or half > camera.height - camera.center_y:
         raise BadDepth(f"scan_height {scan_height} does not fit an image of {camera.height} rows "
                        f"whose optical axis is at row {camera.center_y:g}")

@@ -18,6 +18,11 @@ def xyz_of(data: bytes, fields: Sequence[tuple[str, int, int]], width: int, heig
     if missing := [name for name in "xyz" if name not in known]:
         raise BadCloud(f"the cloud has no field {', '.join(missing)}; it has "
                        f"{', '.join(known) or 'none'}")
+    for name in "xyz":
+        offset, kind = known[name]
+        if kind not in TYPES or offset + np.dtype(TYPES[kind]).itemsize > point_step:
+            raise BadCloud(f"field {name} has type {kind} at byte {offset}, which a point of "
+                           f"{point_step} bytes cannot hold")
     if width * height == 0:
         return np.zeros((0, 3))
     if len(data) < row_step * height or row_step < point_step * width:

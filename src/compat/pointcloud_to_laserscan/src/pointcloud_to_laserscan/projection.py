@@ -2,7 +2,7 @@
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -22,6 +22,11 @@ class Settings:
     inf_epsilon: float = 1.0
 
     def __post_init__(self):
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, bool) != (field.name == "use_inf") or isinstance(value, str):
+                raise ValueError(f"parameter {field.name} is {value!r}, not a "
+                                 f"{'flag' if field.name == 'use_inf' else 'number'}")
         if not self.angle_increment > 0.0 or not self.angle_max > self.angle_min:
             raise ValueError(f"angle_min {self.angle_min:g}, angle_max {self.angle_max:g} and "
                              f"angle_increment {self.angle_increment:g} leave no angles; "

@@ -40,14 +40,21 @@ def node_instead(words: Sequence[str]) -> list[str] | None:
     if len(words) < 2 or words[0] not in ("load", "standalone") or words[1] not in NODES:
         return None
     package, executable = NODES[words[1]]
-    try:
-        folder = rospkg.RosPack().get_path(words[1].split("/")[0])
-        if "<nodelet" in (Path(folder) / "package.xml").read_text(encoding="utf-8"):
-            return None  # a package of the learner's own that has the real one
-    except (rospkg.ResourceNotFound, OSError):
-        pass  # it is known here by another package's name
+    if has_nodelets(words[1].split("/")[0]):
+        return None  # a package of the learner's own that has the real one
     found = find_node(package, executable)
     return [found[0], *(word for word in words[2:] if ":=" in word)] if found else None
+
+
+def has_nodelets(package: str) -> bool:
+    """Whether a package of that name, Debian's or the learner's, exports nodelets."""
+    if (Path("/usr/share") / package / "nodelet_plugins.xml").exists():
+        return True
+    try:
+        folder = rospkg.RosPack().get_path(package)
+        return "<nodelet" in (Path(folder) / "package.xml").read_text(encoding="utf-8")
+    except (rospkg.ResourceNotFound, OSError):
+        return False
 
 
 def missing(words: Sequence[str]) -> str:
@@ -55,8 +62,7 @@ def missing(words: Sequence[str]) -> str:
     if len(words) < 2 or words[0] not in ("load", "standalone"):
         return ""
     package = words[1].split("/")[0]
-    plugins = Path("/usr/share") / package / "nodelet_plugins.xml"
-    if package not in INSTALLABLE or plugins.exists():
+    if package not in INSTALLABLE or has_nodelets(package):
         return ""
     return f"{words[1]} is not installed. Type: sudo apt-get install {INSTALLABLE[package]}"
 

@@ -44,11 +44,11 @@ class LocalizationNode:
         if not self.rate > 0.0:
             raise BadConfig(f"frequency is {self.rate:g}; it has to be above 0 Hz")
         self.timeout = float(rospy.get_param("~sensor_timeout", 1.0 / self.rate))
-        self.map = rospy.get_param("~map_frame", "map")
-        self.odom = rospy.get_param("~odom_frame", "odom")
-        self.base = rospy.get_param("~base_link_frame", "base_link")
-        self.output = rospy.get_param("~base_link_frame_output", self.base)
-        self.world = rospy.get_param("~world_frame", self.odom)
+        self.map = rospy.get_param("~map_frame", "map").lstrip("/")
+        self.odom = rospy.get_param("~odom_frame", "odom").lstrip("/")
+        self.base = rospy.get_param("~base_link_frame", "base_link").lstrip("/")
+        self.output = rospy.get_param("~base_link_frame_output", self.base).lstrip("/")
+        self.world = rospy.get_param("~world_frame", self.odom).lstrip("/")
         if self.world not in (self.map, self.odom):
             raise BadConfig(f"world_frame '{self.world}' has to be map_frame '{self.map}' or "
                             f"odom_frame '{self.odom}'")

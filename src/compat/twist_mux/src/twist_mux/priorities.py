@@ -25,7 +25,9 @@ class Source:
     locked: bool = False  # of a lock: what its topic said last
 
     def expired(self, now: float) -> bool:
-        return self.timeout > 0.0 and (self.heard is None or now - self.heard > self.timeout)
+        """Silent for its timeout, or heard before the clock went back."""
+        return self.timeout > 0.0 and (
+            self.heard is None or not 0.0 <= now - self.heard <= self.timeout)
 
 
 @dataclass

@@ -38,8 +38,12 @@ class Holding:
         return True
 
     def let_go(self, now: float) -> None:
-        """Nobody holds the robot when its holder has been silent for its timeout."""
-        if self.holder is not None and now - self.holder.heard > self.holder.timeout:
+        """Nobody holds the robot when its holder has been silent for its timeout.
+
+        Nor when the clock went back, as it does when the simulation is reset.
+        """
+        if self.holder is not None and not (
+                0.0 <= now - self.holder.heard <= self.holder.timeout):
             self.holder = None
 
     @property

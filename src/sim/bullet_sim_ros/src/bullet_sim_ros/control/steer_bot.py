@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
 from bullet_sim.formats.urdf_facts import RobotFacts
 from bullet_sim.model import Model
@@ -20,8 +18,8 @@ def open_steer_bot(model: Model, namespace: str, robot: RobotFacts) -> SteerBotH
     p = ControllerParameters(names.join(namespace, NAMESPACE))
     wheels, steers = _pair(p, "virtual_rear_wheels"), _pair(p, "virtual_front_steers")
     geometry = SteerBotGeometry(
-        _length(p, "wheel_separation_w", robot, steers[0], steers[1]),
-        _length(p, "wheel_separation_h", robot, wheels[0], steers[0]),
+        _length(p, "wheel_separation_w", robot, steers[0], steers[1], axis=1),
+        _length(p, "wheel_separation_h", robot, wheels[0], steers[0], axis=0),
         p.flag("enable_ackermann_link", True))
     return SteerBotHardware(
         model, p.text("rear_wheel"), p.text("front_steer"), wheels, steers, geometry,
@@ -37,7 +35,8 @@ def _pair(p: ControllerParameters, name: str) -> list[str]:
 
 
 def _length(p: ControllerParameters, name: str, robot: RobotFacts, first: str,
-            second: str) -> float:
+            second: str, axis: int) -> float:
+    """A parameter, or how far two joints lie apart along x (axis 0) or y (1), m."""
     if p.has(name):
         return p.number(name)
-    return math.dist(robot.pose(first).position, robot.pose(second).position)
+    return abs(robot.pose(first).position[axis] - robot.pose(second).position[axis])
