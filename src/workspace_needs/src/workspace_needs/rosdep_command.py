@@ -22,10 +22,11 @@ LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see requirements-r
 def main(argv: list[str] | None = None) -> int:
     """rosdep's exit code; 1 where a key is unknown, which is named after the rest was installed."""
     args = list(sys.argv[1:] if argv is None else argv)
+    sys.path.append(str(LIBRARY))
     try:
         from rosdep2.main import rosdep_main
-    except ImportError:
-        print("rosdep: its Python package is missing: make setup", file=sys.stderr)
+    except ImportError as error:
+        print(f"rosdep: {error}: make setup installs it", file=sys.stderr)
         return 1
     if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user's own sources, and then rosdep's own ways
         return _code(rosdep_main, args)

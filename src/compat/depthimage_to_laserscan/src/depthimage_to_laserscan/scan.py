@@ -49,11 +49,10 @@ def scan_angles(camera: Pinhole) -> Angles:
 
 def rows_of(camera: Pinhole, scan_height: int) -> slice:
     """The `scan_height` rows around the optical axis."""
-    half = scan_height // 2  # as upstream, in whole rows
-    if scan_height < 1 or half > camera.center_y or half > camera.height - camera.center_y:
+    first = int(camera.center_y - scan_height // 2)  # as upstream, in whole rows
+    if scan_height < 1 or first < 0 or first + scan_height > camera.height:
         raise BadDepth(f"scan_height {scan_height} does not fit an image of {camera.height} rows "
                        f"whose optical axis is at row {camera.center_y:g}")
-    first = int(camera.center_y - half)
     return slice(first, first + scan_height)
 
 
