@@ -2,6 +2,7 @@
 
 `workspaces/shapes` holds a package of each shape that learners bring, `workspaces/tutorial_a`
 packages with the names, dependencies and kinds of targets of those that tutorial A clones.
+It compiles on all processors, so it runs alone.
 """
 
 import os
