@@ -205,7 +205,7 @@ def test_nodes_of_the_workspace_work_together(built, running, command, wanted):
 def test_the_tutorials_robot_drives_and_its_script_runs(built, running):
     running("rostopic echo -n1 /odom/pose/pose/position/x", "---")
     running("bash -c 'timeout 5 roslaunch turtlebot3_gazebo turtlebot3_simulation.launch; "
-            "rosservice call /gazebo/get_model_state turtlebot3_waffle world | grep -A1 position'",
-            "x: 0.")
+            "rosservice call /gazebo/get_model_state turtlebot3_waffle world | grep -A1 position"
+            " | grep -E \"x: (0[.][1-9]|[1-9])\" && echo driven'", "driven")
     running("bash -c 'timeout 10 rosrun learning_topic 05follower_proporation.py & "
             "timeout 8 rostopic echo -n1 /cmd_vel; wait'", "angular")
