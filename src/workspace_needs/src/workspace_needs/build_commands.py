@@ -1,9 +1,9 @@
 """`catkin_make`, `catkin_make_isolated` and `catkin build` as pages type them.
 
-A package that asks for what nobody has must not stop the others: catkin_make configures all packages
-in one run of CMake, which ends at the first that cannot find a component, and the other two fail at
-that package. So a line says what is left out, and the tool gets its name in the tool's own way:
-CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
+A package that asks for what nobody has must not stop the others: catkin_make configures all
+packages in one run of CMake, which ends at the first that cannot find a component, and the other
+two fail at that package. So a line says what is left out, and the tool gets its name in the tool's
+own way: CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
 """
 
 from __future__ import annotations

@@ -108,7 +108,8 @@ def _unfit(manifest, folder: Path) -> dict[str, str]:
     if kind.startswith("ament"):
         return {kind: "this is a package of ROS 2; clone its branch for ROS 1, as with "
                       "git clone -b noetic"}
-    if kind == "catkin" and not ((folder / "CMakeLists.txt").is_file() or manifest.is_metapackage()):
+    has_file = (folder / "CMakeLists.txt").is_file()
+    if kind == "catkin" and not has_file and not manifest.is_metapackage():
         return {"CMakeLists.txt": "there is none; catkin_create_pkg makes packages with one"}
     return {}
 

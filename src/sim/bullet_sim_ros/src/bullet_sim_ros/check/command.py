@@ -56,8 +56,8 @@ def main(argv: list[str] | None = None) -> int:
         return 2
     if not findings:
         what = ("no such file or package; try `rospack list`, or give a path" if findings is None
-                else "there is nothing to check: no robot, world or launch file, and no workspace with "
-                "packages of your own")
+                else "there is nothing to check: no robot, world or launch file, and no workspace "
+                "with packages of your own")
         print(f"check: {args.what}: {what}", file=sys.stderr)
         return 2 if findings is None else 0
     shown = findings if args.all else [f for f in findings if f.status != ACCEPTED]
