@@ -72,11 +72,11 @@ def cause(text: str) -> list[str]:
 
 def advice(lines: list[str]) -> str | None:
     """What to type, where a package is what is missing."""
-    for line in lines:
-        if found := NOT_FOUND.search(line):
-            name = found.group(1) or found.group(2)
-            return f"{name} is not installed: `make deps` installs it, or says why nobody has it"
-    return None
+    found = NOT_FOUND.search(" ".join(line.strip() for line in lines))  # CMake wraps its lines
+    if not found:
+        return None
+    name = found.group(1) or found.group(2)
+    return f"{name} is not installed: `make deps` installs it, or says why nobody has it"
 
 
 def main() -> int:

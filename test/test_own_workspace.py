@@ -106,6 +106,10 @@ CMake Error at /usr/share/catkin/cmake/catkinConfig.cmake:82 (find_package):
 Call Stack (most recent call first):
   a/CMakeLists.txt:3 (find_package)
 """, ["catkinConfig.cmake:82", 'provided by "foo_msgs"', "`make deps`"]),
+    "cmake, wrapped before the name": ("""CMake Error at a/CMakeLists.txt:3 (find_package):
+  Could not find a package configuration file provided by
+  "camera_info_manager" with any of the following names:
+""", ["CMakeLists.txt:3", "camera_info_manager is not installed: `make deps`"]),
     "compiler": ("""[ 10%] Building CXX object a.cpp.o
 /ws/src/a/a.cpp:3:10: fatal error: nowhere.h: No such file or directory
     3 | #include <nowhere.h>
