@@ -14,8 +14,9 @@ COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: ")
 LINKER = re.compile(r"undefined reference to |ld: cannot find ")
 CMAKE = re.compile(r"^CMake Error")
 NOT_FOUND = re.compile(r'provided by "([^"]+)"|required component \'([^\']+)\'')
-GENERATOR = re.compile(r"^(ERROR|Error|.*Error\(s\) in |.*RuntimeError: |.*InvalidPackage|"
-                       r"Multiple packages found|The workspace contains|.*SyntaxError: )")
+GENERATOR = re.compile(r"^(catkin_make: |ERROR|Error|.*Error\(s\) in |.*RuntimeError: |"
+                       r".*InvalidPackage|Multiple packages found|The workspace contains|"
+                       r".*SyntaxError: )")
 PYTHON = re.compile(r"^Traceback \(most recent call last\):")
 STOPPED = re.compile(r"No space left on device|virtual memory exhausted|Killed signal|"
                      r"^c\+\+: fatal error: ")

@@ -124,6 +124,9 @@ collect2: error: ld returned 1 exit status
     "package.xml": ("""Error(s) in package '/ws/src/a/package.xml':
 Invalid email "nobody" for person "x"
 """, ["package.xml", "Invalid email"]),
+    "front": ("""Base path: /ws
+catkin_make: src/a/package.xml: Invalid email "x" for person "y"; mend it first
+""", ["src/a/package.xml: Invalid email"]),
     "setup.py": ("""Traceback (most recent call last):
   File "/usr/share/catkin/cmake/interrogate_setup_dot_py.py", line 1, in <module>
   File "/ws/src/a/setup.py", line 2, in <module>
@@ -189,3 +192,11 @@ def test_deps_reads_the_workspace_that_it_is_given():
     done = deps(str(ROOT / "test/workspaces/shapes"))
     assert done.returncode == 0 and done.stdout.startswith("17 packages"), done.stdout + done.stderr
     assert "shape_gazebo: include/shape_gazebo/plugin.h is left out" in done.stdout
+
+
+def test_the_table_of_packages_is_what_its_files_say():
+    if not subprocess.run(["apt-cache", "show", "libroscpp-dev"], capture_output=True).stdout:
+        pytest.skip("apt has no lists here")
+    done = subprocess.run([SETUP_PYTHON, ROOT / "scripts/workspace_table.py", "--check"],
+                          text=True, capture_output=True, timeout=60)
+    assert done.returncode == 0, done.stderr

@@ -1,12 +1,15 @@
 """`rosdep` as it is typed, with an empty home and no network, and apt's answers."""
 
 import importlib.util
+import io
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from workspace_needs.rosdep_command import Watch
+from workspace_needs.tables import Tables
 from workspaces import add_package, turtlebot3_style
 
 from workspace_needs import apt
@@ -62,6 +65,30 @@ def test_what_nobody_has_does_not_stop_it_and_a_mistyped_key_is_named(rosdep, tm
     code, _, said = rosdep(*words)
     assert code == 1 and "rosdep: rospyy (for wheel): nobody has that name; is rospy meant?" in said
     assert said.count("\n") == 2
+
+
+def test_robust_skipped_keys_and_a_folder_called_install(rosdep, tmp_path):
+    add_package(tmp_path / "src", "wheel", "rospyy")
+    add_package(tmp_path / "install", "wheel", "rospyy")
+    words = ("install", "--from-paths", "src", "--ignore-src", "-y", "-s")
+    assert rosdep(*words, "-r")[0] == 0
+    assert rosdep(*words, "--skip-keys", "rospyy")[::2] == (0, "")
+
+
+def test_a_package_xml_that_cannot_be_read_is_one_line(rosdep, tmp_path):
+    (add_package(tmp_path / "src", "wheel") / "package.xml").write_text("<package>")
+    code, said, errors = rosdep("install", "--from-paths", "src", "--ignore-src", "-y", "-s")
+    assert (code, said, errors.count("\n")) == (1, "", 1)
+    assert errors.startswith("rosdep: src/wheel/package.xml: The manifest contains invalid XML")
+
+
+def test_nothing_is_installed_without_a_yes(monkeypatch):
+    monkeypatch.setattr(apt, "install", pytest.fail)
+    watch = Watch(Tables())
+    for answer in ("", "n\n"):
+        monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
+        assert watch._install(["apt-get", "install", "libno-dev"]) == 1
+        assert watch.failure.startswith("nothing was installed")
 
 
 OFFLINE = "Err:1 http://deb.debian.org\n  Could not connect to 127.0.0.1:9\nE: Failed to fetch x\n"

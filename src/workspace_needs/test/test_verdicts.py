@@ -1,7 +1,7 @@
 """What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
 
 import pytest
-from workspace_needs.catkin_make_command import left_out_options
+from workspace_needs.build_commands import catkin_make_isolated_words, catkin_make_words
 from workspace_needs.verdicts import judge
 from workspace_needs.workspace import WorkspaceError, source_folder
 from workspaces import add_package, turtlebot3_style
@@ -50,14 +50,44 @@ def test_a_plugin_of_gazebo_in_cpp_is_left_out_alone(tmp_path, bare):
     assert verdict.builds and "includes <gazebo/gazebo.hh>" in verdict.left_out["src/p.cpp"]
 
 
-def test_a_debian_name_is_its_own_key_and_a_broken_package_is_said(tmp_path, bare):
+def test_a_debian_name_is_its_own_key(tmp_path, bare):
     source = tmp_path / "src"
     add_package(source, "a", "libxdo-dev no-such-library-dev")
-    (add_package(source, "b") / "package.xml").write_text("<package>", encoding="utf-8")
     found = of(source, "a")
     assert "no-such-library-dev" in found.lacks
     assert "libxdo-dev" in found.missing or "libxdo-dev" in found.lacks  # apt may have no lists
-    assert "package.xml" in of(source, "b").stops
+
+
+def test_what_stops_every_build_tool_is_said_at_once(tmp_path, bare):
+    source = tmp_path / "src"
+    broken = add_package(source, "b") / "package.xml"
+    right = broken.read_text("utf-8")
+    broken.write_text("<package>", encoding="utf-8")
+    with pytest.raises(WorkspaceError, match=r"b/package\.xml: The manifest contains invalid XML"):
+        judge(source)
+    broken.write_text(right, encoding="utf-8")
+    add_package(source, "c")
+    (source / "c/package.xml").write_text(right, encoding="utf-8")
+    with pytest.raises(WorkspaceError, match=r"two packages are called b: .*/b and .*/c"):
+        judge(source)
+
+
+def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
+    source = tmp_path / "src"
+    (add_package(source, "empty") / "CMakeLists.txt").unlink()
+    manifest = add_package(source, "newer", "rclcpp") / "package.xml"
+    manifest.write_text(manifest.read_text("utf-8").replace(
+        "</package>", "<export><build_type>ament_cmake</build_type></export></package>"),
+        encoding="utf-8")
+    assert list(of(source, "empty").stops) == ["CMakeLists.txt"]
+    assert "git clone -b noetic" in of(source, "newer").stops["ament_cmake"]
+
+
+def test_what_cmake_may_find_although_no_list_has_it_is_said_to_be_unsure(tmp_path, bare):
+    folder = add_package(tmp_path / "src", "a", "", "", "find_package(Wibble REQUIRED)\n"
+                         "find_package(BISON REQUIRED)\nfind_package(Own REQUIRED)")
+    (folder / "FindOwn.cmake").touch()
+    assert of(tmp_path / "src", "a").unsure == ["Wibble"]
 
 
 @pytest.mark.parametrize("made, words", [
@@ -85,10 +115,24 @@ def test_deps_says_what_it_would_install_and_what_nobody_has(tmp_path, capsys, b
 def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypatch, bare):
     add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
     add_package(tmp_path / "src", "wheel", "", "")
-    assert left_out_options(["-C", str(tmp_path)]) == ["-DCATKIN_BLACKLIST_PACKAGES=arm"]
+    option = "-DCATKIN_BLACKLIST_PACKAGES=arm"
+    assert catkin_make_words(["-C", str(tmp_path)]) == [option, "-C", str(tmp_path)]
     assert capsys.readouterr().out.startswith("arm is left out: moveit_core: MoveIt is not")
     monkeypatch.chdir(tmp_path)
-    assert left_out_options(["-j2"]) == ["-DCATKIN_BLACKLIST_PACKAGES=arm"]
-    assert left_out_options(["-DCATKIN_WHITELIST_PACKAGES=arm"]) == []
+    assert catkin_make_words(["--make-args", "-j2"]) == [option, "--make-args", "-j2"]
+    chosen = ["-DCATKIN_WHITELIST_PACKAGES=arm"]
+    assert catkin_make_words(chosen) == chosen
     monkeypatch.chdir(tmp_path / "src")
-    assert left_out_options([]) == []  # catkin_make says that this is no workspace
+    assert "arm" not in catkin_make_words([])[0]  # catkin_make says that this is no workspace
+
+
+@pytest.mark.parametrize("typed, given", [
+    ("--cmake-args -DX=1", "--ignore-pkg arm --cmake-args -DX=1"),
+    ("--ignore-pkg hand", "--ignore-pkg arm hand"),
+    ("--pkg arm", "--pkg arm"),
+    ("--from-pkg=arm", "--from-pkg=arm"),
+])
+def test_catkin_make_isolated_does_too(tmp_path, monkeypatch, bare, typed, given):
+    add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
+    monkeypatch.chdir(tmp_path)
+    assert catkin_make_isolated_words(typed.split()) == given.split()

@@ -392,3 +392,23 @@ def test_a_workspace_before_it_is_built(tmp_path, capsys):
     assert "PROBLEM       build: it is left out: moveit_core: MoveIt is not in Debian" in said
     wheel = said[said.index("package wheel"):]
     assert "works         build" in wheel or "roscpp needs it: make deps WS=" in wheel
+
+
+def test_a_folder_that_is_no_workspace_and_one_that_is_named_by_its_src(tmp_path, capsys):
+    assert main([str(tmp_path)]) == 2
+    assert "this is no workspace, it has no src/ with packages" in capsys.readouterr().err
+    for place in ("a", "b"):
+        (tmp_path / "src" / place).mkdir(parents=True)
+        (tmp_path / "src" / place / "package.xml").write_text(
+            "<package format='2'><name>arm</name><version>1.0.0</version><license>BSD</license>"
+            "<description>d</description><maintainer email='a@example.com'>a</maintainer>"
+            "</package>")
+    assert main([str(tmp_path / "src")]) == 1
+    assert "build: two packages are called arm: " in capsys.readouterr().out
+
+
+def test_a_package_with_nothing_to_check_is_not_said_to_work(tmp_path, capsys):
+    (tmp_path / "package.xml").write_text("<package/>")
+    assert main([str(tmp_path)]) == 0
+    said = capsys.readouterr()
+    assert said.out == "" and "there is nothing to check" in said.err

@@ -37,7 +37,9 @@ def main(argv: list[str] | None = None) -> int:
 
 def _install(missing: list[str], packages: int, simulate: bool) -> None:
     of = "1 package" if packages == 1 else f"{packages} packages"
-    if not missing:
+    if not packages:
+        print("no package of your own is in it; setup sees to those of this repository")
+    elif not missing:
         print(f"{of}: all that Debian has for them is installed")
     elif simulate:
         print(f"{of}: to be installed: {' '.join(missing)}")
@@ -56,6 +58,8 @@ def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
                   for file, why in verdict.left_out.items()]
         lines += [f"{verdict.name} will be without {key}: {why}"
                   for key, why in verdict.lacks.items()]
+        lines += [f"{verdict.name} asks CMake for {key}, which no list here has: install it "
+                  "yourself if the build stops there" for key in verdict.unsure]
     return lines
 
 

@@ -12,6 +12,7 @@ import rospkg
 
 from workspace_needs import apt, cache
 from workspace_needs.tables import ABSENT, DEBIAN, OURS, Tables
+from workspace_needs.workspace import WorkspaceError, read_workspace
 
 COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolve", "update",
             "what-needs", "where-defined")
@@ -45,6 +46,12 @@ def main(argv: list[str] | None = None) -> int:
               "workspace and up to date; no network is needed")
         return 0
     _follow_distro(args)
+    try:
+        for folder in _from_paths(args, command):
+            read_workspace(folder)
+    except WorkspaceError as error:  # rosdep ends with a traceback
+        print(f"rosdep: {error}", file=sys.stderr)
+        return 1
     if command in OF_A_WORKSPACE:
         return _of_a_workspace(rosdep_main, args, command, tables)
     code = _code(rosdep_main, args)
@@ -69,6 +76,15 @@ def _follow_distro(args: list[str]) -> None:
             os.environ["ROS_DISTRO"] = word.partition("=")[2] or value
 
 
+def _from_paths(args: list[str], command: str) -> list[Path]:
+    """The folders among the words, where --from-paths says that they are some."""
+    if not any(word.startswith("--from-path") for word in args):
+        return []
+    words = [word for word in args if word[:1] != "-"]
+    words.remove(command)  # a workspace has a folder called install
+    return [Path(word) for word in words if Path(word).is_dir()]
+
+
 def _of_a_workspace(rosdep_main: Callable, args: list[str], command: str, tables: Tables) -> int:
     """install or check: what nobody has stops nothing, and is said at the end."""
     simulate = bool({"-s", "--simulate"} & set(args))
@@ -80,7 +96,7 @@ def _of_a_workspace(rosdep_main: Callable, args: list[str], command: str, tables
         print(line, file=sys.stderr)
     if watch.failure:
         print(f"rosdep: {watch.failure}", file=sys.stderr)
-    return code or int(bool(unknown))
+    return code or int(bool(unknown) and "-r" not in args)
 
 
 class Watch:
@@ -107,7 +123,7 @@ class Watch:
 
         def ask(lookups, resource: str, implicit: bool = True):
             keys = get_rosdeps(lookups, resource, implicit=implicit)
-            for key in keys:
+            for key in set(keys) - set(lookups.skipped_keys):
                 self._askers.setdefault(key, set()).add(resource)
             return keys
 
@@ -125,10 +141,11 @@ class Watch:
     def _install(self, command: list[str]) -> int:
         """In rosdep's place, for what `one_command` made."""
         words = command[command.index("install") + 1:]
-        if "-y" not in words and sys.stdin.isatty():
-            answer = input(f"Install {len(words)} Debian packages ({' '.join(words)})? [Y/n] ")
-            if answer.strip().lower() not in ("", "y", "yes"):
-                self.failure = "nothing was installed"
+        if "-y" not in words:
+            print(f"Install {len(words)} Debian packages ({' '.join(words)})? [Y/n] ", end="")
+            answer = (sys.stdin.readline() or "n").strip().lower()  # nobody there: no
+            if answer not in ("", "y", "yes"):
+                self.failure = "nothing was installed; -y installs without a question"
                 return 1
         try:
             apt.install([word for word in words if word != "-y"])

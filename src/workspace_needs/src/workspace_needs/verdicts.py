@@ -27,6 +27,7 @@ class Verdict:
     stops: dict[str, str] = field(default_factory=dict)  # what keeps it from being built: why
     lacks: dict[str, str] = field(default_factory=dict)  # what it will do without: why
     left_out: dict[str, str] = field(default_factory=dict)  # source file: why it is not compiled
+    unsure: list[str] = field(default_factory=list)  # what CMake may find, though no table has it
 
     @property
     def builds(self) -> bool:
@@ -35,7 +36,10 @@ class Verdict:
 
 
 def judge(source: Path, tables: Tables | None = None) -> list[Verdict]:
-    """A verdict for each package below `source` that is not of this repository."""
+    """A verdict for each package below `source` that is not of this repository.
+
+    WorkspaceError where no build tool builds any.
+    """
     tables = tables or Tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
     names = {package.name for package in packages}
@@ -60,14 +64,18 @@ def _answer(key: str, tables: Tables, names: set[str]) -> Answer:
 def _verdict(package: Package, answers: dict[str, Answer], installed: set[str], known: set[str],
              tables: Tables) -> Verdict:
     verdict = Verdict(package.name, package.folder)
-    if package.problem:
-        verdict.stops["package.xml"] = package.problem
+    if package.unfit:
+        verdict.stops = dict(package.unfit)
+        return verdict
     for asked in package.asked:
         answer = answers[asked.key]
         if answer.kind == DEBIAN:
             verdict.missing.update(
                 {name: asked.key for name in answer.packages if name not in installed})
-        elif not (answer.kind == OURS or asked.key in known or _is_answered(asked, answer)):
+        elif asked.of_cmake and answer.kind == UNKNOWN:
+            if not _has_module(asked.key, package.folder):
+                verdict.unsure.append(asked.key)
+        elif not (answer.kind == OURS or asked.key in known or _is_gazebo(asked)):
             said = f"{answer.why} ({asked.where} asks for it)"
             place = verdict.stops if asked.stops else verdict.lacks
             place.setdefault(asked.key, said)
@@ -80,13 +88,15 @@ def _verdict(package: Package, answers: dict[str, Answer], installed: set[str], 
     return verdict
 
 
-def _is_answered(asked: Asked, answer: Answer) -> bool:
-    """Whether CMake finds it although no table has it.
+def _is_gazebo(asked: Asked) -> bool:
+    """Whether it is find_package(gazebo), which is answered here, without headers."""
+    return asked.of_cmake and asked.key == "gazebo"
 
-    find_package(gazebo) is answered here, without headers; a name that nobody knows may be a
-    module of the package's own.
-    """
-    return asked.of_cmake and (asked.key == "gazebo" or answer.kind == UNKNOWN)
+
+def _has_module(name: str, folder: Path) -> bool:
+    """Whether CMake or the package itself brings a file that looks for `name`."""
+    module = f"Find{name}.cmake"
+    return any(Path("/usr/share").glob(f"cmake-*/Modules/{module}")) or any(folder.rglob(module))
 
 
 def _pass_on(packages: list[Package], verdicts: list[Verdict]) -> None:

@@ -24,7 +24,7 @@ LARGEST = 1 << 20  # bytes of a file that is looked through
 
 
 class WorkspaceError(ValueError):
-    """There is no such workspace; the message says what to type."""
+    """There is no such workspace, or nothing of it can be built; the message says what to do."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,7 @@ class Package:
     asked: list[Asked] = field(default_factory=list)
     includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
     problem: str = ""  # why its package.xml cannot be read
+    unfit: dict[str, str] = field(default_factory=dict)  # what no build tool here can do: why
     is_ours: bool = False  # of this repository: setup sees to what it asks for
 
 
@@ -65,8 +66,17 @@ def source_folder(path: Path) -> Path:
 
 
 def read_workspace(source: Path) -> list[Package]:
-    """All packages below `source`, by name."""
-    packages = [_read(source / path) for path in find_package_paths(str(source))]
+    """All packages below `source`, by name; WorkspaceError where no build tool builds any."""
+    packages = [_read(source / path) for path in sorted(find_package_paths(str(source)))]
+    by_name: dict[str, Path] = {}
+    for package in packages:
+        if package.problem:
+            raise WorkspaceError(f"{package.folder}/package.xml: {package.problem}; mend it first, "
+                                 "no package is built before")
+        other = by_name.setdefault(package.name, package.folder)
+        if other != package.folder:
+            raise WorkspaceError(f"two packages are called {package.name}: {other} and "
+                                 f"{package.folder}; remove or rename one")
     return sorted(packages, key=lambda package: package.name)
 
 
@@ -75,9 +85,10 @@ def _read(folder: Path) -> Package:
         manifest = parse_package(str(folder), warnings=[])
         manifest.evaluate_conditions({"ROS_VERSION": "1", "ROS_PYTHON_VERSION": "3",
                                       "ROS_DISTRO": os.environ.get("ROS_DISTRO", "noetic")})
+        package = Package(manifest.name, folder, unfit=_unfit(manifest, folder))
     except (InvalidPackage, OSError, ValueError) as error:
-        return Package(folder.name, folder, problem=" ".join(str(error).split()))
-    package = Package(manifest.name, folder)
+        said = getattr(error, "msg", None) or str(error)
+        return Package(folder.name, folder, problem=" ".join(str(said).split()))
     package.is_ours = any(person.email == OUR_ADDRESS for person in manifest.maintainers)
     package.asked += [Asked(key, "package.xml") for key in _declared(manifest)]
     package.asked += _built_with(folder / "CMakeLists.txt")
@@ -90,6 +101,17 @@ def _read(folder: Path) -> Package:
             package.asked += [Asked(key, shown) for key in
                               dict.fromkeys(NODE.findall(text) + FOUND.findall(text))]
     return package
+
+
+def _unfit(manifest, folder: Path) -> dict[str, str]:
+    kind = manifest.get_build_type()
+    if kind.startswith("ament"):
+        return {kind: "this is a package of ROS 2; clone its branch for ROS 1, as with "
+                      "git clone -b noetic"}
+    has_file = (folder / "CMakeLists.txt").is_file()
+    if kind == "catkin" and not has_file and not manifest.is_metapackage():
+        return {"CMakeLists.txt": "there is none; catkin_create_pkg makes packages with one"}
+    return {}
 
 
 def _declared(manifest) -> list[str]:

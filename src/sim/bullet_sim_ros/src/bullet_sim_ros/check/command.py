@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import rospkg
+from workspace_needs.workspace import WorkspaceError
 
 from bullet_sim_ros.check.findings import (
     ACCEPTED,
@@ -19,7 +20,7 @@ from bullet_sim_ros.check.findings import (
 )
 from bullet_sim_ros.check.launches import LaunchChecker
 from bullet_sim_ros.check.texts import TextChecker
-from bullet_sim_ros.check.workspaces import is_workspace, workspace_findings
+from bullet_sim_ros.check.workspaces import workspace_findings
 from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 
@@ -48,11 +49,17 @@ def main(argv: list[str] | None = None) -> int:
     if args.launch and ":=" in args.launch:
         args.arguments.insert(0, args.launch)
         args.launch = None
-    findings = Check(args.arguments).run(args.what, args.launch)
-    if findings is None:
-        print(f"check: {args.what}: no such file or package; try `rospack list`, or give a path",
-              file=sys.stderr)
+    try:
+        findings = Check(args.arguments).run(args.what, args.launch)
+    except WorkspaceError as error:
+        print(f"check: {error}", file=sys.stderr)
         return 2
+    if not findings:
+        what = ("no such file or package; try `rospack list`, or give a path" if findings is None
+                else "there is nothing to check: no robot, world or launch file, and no workspace "
+                "with packages of your own")
+        print(f"check: {args.what}: {what}", file=sys.stderr)
+        return 2 if findings is None else 0
     shown = findings if args.all else [f for f in findings if f.status != ACCEPTED]
     print(table(shown))
     left_out = len(set(findings)) - len(set(shown))
@@ -76,20 +83,20 @@ class Check:
         self._launches = LaunchChecker(rows, self._texts, resources)
 
     def run(self, what: str, launch: str | None) -> list[Finding] | None:
-        """None if there is no such thing."""
-        path = Path(what)
+        """None if there is no such thing; WorkspaceError for a folder without packages."""
+        path = Path(what).expanduser()
         if path.is_file():
             return self._file(path.resolve())
         if path.is_dir() and (path / "model.sdf").is_file():
             return self._file((path / "model.sdf").resolve())
-        if is_workspace(path):
-            return workspace_findings(path.resolve())
         try:
             folder = Path(rospkg.RosPack().get_path(what))
         except rospkg.ResourceNotFound:
-            if not (path / "package.xml").is_file():
+            if not (what and path.is_dir()):
                 return None
             folder = path.resolve()
+            if not (folder / "package.xml").is_file():
+                return workspace_findings(folder)
         return self._one_launch(folder, launch) if launch else self._package(folder)
 
     def _file(self, path: Path, alone: bool = True) -> list[Finding]:

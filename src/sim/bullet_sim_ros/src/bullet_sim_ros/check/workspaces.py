@@ -7,23 +7,17 @@ from pathlib import Path
 from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, source_folder
 
-from bullet_sim_ros.check.findings import ABSENT, APPROXIMATED, PROBLEM, WORKS, Finding
-
-
-def is_workspace(path: Path) -> bool:
-    """Whether it is the folder above a src/ with packages, and no package itself."""
-    if not (path / "src").is_dir() or (path / "package.xml").exists():
-        return False
-    try:
-        return source_folder(path) == (path / "src").resolve()
-    except WorkspaceError:
-        return False
+from bullet_sim_ros.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding
 
 
 def workspace_findings(path: Path) -> list[Finding]:
-    """A few lines a package."""
-    return [finding for verdict in judge(source_folder(path))
-            for finding in _of_package(verdict, path)]
+    """A few lines a package; WorkspaceError where there is none below `path`."""
+    source = source_folder(path)
+    try:
+        verdicts = judge(source)
+    except WorkspaceError as error:
+        return [Finding(f"workspace {path}", "build", PROBLEM, str(error))]
+    return [finding for verdict in verdicts for finding in _of_package(verdict, path)]
 
 
 def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
@@ -34,8 +28,11 @@ def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
               for file, why in verdict.left_out.items()]
     found += [Finding(where, name, ABSENT, f"{key} needs it: make deps WS={workspace}")
               for name, key in verdict.missing.items()]
-    found += [Finding(where, key, APPROXIMATED, f"it does without: {why}")
+    found += [Finding(where, key, ABSENT, f"it will be without: {why}")
               for key, why in verdict.lacks.items()]
+    found += [Finding(where, name, UNCHECKED, "no list here has it; the build stops there if "
+                      "CMake does not find it either")
+              for name in verdict.unsure]
     if not verdict.stops and not verdict.missing:
         found.append(Finding(where, "build", WORKS))
     return found

@@ -1,0 +1,136 @@
+"""`catkin_make`, `catkin_make_isolated` and `catkin build` as pages type them.
+
+A package that asks for what nobody has must not stop the others: catkin_make configures all
+packages in one run of CMake, which ends at the first that cannot find a component, and the other
+two fail at that package. So a line says what is left out, and the tool gets its name in the tool's
+own way: CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from workspace_needs.verdicts import judge
+from workspace_needs.workspace import WorkspaceError
+
+FOLDER = "/usr/bin"  # of Debian's own
+CHOSEN = ("--pkg", "--from-pkg")  # catkin_make_isolated takes no --ignore-pkg beside them
+
+
+def catkin_make() -> NoReturn:
+    """Becomes Debian's catkin_make."""
+    _become("catkin_make", catkin_make_words(sys.argv[1:]))
+
+
+def catkin_make_words(args: list[str]) -> list[str]:
+    """`args`, and what leaves out packages, unless they choose packages themselves."""
+    if any("LIST_PACKAGES" in word for word in args):
+        return args
+    names = left_out("catkin_make", args, _source(args))
+    return [f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(names)}", *args]
+
+
+def catkin_make_isolated() -> NoReturn:
+    """Becomes Debian's catkin_make_isolated."""
+    _become("catkin_make_isolated", catkin_make_isolated_words(sys.argv[1:]))
+
+
+def catkin_make_isolated_words(args: list[str]) -> list[str]:
+    """`args`, and what leaves out packages, unless they choose packages themselves."""
+    if {word.partition("=")[0] for word in args} & set(CHOSEN):
+        return args
+    names = left_out("catkin_make_isolated", args, _source(args))
+    if not names:
+        return args
+    option = "--ignore-pkg"
+    place = args.index(option) + 1 if option in args else 0
+    # Not behind --cmake-args, which takes all that follows.
+    return [*args[:place], *([] if place else [option]), *names, *args[place:]]
+
+
+def catkin() -> int:
+    """catkin_tools, from PyPI or from Debian; its `build` leaves out packages as the others do."""
+    args = sys.argv[1:]
+    try:
+        from catkin_tools.commands.catkin import main
+        from catkin_tools.verbs.catkin_build import cli
+    except ImportError:
+        _become_another_catkin(args)
+        print("catkin: catkin_tools is not installed: pip install catkin_tools osrf_pycommon "
+              "(or build with catkin_make)", file=sys.stderr)
+        return 127
+
+    class BuildContext(cli.Context):
+        """The settings of one build. What is left out of it is not saved with --save-config."""
+
+        names: list[str] = []
+
+        @classmethod
+        def load(cls, *words, **options):
+            context = super().load(*words, **options)
+            if context and "--get-env" not in args:
+                cls.names = left_out("catkin build", args, Path(context.source_space_abs))
+                context.skiplist = [*context.skiplist, *cls.names]
+            return context
+
+        @classmethod
+        def save(cls, context):
+            context.skiplist = [name for name in context.skiplist if name not in cls.names]
+            super().save(context)
+            context.skiplist = [*context.skiplist, *cls.names]
+
+    cli.Context = BuildContext
+    return main(args)
+
+
+def left_out(tool: str, args: list[str], source: Path) -> list[str]:
+    """Names of the packages below `source` that cannot be built; prints a line for each.
+
+    Ends the program with one line where no tool would build anything. A folder that is not there
+    is the tool's to complain about.
+    """
+    if {"-h", "--help"} & set(args) or not source.is_dir():
+        return []
+    try:
+        verdicts = judge(source)
+    except WorkspaceError as error:
+        sys.exit(f"{tool}: {error}")
+    stopped = [verdict for verdict in verdicts if verdict.stops]
+    for verdict in stopped:
+        key, why = next(iter(verdict.stops.items()))
+        print(f"{verdict.name} is left out: {key}: {why}", flush=True)
+    missing = sorted({name for verdict in verdicts if not verdict.stops
+                      for name in verdict.missing if name.endswith("-dev")})
+    if missing:
+        print(f"Not installed, if the build stops: {' '.join(missing)}; "
+              f"rosrun workspace_needs deps {source.resolve().parent}", flush=True)
+    return [verdict.name for verdict in stopped]
+
+
+def _become(tool: str, args: list[str]) -> NoReturn:
+    os.execv(f"{FOLDER}/{tool}", [tool, *args])
+
+
+def _become_another_catkin(args: list[str]) -> None:
+    """One that this Python cannot import, of pipx or conda; returns where there is none."""
+    own = Path(sys.argv[0]).resolve()
+    for folder in os.get_exec_path():
+        found = shutil.which("catkin", path=folder)
+        if found and Path(found).resolve() != own and "workspace_needs" not in _head(found):
+            os.execv(found, [found, *args])
+
+
+def _head(path: str) -> str:
+    return Path(path).read_text("utf-8", "replace")[:4000]
+
+
+def _source(args: list[str]) -> Path:
+    """The src/ of the workspace that -C names, or in which it is typed; or what --source says."""
+    values = dict(itertools.pairwise(args))
+    base = Path(values.get("-C") or values.get("--directory") or ".")
+    return base / (values.get("--source") or values.get("--source-space") or "src")
