@@ -29,7 +29,7 @@ ROS_2 = ("ament_", "rosidl_", "rcutils", "rcpputils", "osrf_", "performance_test
 
 def by_setup() -> set[str]:
     """Debian's packages that setup installs, with those that they depend on, by apt's lists."""
-    text = re.sub(r"#.*", "", (ROOT / "scripts/debian-packages.txt").read_text("utf-8"))
+    text = re.sub(r"#.*", "", (ROOT / f"dependencies/{RELEASE}-amd64/debian.txt").read_text("utf-8"))
     without = [f"--no-{kind}" for kind in
                ("recommends", "suggests", "conflicts", "breaks", "replaces", "enhances")]
     listed = subprocess.run(["apt-cache", "depends", "--recurse", *without, *text.split()],
