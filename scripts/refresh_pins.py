@@ -3,9 +3,10 @@
 
     scripts/refresh_pins.py                  all releases: the newest versions that the table allows
     scripts/refresh_pins.py trixie           that release alone
-    scripts/refresh_pins.py --keep           the versions as they are; only what the table has new is looked up
+    scripts/refresh_pins.py --keep           as they are; newest only for what the table has new
 
-Needs PyPI, by pip's own settings, and what setup installs. The tests have the last word on new versions.
+Needs PyPI, by pip's own settings, and what setup installs. The tests have the last word on
+new versions.
 """
 
 from __future__ import annotations

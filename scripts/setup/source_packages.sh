@@ -25,6 +25,7 @@ wheels_key() {
   { echo "$platform $c_flags"; cat "$1"; grep -A 1 '^numpy==' "$lists/requirements.txt"; } | sha256sum | cut -c 1-16
 }
 whole() { (cd "$1" && sha256sum --status -c SHA256SUMS) 2>/dev/null; }
+# Without pip's cache, where a wheel may lie that was built with other flags.
 build_wheels() {
   local made=$state/wheel-build free
   free=$(free_mb "$root")
@@ -33,7 +34,7 @@ build_wheels() {
   rm -rf "$made" "$state/wheels"
   mkdir -p "$made"
   doing="building $2 ($build_minutes)" TMPDIR=$made CFLAGS=$c_flags CXXFLAGS=$build_flags logged pip \
-    pip wheel --no-build-isolation --no-binary :all: --require-hashes -r "$1" -w "$state/wheels" || pip_failed wheel
+    pip wheel --no-cache-dir --no-build-isolation --no-binary :all: --require-hashes -r "$1" -w "$state/wheels" || pip_failed wheel
   (cd "$state/wheels" && sha256sum -- *.whl >SHA256SUMS)
   rm -rf "$made"
 }
