@@ -27,7 +27,6 @@ class Package:
     why: str
     only: tuple[str, ...] = ()  # releases, architectures or release/architecture; (): all
     source: tuple[str, ...] = ()
-    debian: tuple[str, ...] = ()
     version: dict[str, str] = field(default_factory=dict)  # release -> limits, such as <2
 
 
@@ -78,8 +77,7 @@ class Table:
         lists: dict[str, list[Package]] = {SOURCE: []}
         for name, packages in self.sections("python").items():
             here = [package for package in packages
-                    if (not package.only or platform.is_one_of(package.only))
-                    and not platform.is_one_of(package.debian)]
+                    if not package.only or platform.is_one_of(package.only)]
             built = [package for package in here if platform.is_one_of(package.source)]
             lists[SOURCE] += built
             lists[name] = [package for package in here if package not in built]
@@ -146,5 +144,5 @@ def these_lists() -> Path:
 def _package(name: str, row: str | dict) -> Package:
     if isinstance(row, str):
         return Package(name, row)
-    lists = {key: tuple(row[key]) for key in ("only", "source", "debian") if key in row}
+    lists = {key: tuple(row[key]) for key in ("only", "source") if key in row}
     return Package(name, row["why"], version=row.get("version", {}), **lists)

@@ -8,7 +8,7 @@ c_flags="$build_flags -Wno-error=incompatible-pointer-types"  # an error since G
 
 source_packages() {
   local list=$lists/requirements-source.txt names cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache} wheels
-  names=$(awk -F == '/^[A-Za-z]/ {split($2, version, " "); print $1, version[1]}' "$list" | paste -sd ,)
+  names=$(awk -F == '/^[A-Za-z]/ {split($2, version, " "); print $1, version[1]}' "$list" | paste -sd , | sed 's/,/, /g')
   wheels=$cache/ros1-driving-courses/wheels/$(wheels_key "$list")
   if whole "$wheels"; then
     step 4 "installing $names as built before ($wheels)"
