@@ -17,10 +17,11 @@ from importlib.metadata import Distribution
 from pathlib import Path
 
 from deb_stage import MODULES, ROOT, epoch, required, settle_times
+from package_lists import these_lists
 
 NAME = "ros-courses"
 MAINTAINER = "ros1-driving-courses <courses@example.org>"
-# Sections of debian-packages.txt: what only a learner's own workspace needs, what only tests need.
+# Sections of debian.txt: what only a learner's own workspace needs, what only tests need.
 RECOMMENDED, OMITTED = ("building",), ("testing",)
 ABOUT = """ROS 1 driving courses with a simulator behind Gazebo's interface
  The courses' robots, worlds, lessons, navigation and simulator, below {prefix}.
@@ -40,7 +41,7 @@ mkdir -p /opt
 
 
 def sections(text: str) -> dict[str, list[str]]:
-    """Packages of debian-packages.txt by section: a comment after an empty line begins one."""
+    """Packages of debian.txt by section: a comment after an empty line begins one."""
     found: dict[str, list[str]] = {}
     before, current = "", ""
     for line in text.splitlines():
@@ -53,10 +54,10 @@ def sections(text: str) -> dict[str, list[str]]:
 
 
 def dependencies(text: str) -> tuple[list[str], list[str]]:
-    """Depends and Recommends, from the text of debian-packages.txt."""
+    """Depends and Recommends, from the text of debian.txt."""
     by_section = sections(text)
     if missing := {*RECOMMENDED, *OMITTED} - by_section.keys():
-        raise ValueError(f"debian-packages.txt: no section {', '.join(sorted(missing))}")
+        raise ValueError(f"debian.txt: no section {', '.join(sorted(missing))}")
     depends = {name for section, names in by_section.items()
                if section not in (*RECOMMENDED, *OMITTED) for name in names}
     recommends = {name for section in RECOMMENDED for name in by_section[section]}
@@ -80,7 +81,7 @@ def version(when: int) -> str:
 
 
 def control(prefix: str, version: str, architecture: str, size_kib: int, packages: str) -> str:
-    """The control file; `packages` is the text of debian-packages.txt."""
+    """The control file; `packages` is the text of debian.txt."""
     depends, recommends = dependencies(packages)
     fields = {
         "Package": NAME, "Version": version, "Architecture": architecture,
@@ -124,7 +125,7 @@ def main() -> int:
     architecture, about = told.stdout.strip(), stage / "DEBIAN"
     size = sum(path.lstat().st_size for path in stage.rglob("*")) // 1024
     about.mkdir(exist_ok=True)
-    packages = (ROOT / "scripts/debian-packages.txt").read_text(encoding="utf-8")
+    packages = (these_lists() / "debian.txt").read_text(encoding="utf-8")
     (about / "control").write_text(control(prefix, number, architecture, size, packages),
                                    encoding="utf-8")
     (about / "md5sums").write_text(checksums(stage), encoding="utf-8")

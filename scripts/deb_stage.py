@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import compileall
 import os
-import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from importlib.metadata import Distribution, distribution
 from pathlib import Path
+
+from package_lists import SOURCE, read_pins, these_lists
 
 ROOT = Path(__file__).resolve().parent.parent
 VERSION = f"{sys.version_info.major}.{sys.version_info.minor}"
@@ -26,10 +27,10 @@ STRIPPED = ("pybullet.",)  # begin of files' names: 130 of its 140 MB are for a 
 
 
 def required() -> list[Distribution]:
-    """What requirements.txt names, as it is installed for this interpreter."""
-    lines = (ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines()
-    names = [re.split(r"[=\s#]", line, maxsplit=1)[0] for line in lines]
-    return [distribution(name) for name in names if name]
+    """What running needs of PyPI's packages, as it is installed for this interpreter."""
+    lists = (these_lists() / f"{name}.txt" for name in ("requirements", SOURCE))
+    return [distribution(name) for path in lists if path.exists()
+            for name in read_pins(path.read_text(encoding="utf-8"))]
 
 
 def travelling_files(package: Distribution) -> Iterator[Path]:
@@ -98,12 +99,12 @@ def places_of_build(folder: Path) -> list[Path]:
 
 
 def epoch() -> int:
-    """SOURCE_DATE_EPOCH, else the last commit's time, else that of requirements.txt; s."""
+    """SOURCE_DATE_EPOCH, else the last commit's time, else that of the list of packages; s."""
     if given := os.environ.get("SOURCE_DATE_EPOCH"):
         return int(given)
     told = subprocess.run(["git", "-C", str(ROOT), "log", "-1", "--format=%ct"],
                           capture_output=True, text=True, check=False)
-    return int(told.stdout or (ROOT / "requirements.txt").stat().st_mtime)
+    return int(told.stdout or (these_lists() / "requirements.txt").stat().st_mtime)
 
 
 def _files(folder: Path) -> Iterator[Path]:

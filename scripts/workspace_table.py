@@ -29,7 +29,8 @@ ROS_2 = ("ament_", "rosidl_", "rcutils", "rcpputils", "osrf_", "performance_test
 
 def by_setup() -> set[str]:
     """Debian's packages that setup installs, with those that they depend on, by apt's lists."""
-    text = re.sub(r"#.*", "", (ROOT / "scripts/debian-packages.txt").read_text("utf-8"))
+    path = ROOT / f"dependencies/{RELEASE}-amd64/debian.txt"
+    text = re.sub(r"#.*", "", path.read_text("utf-8"))
     without = [f"--no-{kind}" for kind in
                ("recommends", "suggests", "conflicts", "breaks", "replaces", "enhances")]
     listed = subprocess.run(["apt-cache", "depends", "--recurse", *without, *text.split()],

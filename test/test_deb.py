@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = (ROOT / "scripts/debian-packages.txt").read_text(encoding="utf-8")
+PACKAGES = (ROOT / "dependencies/bookworm-amd64/debian.txt").read_text(encoding="utf-8")
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from workspace_needs.workspace import WorkspaceError, read_workspace
 COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolve", "update",
             "what-needs", "where-defined")
 OF_A_WORKSPACE = ("install", "check")
-LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see requirements-rosdep.txt
+LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see dependencies/packages.yaml
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -1,0 +1,33 @@
+# Commands whose output goes to a log in .setup/, and what their failures are told as.
+# Runs a command with its output in a log, and says every 20 s what it is at ($doing, if that is set).
+logged() {
+  local log=$state/$1.log beat rc=0
+  shift
+  (
+    trap - EXIT
+    while ! read -rt 20 && kill -0 $$ 2>/dev/null; do say "  ${doing:-still at it}, ${SECONDS} s since the start"; done <> <(:)
+  ) 9<&- 2>/dev/null &
+  beat=$!
+  trap 'kill $beat 2>/dev/null' EXIT
+  "$@" >"$log" 2>&1 </dev/null || rc=$?
+  kill "$beat" 2>/dev/null
+  wait "$beat" 2>/dev/null || true
+  trap - EXIT
+  return $rc
+}
+
+# fail, with the last telling line of a log.
+fail_with_log() {
+  local why
+  why=$(awk '/^CMake Error/ && !cmake {cmake = $0; next} cmake && !told && NF {told = $0} /^E:|^ERROR|[Ee]rror:/ {last = $0}
+    END {sub(/^ +/, "", told); print cmake ? cmake " " told : last}' "$state/$2.log")
+  fail "$1${why:+: $why} (all of it in .setup/$2.log)"
+}
+# The same for a build: the first cause in the build's own lines.
+fail_with_cause() {
+  python3 "$root/scripts/build_cause.py" "$state/build.log" >&2
+  fail "$1 (all of it in .setup/build.log)"
+}
+network_failed() {
+  grep -qaE 'Temporary failure|Could not resolve|Failed to fetch|Could not connect|Network is unreachable|Connection (refused|timed out)|NewConnectionError|ConnectTimeout|NameResolution|ProxyError|Max retries' "$state/$1.log"
+}

@@ -1,0 +1,49 @@
+# Of step 4: packages that have no wheel for this platform are built from their source, once for all clones of a user.
+
+build_minutes="about 5 minutes on two idle cores"
+build_needs_mb=900  # measured: 430 the source, 250 what is compiled, 150 the wheel
+# The same on each release: Debian 13's setuptools takes these alone, Debian 12's adds them to Python's own.
+build_flags="-O2 -g0 -DNDEBUG -fno-strict-overflow"
+c_flags="$build_flags -Wno-error=incompatible-pointer-types"  # an error since GCC 14, and PyBullet 3.2.7 has such code
+
+source_packages() {
+  local list=$lists/requirements-source.txt names cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache} wheels
+  names=$(awk -F == '/^[A-Za-z]/ {split($2, version, " "); print $1, version[1]}' "$list" | paste -sd , | sed 's/,/, /g')
+  wheels=$cache/ros1-driving-courses/wheels/$(wheels_key "$list")
+  if whole "$wheels"; then
+    step 4 "installing $names as built before ($wheels)"
+  else
+    step 4 "building $names from source, for which there is no wheel ($build_minutes)"
+    build_wheels "$list" "$names"
+    keep_wheels "$wheels" || wheels=$state/wheels
+  fi
+  logged pip pip install --no-user --no-index --force-reinstall "$wheels"/*.whl || pip_failed install
+  rm -rf "$state/wheels"
+}
+# What a wheel depends on: the source, how it is compiled, the release, and the NumPy whose headers it is compiled with.
+wheels_key() {
+  { echo "$platform $c_flags"; cat "$1"; grep -A 1 '^numpy==' "$lists/requirements.txt"; } | sha256sum | cut -c 1-16
+}
+whole() { (cd "$1" && sha256sum --status -c SHA256SUMS) 2>/dev/null; }
+# Without pip's cache, where a wheel may lie that was built with other flags.
+build_wheels() {
+  local made=$state/wheel-build free
+  free=$(free_mb "$root")
+  [ "${free:-$build_needs_mb}" -ge "$build_needs_mb" ] ||
+    fail "too little disk: $root has $free MB free, building $2 needs $build_needs_mb MB"
+  rm -rf "$made" "$state/wheels"
+  mkdir -p "$made"
+  doing="building $2 ($build_minutes)" TMPDIR=$made CFLAGS=$c_flags CXXFLAGS=$build_flags logged pip \
+    pip wheel --no-cache-dir --no-build-isolation --no-binary :all: --require-hashes -r "$1" -w "$state/wheels" || pip_failed wheel
+  (cd "$state/wheels" && sha256sum -- *.whl >SHA256SUMS)
+  rm -rf "$made"
+}
+# The folder appears whole or not at all, though two clones may build at once.
+keep_wheels() {
+  local part=$1.$$
+  if mkdir -p "${1%/*}" 2>/dev/null && cp -r "$state/wheels" "$part" 2>/dev/null && whole "$part" &&
+    rm -rf "$1" && mv -T "$part" "$1" 2>/dev/null; then return 0; fi
+  rm -rf "$part"
+  say "  The built wheel cannot be kept in ${1%/*}: another clone will build it again."
+  return 1
+}

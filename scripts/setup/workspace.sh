@@ -1,0 +1,39 @@
+# Step 5: the build.
+# What catkin reads; a change in a .py needs no build, a new package or a changed .msg does.
+build_inputs() {
+  echo "$root"
+  (cd "$root" && find src -name __pycache__ -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
+    -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name '*.in' -o -name '*.c' -o -name '*.cpp' \
+    -o -name '*.h' -o -name '*.hpp' -o -name CATKIN_IGNORE -o -path '*/env-hooks/*' \) -print0 | sort -z | xargs -0 -r sha256sum
+    find src -name __init__.py | sort)
+}
+build_workspace() {
+  local told
+  told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
+  build_inputs >"$state/build-inputs.now"
+  if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
+    cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi
+  step 5 "building the workspace"
+  [ -z "$told" ] || say "$told"
+  # Left-overs of an interrupted build, of another folder or of a package that is gone would be taken for good.
+  if [ -e "$state/build-unfinished" ] || ! same_packages; then rm -rf "$root/build" "$root/devel"; fi
+  touch "$state/build-unfinished"
+  mkdir -p "$root/devel/lib/python3/dist-packages"  # else catkin leaves it out of the PYTHONPATH it remembers
+  # The venv's python, since catkin writes it into the wrappers of installed scripts; Debian 13's reads the second name.
+  cd "$root"
+  # By our catkin_make, which leaves out a learner's package that asks for what nobody has.
+  PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
+    python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" ||
+    fail_with_cause "catkin_make failed"
+  grep -a ' is left out: ' "$state/build.log" || true
+  if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
+    PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
+      fail_with_log "compiling the inner loops of navigation failed" compile
+  fi
+  mv "$state/build-inputs.now" "$state/build-inputs"
+  rm -f "$state/build-unfinished"
+}
+same_packages() {
+  [ -f "$state/build-inputs" ] && diff -q <(packages_in "$state/build-inputs") <(packages_in "$state/build-inputs.now") >/dev/null
+}
+packages_in() { head -1 "$1"; awk '/package.xml$/ {print $2}' "$1"; }

@@ -1,0 +1,142 @@
+"""dependencies/: the table, the lists that are written from it, and what setup says of machines."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from packaging.specifiers import SpecifierSet
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from package_lists import (  # noqa: E402
+    SOURCE,
+    Package,
+    Pin,
+    Platform,
+    Table,
+    read_pins,
+    requirements_text,
+    these_lists,
+    this_platform,
+)
+from refresh_pins import changes, wheel_options  # noqa: E402
+
+TABLE = Table()
+PLATFORMS = pytest.mark.parametrize("platform", TABLE.platforms, ids=str)
+
+
+def lists(platform: Platform) -> dict[str, dict[str, Pin]]:
+    """Requirement file -> its pins, for those that are there."""
+    return {path.stem: read_pins(path.read_text("utf-8"))
+            for path in (ROOT / "dependencies" / str(platform)).glob("requirements*.txt")}
+
+
+def test_there_is_a_folder_for_each_platform_and_no_other():
+    folders = {path.name for path in (ROOT / "dependencies").iterdir() if path.is_dir()}
+    assert folders == {str(platform) for platform in TABLE.platforms}
+
+
+@PLATFORMS
+def test_the_lists_are_what_the_table_says(platform):
+    wanted = {name: [package.name for package in packages]
+              for name, packages in TABLE.requirements(platform).items() if packages}
+    assert {name: list(pins) for name, pins in lists(platform).items()} == wanted
+    assert TABLE.path(platform, "debian").read_text("utf-8") == TABLE.debian_text(platform)
+
+
+@PLATFORMS
+def test_every_requirement_has_one_version_within_its_limits_and_a_sum(platform):
+    limits = {package.name: package.version.get(platform.release, "")
+              for packages in TABLE.requirements(platform).values() for package in packages}
+    for pins in lists(platform).values():
+        for name, pin in pins.items():
+            assert pin.version in SpecifierSet(limits[name]), name
+            assert pin.hashes and all(len(digest) == 64 for digest in pin.hashes), name
+
+
+@pytest.mark.parametrize("release", TABLE.data["releases"])
+def test_the_architectures_of_a_release_have_the_same_versions(release):
+    here = [TABLE.pins(platform) for platform in TABLE.platforms if platform.release == release]
+    names = {name for pins in here for name in pins}
+    assert not [name for name in names
+                if len({pins[name].version for pins in here if name in pins}) > 1]
+
+
+@PLATFORMS
+def test_what_builds_from_source_has_its_compiler(platform):
+    debian = TABLE.path(platform, "debian").read_text("utf-8")
+    built = lists(platform).get(SOURCE, {})
+    assert bool(built) == (str(platform) != "bookworm-amd64")
+    assert not built or ("\npython3-dev " in debian and "\ng++ " in debian)
+
+
+def test_a_requirement_file_is_read_as_it_was_written():
+    packages = [Package("a-b", "one"), Package("c", "two")]
+    pins = {"a-b": Pin("1.0", ("0" * 64, "1" * 64)), "c": Pin("2", ("2" * 64,))}
+    assert read_pins(requirements_text(packages, pins)) == pins
+
+
+def test_changes_are_told_by_version_and_by_file():
+    old = {"a": Pin("1", ("x",)), "b": Pin("1", ("x",)), "c": Pin("1", ("x",)), "e": Pin("1")}
+    new = {"a": Pin("2", ("x",)), "b": Pin("1", ("y",)), "d": Pin("1", ("x",)), "e": Pin("1")}
+    assert changes(old, new) == ["a: 1 -> 2", "b: 1 as before, another file", "c: gone, was 1",
+                                 "d: new, 1"]
+
+
+def test_pip_is_asked_for_the_wheels_of_the_platform():
+    options = wheel_options(TABLE, Platform("bookworm", "arm64"))
+    assert "manylinux_2_36_aarch64" in options and "manylinux_2_37_aarch64" not in options
+    assert options[options.index("--python-version") + 1] == "3.11"
+
+
+def test_no_list_names_where_files_come_from():
+    for path in (ROOT / "dependencies").rglob("*.txt"):
+        assert "://" not in path.read_text("utf-8"), path
+
+
+def test_this_machine_is_served():
+    assert this_platform() in TABLE.platforms and these_lists().is_dir()
+
+
+def check(tmp_path: Path, os_release: str, architecture: str) -> subprocess.CompletedProcess:
+    """check_machine of setup on a machine that says this of itself."""
+    (tmp_path / "os-release").write_text(os_release)
+    text = (ROOT / "scripts/setup/machine.sh").read_text("utf-8")
+    (tmp_path / "machine.sh").write_text(text.replace("/etc/os-release", f"{tmp_path}/os-release"))
+    script = (f'fail() {{ echo "$1" >&2; exit 1; }}; dpkg() {{ echo {architecture}; }}; root=$1; '
+              '. "$2"; check_machine; echo $platform')
+    return subprocess.run(["bash", "-euc", script, "_", ROOT, tmp_path / "machine.sh"],
+                          capture_output=True, text=True, check=False)
+
+
+@PLATFORMS
+def test_setup_takes_each_platform(platform, tmp_path):
+    done = check(tmp_path, f"ID=debian\nVERSION_CODENAME={platform.release}\n",
+                 platform.architecture)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"{platform}\n", "")
+
+
+@pytest.mark.parametrize(("os_release", "architecture", "said"), [
+    ('ID=debian\nPRETTY_NAME="Debian GNU/Linux forky/sid"\nVERSION_CODENAME=forky\n', "amd64",
+     "forky"),
+    ('ID=debian\nPRETTY_NAME="Debian GNU/Linux 11"\nVERSION_CODENAME=bullseye\n', "amd64", "11"),
+    ('ID=ubuntu\nID_LIKE=debian\nPRETTY_NAME="Ubuntu 24.04"\nVERSION_CODENAME=noble\n', "amd64",
+     "Ubuntu 24.04"),
+    ('ID=fedora\nPRETTY_NAME="Fedora Linux 43"\nVERSION_CODENAME=""\n', "amd64", "Fedora"),
+])
+def test_an_unknown_release_is_one_line_with_what_is_served(os_release, architecture, said,
+                                                            tmp_path):
+    done = check(tmp_path, os_release, architecture)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and said in done.stderr
+    names = [row["name"].removeprefix("Debian ") for row in TABLE.data["releases"].values()]
+    assert f"Debian {' and '.join(names)}" in done.stderr and "docker/" in done.stderr
+
+
+@pytest.mark.parametrize("architecture", ["armhf", "riscv64", "i386"])
+def test_an_architecture_without_builds_is_one_line_with_what_is_missing(architecture, tmp_path):
+    done = check(tmp_path, "ID=debian\nVERSION_CODENAME=trixie\n", architecture)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert architecture in done.stderr and "Numba" in done.stderr
+    assert " and ".join(TABLE.data["architectures"]) in done.stderr
