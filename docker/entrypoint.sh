@@ -21,7 +21,7 @@ export HOME USER LOGNAME=$USER ROS_HOSTNAME=localhost
 
 cd "$ws"
 if [ -d "$repository" ]; then
-  changed=$(diff <("$ws/docker/lists.sh" "$repository") /usr/local/share/workspace-lists | awk '/^[<>]/ {print $3; exit}')
+  changed=$({ diff <("$ws/docker/lists.sh" "$repository") /usr/local/share/workspace-lists || true; } | awk '/^[<>]/ && !name {name = $3} END {print name}')
   [ -z "$changed" ] ||
     fail "$changed is not what this image was made from; type: docker compose -f docker/compose.yaml build"
   find "$repository" -maxdepth 1 -type f -size -1024k -exec cp --remove-destination -t . {} +

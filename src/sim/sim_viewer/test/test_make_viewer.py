@@ -58,7 +58,7 @@ def test_course_and_page_come_and_go_together(viewer):
     with urllib.request.urlopen(address_in(log, process), timeout=10) as page:
         assert page.status == 200
         assert b"<script" in page.read()
-    assert "ROS_MASTER_URI" not in log.read_text()  # a second terminal finds the usual one
+    assert "Another ROS master" not in log.read_text()  # a second terminal finds the usual one
     os.killpg(process.pid, signal.SIGINT)  # as a terminal's Ctrl-C: to all of them
     process.wait(END_LIMIT)
     assert "Traceback" not in log.read_text()
