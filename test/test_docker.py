@@ -150,6 +150,12 @@ def test_a_folder_of_somebody_else_is_left_alone_with_one_line(container: Path) 
     assert (container / "repository/out").stat().st_uid == 0
 
 
+def test_another_user_builds_from_the_beginning() -> None:
+    """CMake may not set the modes of files that the image's maker left."""
+    setup = (ROOT / "scripts/setup.sh").read_text(encoding="utf-8")
+    assert re.search(r'! -O "\$root/build".*rm -rf "\$root/build" "\$root/devel"', setup)
+
+
 def test_a_changed_list_asks_for_a_new_image(container: Path) -> None:
     with (container / "repository/requirements.txt").open("a") as file:
         file.write("one-more==1.0\n")
