@@ -1,8 +1,33 @@
 #!/usr/bin/env bash
-# Gives each command in the image what a terminal has after `source devel/setup.bash`.
-set -e
-cd /home/learner/ws
+# Runs a command in the built workspace, as the owner of its source. Changes no file's owner.
+#
+# compose.yaml mounts the repository's folders over the image's, and the whole of it, to read, at $repository.
+set -euo pipefail
+ws=/home/learner/ws repository=/repository
+fail() { printf 'docker: %s\n' "$1" >&2; exit 2; }
+
+if [ "$(id -u)" = 0 ]; then
+  IFS=: read -r user group < <(stat -L -c %u:%g "$ws/src")
+  if [ "$user" != 0 ]; then
+    getent passwd "$user" >/dev/null ||
+      sed -i "s/^learner:x:[0-9]*:[0-9]*:/learner:x:$user:$group:/" /etc/passwd 2>/dev/null || true
+    exec setpriv --reuid "$user" --regid "$group" --clear-groups -- "$0" "$@"
+  fi
+fi
+# Where a user has no entry in /etc/passwd, or another's home, programs ask these.
+[ -w "${HOME:-/nowhere}" ] || HOME=$(mktemp -d)
+USER=$(id -un 2>/dev/null) || USER=learner
+export HOME USER LOGNAME=$USER ROS_HOSTNAME=localhost
+
+cd "$ws"
+if [ -d "$repository" ]; then
+  changed=$({ diff <("$ws/docker/lists.sh" "$repository") /usr/local/share/workspace-lists || true; } | awk '/^[<>]/ && !name {name = $3} END {print name}')
+  [ -z "$changed" ] ||
+    fail "$changed is not what this image was made from; type: docker compose -f docker/compose.yaml build"
+  find "$repository" -maxdepth 1 -type f -size -1024k -exec cp --remove-destination -t . {} +
+fi
 mkdir -p out 2>/dev/null || true
-[ -w out ] || sudo chown "$(id -u):$(id -g)" out  # a folder that Docker made for a volume is root's
-source devel/setup.bash
+[ -w out ] || fail "out/ belongs to $(stat -c 'user %u' out), not to you; type: sudo chown -R $(id -u):$(id -g) out"
+set +u
+. devel/setup.bash
 exec "$@"

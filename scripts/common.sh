@@ -11,6 +11,9 @@ if [ "$(id -u)" = 0 ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = 
   exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
 fi
 
+# The master that the caller named, for those scripts that ask for it.
+given_master=("${ROS_MASTER_URI:-}" "${ROS_HOSTNAME:-}" "${ROS_IP:-}")
+
 # Another python3, an active venv or conda, a sourced ROS workspace: none of it may leak in.
 unset "${!PYTHON@}" "${!CONDA_@}" "${!ROS_@}" VIRTUAL_ENV CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
   PKG_CONFIG_PATH MAKEFLAGS MFLAGS MAKELEVEL CC CXX CFLAGS CXXFLAGS BASH_ENV ENV CDPATH
@@ -20,4 +23,19 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 enter_workspace() {
   set +u; . "$root/devel/setup.bash"; set -u
   export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
+}
+
+# A master that other terminals join: the one that was named, the usual one, or, where somebody else has that, a new one.
+choose_master() {
+  local usual=http://localhost:11311 port
+  if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
+    export ROS_MASTER_URI=${given_master[0]}
+    if [ -n "${given_master[2]}" ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
+    [ -z "${given_master[1]}" ] || export ROS_HOSTNAME=${given_master[1]}
+    return 0
+  fi
+  port=$(python3 -c 'from evaluation.course_run.launch import free_port; print(free_port())')
+  export ROS_MASTER_URI=http://localhost:$port
+  [ "$ROS_MASTER_URI" = "$usual" ] ||
+    say "Another ROS master runs on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
 }

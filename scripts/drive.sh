@@ -4,6 +4,7 @@ failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
+choose_master
 if [ -n "${DISPLAY:-}" ]; then
   exec roslaunch racecar_description car_control.launch "$@"
 fi

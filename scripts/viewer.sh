@@ -6,10 +6,12 @@ failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
+choose_master
 mkdir -p "$root/out"
 roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
 launched=$!
-trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
+page=
+trap 'kill -INT $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
 trap 'exit 130' INT TERM HUP
 echo "The course starts; what its nodes say is in out/viewer.log. Ctrl-C ends course and page."
 until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
@@ -20,4 +22,7 @@ until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; d
   fi
   sleep 0.2
 done
-roslaunch sim_viewer viewer.launch "$@"
+# Beside this shell, which otherwise would answer a container's SIGTERM only when the page has ended.
+roslaunch sim_viewer viewer.launch "$@" &
+page=$!
+wait "$page"

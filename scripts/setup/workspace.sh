@@ -16,7 +16,8 @@ build_workspace() {
   step 5 "building the workspace"
   [ -z "$told" ] || say "$told"
   # Left-overs of an interrupted build, of another folder or of a package that is gone would be taken for good.
-  if [ -e "$state/build-unfinished" ] || ! same_packages; then rm -rf "$root/build" "$root/devel"; fi
+  # CMake sets the modes of its files, which only their owner may: in a container that is the image's maker.
+  if [ -e "$state/build-unfinished" ] || [ ! -O "$root/build" ] || ! same_packages; then rm -rf "$root/build" "$root/devel"; fi
   touch "$state/build-unfinished"
   mkdir -p "$root/devel/lib/python3/dist-packages"  # else catkin leaves it out of the PYTHONPATH it remembers
   # The venv's python, since catkin writes it into the wrappers of installed scripts; Debian 13's reads the second name.

@@ -1,4 +1,4 @@
-"""`make viewer`: course and page come up together, and Ctrl-C ends both.
+"""`make viewer`: course and page come up together, at a master of their own, and Ctrl-C ends both.
 
 runs alone: the verbs know only the usual master, which other tests take while it is free.
 """
@@ -10,6 +10,7 @@ import socket
 import subprocess
 import time
 import urllib.request
+import xmlrpc.client
 from pathlib import Path
 
 import pytest
@@ -27,7 +28,18 @@ def free_port() -> int:
 
 
 @pytest.fixture
-def viewer(tmp_path):
+def usual_port_free():
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("", 11311))
+        except OSError:
+            return False
+    return True
+
+
+@pytest.fixture
+def viewer(tmp_path, usual_port_free):
     """The verb, and the file with what it prints."""
     log = tmp_path / "output.txt"
     with log.open("wb") as output:
@@ -52,11 +64,72 @@ def address_in(log: Path, process) -> str:
     raise AssertionError(f"no address within {LIMIT} s: {log.read_text()}")
 
 
-def test_course_and_page_come_and_go_together(viewer):
+def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     process, log = viewer
     with urllib.request.urlopen(address_in(log, process), timeout=10) as page:
         assert page.status == 200
         assert b"<script" in page.read()
+    # A second terminal finds the usual one, where nobody else has it.
+    assert usual_port_free == ("Another ROS master" not in log.read_text())
     os.killpg(process.pid, signal.SIGINT)  # as a terminal's Ctrl-C: to all of them
     process.wait(END_LIMIT)
     assert "Traceback" not in log.read_text()
+
+
+@pytest.fixture
+def somebody_elses_master():
+    """The usual port, taken: by this, or by whoever has it already."""
+    with socket.socket() as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(("", 11311))
+            listener.listen()
+        except OSError:
+            pass
+        yield
+
+
+def test_a_container_ends_it_with_a_signal_to_the_script_alone(somebody_elses_master, tmp_path):
+    log = tmp_path / "output.txt"
+    with log.open("wb") as output:
+        process = subprocess.Popen([ROOT / "scripts/viewer.sh", f"port:={free_port()}"],
+                                   stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        address_in(log, process)
+        (uri,) = re.findall(r"type: export ROS_MASTER_URI=(http://localhost:\d+)$",
+                            log.read_text(), re.MULTILINE)
+        assert xmlrpc.client.ServerProxy(uri).lookupNode("/test", "/sim_viewer")[0] == 1
+        process.terminate()
+        assert process.wait(END_LIMIT) == 130
+        assert "Traceback" not in log.read_text()
+    finally:
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
+def master_chosen(**given: str) -> tuple[list[str], str]:
+    """URI, ROS_HOSTNAME and ROS_IP that the verbs would use, and what they say about it."""
+    cleared = {name: value for name, value in os.environ.items()
+               if name not in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP")}
+    show = ('. scripts/common.sh; enter_workspace; choose_master; '
+            'echo "$ROS_MASTER_URI,${ROS_HOSTNAME:-},${ROS_IP:-}"')
+    done = subprocess.run(["bash", "-c", show, ROOT / "scripts/viewer.sh"], cwd=ROOT, text=True,
+                          env=cleared | given, capture_output=True, check=True)
+    *said, last = done.stdout.splitlines()
+    return last.split(","), "\n".join(said)
+
+
+def test_a_named_master_is_kept(somebody_elses_master):
+    there = "http://10.0.0.7:11399"
+    assert master_chosen(ROS_MASTER_URI=there) == ([there, "localhost", ""], "")
+    assert master_chosen(ROS_MASTER_URI=there, ROS_IP="10.0.0.8")[0] == [there, "", "10.0.0.8"]
+    assert master_chosen(ROS_MASTER_URI=there, ROS_HOSTNAME="me")[0] == [there, "me", ""]
+
+
+def test_what_setup_bash_names_is_not_somebody_elses(somebody_elses_master):
+    (uri, host, _), said = master_chosen(ROS_MASTER_URI="http://localhost:11311")
+    assert uri != "http://localhost:11311" and host == "localhost"
+    assert said.endswith(f"export ROS_MASTER_URI={uri}")

@@ -1,0 +1,171 @@
+"""docker/ and .devcontainer/, as far as can be seen without a Docker engine."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from importlib.metadata import files
+from pathlib import Path
+
+import fastjsonschema
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+LIST = "dependencies/bookworm-amd64/requirements.txt"
+STRANGER = 54321  # a user that no /etc/passwd knows
+COMPOSE = yaml.safe_load((ROOT / "docker/compose.yaml").read_text(encoding="utf-8"))
+DOCKERFILE = (ROOT / "docker/Dockerfile").read_text(encoding="utf-8")
+ENTRYPOINT = (ROOT / "docker/entrypoint.sh").read_text(encoding="utf-8")
+DOCS = ("docs/docker.md", "docs/docker.zh-CN.md", "README.md", "README.zh-CN.md")
+
+
+def test_the_compose_file_is_what_the_specification_says() -> None:
+    (schema,) = [file for file in files("check-jsonschema") if file.name == "compose-spec.json"]
+    valid = fastjsonschema.compile(json.loads(schema.locate().read_text(encoding="utf-8")))
+    valid(COMPOSE)
+    with pytest.raises(fastjsonschema.JsonSchemaException):
+        valid({"services": {"course": {"ports": 8080}}})
+
+
+def test_every_documented_command_is_there() -> None:
+    for name in DOCS:
+        text = (ROOT / name).read_text(encoding="utf-8")
+        for words in re.findall(r"docker compose -f docker/compose\.yaml ([^`#\n]+)", text):
+            verb, *rest = words.replace("run --rm", "run").split()
+            assert verb in ("run", "up", "build", "down"), f"{name}: {words}"
+            assert not rest or rest[0] in COMPOSE["services"], f"{name}: {words}"
+
+
+def test_the_page_is_published_to_this_machine_alone() -> None:
+    published = [port for service in COMPOSE["services"].values()
+                 for port in service.get("ports", [])]
+    assert published == ["127.0.0.1:${PORT:-8080}:8080"]
+
+
+def test_every_terminal_is_in_the_network_of_the_world() -> None:
+    for name in ("viewer", "shell"):
+        service = COMPOSE["services"][name]
+        assert service["network_mode"] == "service:network" and "network" in service["depends_on"]
+        # The engine refuses both where a container takes another's network.
+        assert not {"hostname", "ports"} & set(service)
+
+
+def test_what_a_person_edits_is_what_runs_and_what_is_built_is_the_images() -> None:
+    mounts = dict(mount.split(":")[:2] for mount in COMPOSE["services"]["shell"]["volumes"])
+    assert all((ROOT / "docker" / folder).is_dir() for folder in mounts), mounts
+    assert mounts["../src"] == "/home/learner/ws/src" and mounts["../out"].endswith("/ws/out")
+    assert not [place for place in mounts.values()
+                if Path(place).name in ("ws", ".venv", ".setup", "build", "devel")]
+
+
+def test_the_image_has_fixed_bases_and_no_way_to_become_root() -> None:
+    bases = re.findall(r"^FROM (\S+:\S+)", DOCKERFILE, re.MULTILINE)
+    assert len(bases) == 2
+    assert all(re.fullmatch(r"debian:\w+-slim@sha256:[0-9a-f]{64}", base) for base in bases)
+    assert "sudo" not in DOCKERFILE and "chown " not in ENTRYPOINT.split("fail \"out/")[0]
+
+
+def test_the_editors_container() -> None:
+    settings = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
+    build = settings["build"]
+    dockerfile = (ROOT / ".devcontainer" / build["dockerfile"]).read_text(encoding="utf-8")
+    assert f"AS {build['target']}\n" in dockerfile
+    assert (ROOT / ".devcontainer" / build["context"]).resolve() == ROOT
+    assert re.search(rf"useradd .*{settings['remoteUser']}\b", dockerfile)
+    assert os.access(ROOT / settings["updateContentCommand"].split()[0], os.X_OK)
+    assert settings["forwardPorts"] == [8080]
+    named = " ".join(settings["customizations"]["vscode"]["extensions"])
+    assert "python" in named and "ros" in named
+
+
+@pytest.fixture
+def container():
+    """A folder for /, with an image's workspace and the repository that is mounted into it."""
+    root = Path(tempfile.mkdtemp(prefix="docker-test-"))  # a stranger may not enter tmp_path
+    root.chmod(0o755)
+    repository, ws = root / "repository", root / "ws"
+    (repository / "src").mkdir(parents=True)
+    (repository / "scripts").mkdir()
+    (repository / "out").mkdir()
+    shutil.copy(ROOT / ".dockerignore", repository)
+    shutil.copytree(ROOT / "dependencies", repository / "dependencies")
+    shutil.copytree(ROOT / "docker", repository / "docker")
+    shutil.copytree(repository, ws)
+    lists = subprocess.run([ws / "docker/lists.sh", ws], check=True, capture_output=True).stdout
+    (root / "workspace-lists").write_bytes(lists)
+    for mounted in ("src", "scripts", "out"):
+        shutil.rmtree(ws / mounted)
+        (ws / mounted).symlink_to(repository / mounted)
+    (ws / "devel").mkdir()
+    (ws / "devel/setup.bash").write_text("export SOURCED=yes\n")
+    (root / "passwd").write_text("learner:x:1000:1000::/home/learner:/bin/bash\n")
+    for folder in (ws, root / "home"):
+        folder.mkdir(exist_ok=True)
+        folder.chmod(0o777)
+    entry = ENTRYPOINT
+    for place, ours in {"/home/learner/ws": ws, "/etc/passwd": root / "passwd",
+                        "/usr/local/share/workspace-lists": root / "workspace-lists",
+                        "repository=/repository": f"repository={repository}"}.items():
+        assert place in entry
+        entry = entry.replace(place, str(ours))
+    (ws / "docker/entrypoint.sh").write_text(entry)
+    yield root
+    shutil.rmtree(root)
+
+
+def enter(root: Path, command: str) -> subprocess.CompletedProcess:
+    return subprocess.run([root / "ws/docker/entrypoint.sh", "bash", "-c", command], text=True,
+                          capture_output=True, env={"PATH": os.environ["PATH"],
+                                                    "HOME": str(root / "home")})
+
+
+def test_a_command_runs_in_the_workspace(container: Path) -> None:
+    done = enter(container, 'echo "$SOURCED $PWD $USER"; touch "$HOME/written"; exit 3')
+    assert (done.returncode, done.stderr) == (3, "")
+    assert done.stdout.split()[:2] == ["yes", str(container / "ws")] and done.stdout.split()[2]
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root becomes another user, as in a container")
+def test_what_is_written_belongs_to_the_owner_of_the_source(container: Path) -> None:
+    for path in [container / "repository", *(container / "repository").rglob("*")]:
+        os.chown(path, STRANGER, STRANGER)
+    done = enter(container, 'id -u; id -g; id -G; touch out/here; touch "$HOME/there"; echo $USER')
+    assert done.stdout.split()[:3] == [str(STRANGER)] * 3, done.stderr
+    assert done.stdout.split()[3:] == ["learner"]
+    written = (container / "repository/out/here").stat()
+    assert (written.st_uid, written.st_gid) == (STRANGER, STRANGER)
+    assert f"learner:x:{STRANGER}:{STRANGER}:" in (container / "passwd").read_text()
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root becomes another user, as in a container")
+def test_a_folder_of_somebody_else_is_left_alone_with_one_line(container: Path) -> None:
+    for path in (container / "repository").rglob("*"):
+        os.chown(path, STRANGER, STRANGER)
+    os.chown(container / "repository/out", 0, 0)
+    done = enter(container, "true")
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    assert f"type: sudo chown -R {STRANGER}:{STRANGER} out" in done.stderr
+    assert (container / "repository/out").stat().st_uid == 0
+
+
+def test_another_user_builds_from_the_beginning() -> None:
+    """CMake may not set the modes of files that the image's maker left."""
+    setup = (ROOT / "scripts/setup/workspace.sh").read_text(encoding="utf-8")
+    assert re.search(r'! -O "\$root/build".*rm -rf "\$root/build" "\$root/devel"', setup)
+
+
+def test_a_changed_list_asks_for_a_new_image(container: Path) -> None:
+    with (container / f"repository/{LIST}").open("a") as file:
+        file.write("one-more==1.0\n")
+    done = enter(container, "true")
+    assert (done.returncode, done.stderr) == (2, (
+        f"docker: {LIST} is not what this image was made from; "
+        "type: docker compose -f docker/compose.yaml build\n"))
+
+
+def test_files_beside_the_folders_are_the_hosts(container: Path) -> None:
+    (container / "repository/Makefile").write_text("new\n")
+    assert enter(container, "cat Makefile").stdout == "new\n"
