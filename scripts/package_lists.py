@@ -1,7 +1,8 @@
 """The table dependencies/packages.yaml, and the lists that are written from it.
 
 A platform is a release and an architecture of Debian: bookworm-amd64. Its folder below
-dependencies/ has debian.txt and pip's requirement files, which setup reads as they are.
+dependencies/ has apt's lists (debian.txt, debian-test.txt) and pip's requirement files, which
+setup reads as they are.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import yaml
 
 FOLDER = Path(__file__).resolve().parent.parent / "dependencies"
 MADE = "# Written from packages.yaml by scripts/refresh_pins.py; change that table."
+DEBIAN = ("debian", "debian-test")  # the second for `make test` alone
 SOURCE = "requirements-source"  # what setup builds; all other lists are wheels
 
 
@@ -68,7 +70,7 @@ class Table:
                 for architecture in self.data["architectures"]]
 
     def sections(self, kind: str) -> dict[str, list[Package]]:
-        """Packages of `debian` or `python`, by section or list."""
+        """Packages of `python` or one of DEBIAN, by list or section."""
         return {section: [_package(name, row) for name, row in rows.items()]
                 for section, rows in self.data[kind].items()}
 
@@ -83,10 +85,10 @@ class Table:
             lists[name] = [package for package in here if package not in built]
         return lists
 
-    def debian_text(self, platform: Platform) -> str:
-        """debian.txt of a platform."""
+    def debian_text(self, platform: Platform, name: str) -> str:
+        """A list of DEBIAN for a platform."""
         parts = [f"{MADE}\n"]
-        for section, packages in self.sections("debian").items():
+        for section, packages in self.sections(name).items():
             here = [package for package in packages
                     if not package.only or platform.is_one_of(package.only)]
             parts.append(f"\n# {section}\n" + "".join(

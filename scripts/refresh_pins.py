@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from package_lists import SOURCE, Package, Pin, Platform, Table, requirements_text
+from package_lists import DEBIAN, SOURCE, Package, Pin, Platform, Table, requirements_text
 
 OLDEST_GLIBC = 5  # the first that manylinux's wheels are named after, of the minor version
 
@@ -101,19 +101,20 @@ def changes(old: dict[str, Pin], new: dict[str, Pin]) -> list[str]:
 
 
 def listed(text: str) -> set[str]:
-    """Names of a debian.txt."""
+    """Names of a debian.txt or debian-test.txt."""
     return {name for line in text.splitlines() if (name := line.partition("#")[0].strip())}
 
 
 def write(table: Table, platform: Platform, pins: dict[str, Pin]) -> list[str]:
     """Write all lists of a platform; a line for each change."""
     told = changes(table.pins(platform), pins)
-    debian = table.path(platform, "debian")
-    before = listed(debian.read_text("utf-8")) if debian.exists() else set()
-    debian.parent.mkdir(exist_ok=True)
-    debian.write_text(text := table.debian_text(platform), "utf-8")
-    told += [f"{name}: {'new' if name in listed(text) else 'gone'} (Debian)"
-             for name in sorted(before ^ listed(text))]
+    for list_name in DEBIAN:
+        debian = table.path(platform, list_name)
+        before = listed(debian.read_text("utf-8")) if debian.exists() else set()
+        debian.parent.mkdir(exist_ok=True)
+        debian.write_text(text := table.debian_text(platform, list_name), "utf-8")
+        told += [f"{name}: {'new' if name in listed(text) else 'gone'} ({list_name}.txt)"
+                 for name in sorted(before ^ listed(text))]
     for name, packages in table.requirements(platform).items():
         path = table.path(platform, name)
         if packages:

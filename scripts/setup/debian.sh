@@ -1,5 +1,5 @@
 # Step 2: Debian packages.
-wanted_packages() { sed 's/#.*//' "$lists/debian.txt" | awk 'NF {print $1}' | sort -u; }
+wanted_packages() { sed 's/#.*//' "$lists/debian.txt" $([ "$tests" = no ] || echo "$lists/debian-test.txt") | awk 'NF {print $1}' | sort -u; }
 missing_packages() {
   wanted_packages | xargs dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null |
     awk '$2 == "installed" {print $1}' | sort -u | comm -13 - <(wanted_packages) || true
