@@ -97,6 +97,12 @@ def test_every_package_of_ours_has_a_key():
                    check=True, timeout=60)
 
 
+def has_provider(name: str) -> bool:
+    """Whether another package provides it, as libqt5gui5t64 does libqt5gui5 in Debian 13."""
+    told = subprocess.run(["apt-cache", "showpkg", name], capture_output=True, text=True, check=True)
+    return bool(told.stdout.partition("Reverse Provides:")[2].strip())
+
+
 def test_every_key_is_a_package_that_apt_knows():
     known = set(subprocess.run(["apt-cache", "pkgnames"], capture_output=True, text=True,
                                check=True).stdout.split())
@@ -105,7 +111,7 @@ def test_every_key_is_a_package_that_apt_knows():
     asked = {name for rule in Tables().debian.values()
              for name in rule["debian"].get(release()) or ()}
     assert len(asked) > 900
-    assert sorted(asked - known) == []
+    assert [name for name in sorted(asked - known) if not has_provider(name)] == []
 
 
 @pytest.mark.parametrize("key, package", [

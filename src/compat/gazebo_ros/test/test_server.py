@@ -18,6 +18,8 @@ def stop(*_):
     os._exit(3)
 signal.signal(signal.SIGINT, stop)
 profiled = sys.getprofile() is not None
+if hasattr(sys, "monitoring"):  # Python 3.12 and later
+    profiled = sys.monitoring.get_tool(sys.monitoring.PROFILER_ID) is not None
 print(os.getpid(), sys.flags.dev_mode, profiled, sys.flags.safe_path, *sys.argv[1:], flush=True)
 time.sleep(60)
 """

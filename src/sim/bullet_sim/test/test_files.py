@@ -98,7 +98,7 @@ def test_a_pipe_as_model(pipe, tmp_path, caplog):
 @pytest.mark.parametrize("path, said", [
     ("/nonexistent/x", "/nonexistent/x cannot be read: No such file or directory"),
     ("/tmp", "/tmp cannot be read: it is a folder, not a file"),
-    ("a\0b", "cannot be read: embedded null byte"),
+    ("a\0b", "cannot be read: .*embedded null"),
 ])
 def test_what_else_is_no_file(path, said):
     with pytest.raises(FormatError, match=said):

@@ -85,6 +85,7 @@ def test_a_huge_file_is_not_read(tmp_path):
     (b"\xef\xbb\xbf" + '<sdf><world name="赛道"/></sdf>'.encode(), "赛道"),
     ('<sdf><world name="赛道"/></sdf>'.encode("utf-16"), "赛道"),
     ('<?xml version="1.0" encoding="GBK"?><sdf><world name="赛道"/></sdf>'.encode("gbk"), "赛道"),
+    (b'<?xml version="0.0" ?>\n<sdf><world name="w"/></sdf>', "w"),
     (b'<?xml version="1.0" encoding="nonsense"?><sdf><world name="w"/></sdf>', "w"),
     ('<?xml version="1.0" encoding="utf-8"?><sdf><world name="w\xe9"/></sdf>'.encode("latin-1"),
      "w\ufffd"),

@@ -16,6 +16,8 @@ LARGEST_TEXT = 32 * 2**20  # bytes; elements of it take about ten times that of 
 MOST_ELEMENTS = 300_000
 DEEPEST = 200  # levels; reading nested models takes a few of Python's own for each
 DECLARED = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([\w.-]+)["']""")
+# Its version is not looked at: robots of PyBullet's own say 0.0, which Expat 2.9 refuses.
+DECLARATION = re.compile(r"<\?xml\s[^<>]*\?>")
 BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
@@ -25,6 +27,9 @@ def parse_xml(text: str, what: str = "XML") -> Element:
         raise FormatError(_too_large(what, len(text)))
     stripped = text.lstrip("\ufeff \t\r\n")
     skipped_lines = text[:len(text) - len(stripped)].count("\n")
+    if declaration := DECLARATION.match(stripped):
+        blank = re.sub(r"[^\n]", " ", declaration[0])  # places in error messages stay
+        stripped = blank + stripped[declaration.end():]
     parser = expat.ParserCreate("utf-8")
     builder = _BoundedBuilder(parser, what, skipped_lines)
     parser.StartElementHandler = builder.start
