@@ -99,7 +99,8 @@ def test_every_package_of_ours_has_a_key():
 
 def has_provider(name: str) -> bool:
     """Whether another package provides it, as libqt5gui5t64 does libqt5gui5 in Debian 13."""
-    told = subprocess.run(["apt-cache", "showpkg", name], capture_output=True, text=True, check=True)
+    told = subprocess.run(["apt-cache", "showpkg", name], capture_output=True, text=True,
+                          check=True)
     return bool(told.stdout.partition("Reverse Provides:")[2].strip())
 
 
