@@ -83,6 +83,38 @@ def test_links_stay_attached_as_they_were_whatever_their_centres_of_mass(world):
     weld.release()  # a second time does nothing
 
 
+def rebuild_heavier(link):
+    link.change(Inertial(2.0, Pose((0.01, 0.02, 0.0)), (0.01, 0, 0, 0.01, 0, 0.01)), gravity=True)
+
+
+def test_a_weld_outlives_a_rebuild_of_either_body(world):
+    first = world.spawn(cube("a", (0.02, 0, 0)), Pose((0, 0, 1), quaternion_from_rpy(.3, .2, .5)))
+    second = world.spawn(cube("b", (0, 0.03, 0)), Pose((0.2, 0, 1.1)))
+    before = first.pose.inverse() * second.pose
+    weld = second.links["l"].attach(first.links["l"])
+    rebuild_heavier(first.links["l"])
+    rebuild_heavier(second.links["l"])
+    first.links["l"].apply_force((50.0, 0.0, 0.0), (0.0, 3.0, 0.0))
+    world.step(300)
+    after = first.pose.inverse() * second.pose
+    assert after.position == pytest.approx(before.position, abs=1e-3)
+    assert after.rpy() == pytest.approx(before.rpy(), abs=2e-3)
+    weld.release()
+    first.links["l"].apply_force((500.0, 0.0, 0.0))
+    world.step(100)
+    assert (first.pose.inverse() * second.pose).position != pytest.approx(before.position, abs=1e-2)
+
+
+def test_what_is_held_in_the_world_can_be_moved_after_a_rebuild(world):
+    model = world.spawn(cube("a", (0.02, 0, 0)), Pose((0, 0, 1)))
+    hold = model.links["l"].attach()
+    rebuild_heavier(model.links["l"])
+    for _ in range(100):
+        hold.shift(Pose((0.0, 0.0, 0.001)))
+        world.step()
+    assert model.pose.position == pytest.approx((0.0, 0.0, 1.1), abs=5e-3)
+
+
 def test_a_link_held_in_the_world_is_moved_with_what_holds_it(world):
     model = world.spawn(cube("a", (0.02, 0, 0)), Pose((0, 0, 1), quaternion_from_rpy(.3, .2, .5)))
     hold = model.links["l"].attach()

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bullet_sim.description import Inertial, LinkDescription
-from bullet_sim.physics.attachments import Attachment
+from bullet_sim.physics.weld import Weld
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.pose import Pose, Vector3
@@ -63,11 +63,11 @@ class Link:
         self.description = replace(self.description, inertial=inertial, gravity=gravity)
         self.model.note_weightless()
 
-    def attach(self, other: Link | None = None) -> Attachment:
+    def attach(self, other: Link | None = None) -> Weld:
         """Hold it where it is now, on another model's link or in the world, until released."""
         if other is None:
-            return Attachment(self._body, self.name)
-        return Attachment(self._body, self.name, other._body, other.name)
+            return Weld(self._body, self.name)
+        return Weld(self._body, self.name, other._body, other.name)
 
     def apply_force(self, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
@@ -23,14 +22,16 @@ FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a 
 
 
 class Attachment(Protocol):
-    """What hangs on the engine's body itself, and has to follow when it is made anew."""
+    """A constraint or filter on the engine's body itself, made again whenever that is."""
+
+    bodies: list[Body]  # each has it in `attached`
 
     def attach(self) -> None:
-        """The body is there."""
+        """Make it, now that a body is loaded."""
         ...
 
     def detach(self) -> None:
-        """The body is about to go."""
+        """Undo it, as a body is about to be unloaded; a second time does nothing."""
         ...
 
 
@@ -47,7 +48,6 @@ class Body(LinkSide, JointSide):
         self._find_joints()
         self.attached: list[Attachment] = []
         self._link_indices = list(range(len(tree.links) - 1))
-        self.on_unload: list[Callable[[], None]] = []  # to be called before the engine loses it
         self.may_auto_disable = True  # as far as its model says
         self.number = NOWHERE
         try:
@@ -61,6 +61,11 @@ class Body(LinkSide, JointSide):
     def client(self) -> PhysicsClient:
         """The engine that it is in."""
         return self._client
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether the engine has it."""
+        return self.number != NOWHERE
 
     # --- set-up
 
@@ -163,16 +168,14 @@ class Body(LinkSide, JointSide):
     def remove(self) -> None:
         """Take the body out of the world, also where the engine cannot find it any more."""
         self._client.rest.bodies.remove(self)
-        for attachment in self.attached:
+        for attachment in list(self.attached):
             with contextlib.suppress(EngineError):
                 attachment.detach()
-        self.attached = []
+            for body in attachment.bodies:
+                body.attached.remove(attachment)
         self._unload()
 
     def _unload(self) -> None:
-        for action in list(self.on_unload):
-            with contextlib.suppress(EngineError):
-                action()
         if self.number == NOWHERE:
             return
         self._client.planes.remove(self.number)

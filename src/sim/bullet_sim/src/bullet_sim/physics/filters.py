@@ -24,7 +24,7 @@ class Filters:
 
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body]):
         self._client = client
-        self._bodies = bodies
+        self.bodies = bodies
         self._static = model.static  # then no two parts meet
         self._pairs: list[tuple[int, int, int, int]] = []
         self._colliding = set() if model.static else {
@@ -42,7 +42,7 @@ class Filters:
 
     def attach(self) -> None:
         """Tell the engine."""
-        parts = [(body, index, link.described) for body in self._bodies
+        parts = [(body, index, link.described) for body in self.bodies
                  for index, link in enumerate(body.tree.links, start=-1) if link.collisions]
         self._masked = False
         for body, index, _ in parts:

@@ -31,7 +31,7 @@ class Closures:
                  loose: list[JointDescription]):
         self._client = client
         self._model = model
-        self._bodies = bodies
+        self.bodies = bodies
         self._loose = loose
         self._constraints: list[int] = []
         try:
@@ -45,7 +45,7 @@ class Closures:
 
     def attach(self) -> None:
         """Put the constraints in."""
-        for body in self._bodies:
+        for body in self.bodies:
             for name in body.joint_names():
                 if name.endswith(TRAVEL):
                     self._make(*_thread(body, name))
@@ -67,7 +67,7 @@ class Closures:
 
     def _place(self, name: str) -> tuple[Body, PhysicsLink]:
         """Where a described link is; what stands still is the base of the first fixed body."""
-        for body in self._bodies:
+        for body in self.bodies:
             if name == WORLD and body.tree.fixed:
                 return body, body.tree.links[0]
             for link in body.tree.links:
@@ -119,7 +119,7 @@ class Closures:
         reference = gearbox.gearbox_reference_body
         child = next((d.pose for d in self._model.links if d.name == gearbox.child), Pose())
         wanted = rotate((child * gearbox.pose).orientation, axis)
-        for body in self._bodies:
+        for body in self.bodies:
             for held in body.tree.links[1:]:
                 if held.joint is None or {held.name, held.parent} != {link, reference}:
                     continue

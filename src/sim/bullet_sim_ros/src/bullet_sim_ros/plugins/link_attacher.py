@@ -7,7 +7,7 @@ import logging
 from gazebo_ros_link_attacher.srv import Attach, AttachResponse
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.physics.attachments import Attachment
+from bullet_sim.physics.weld import Weld
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import told
 from bullet_sim_ros.plugins.host import Host
@@ -25,7 +25,7 @@ class LinkAttacherPlugin:
 
     def __init__(self, host: Host):
         self._host = host
-        self._held: dict[Ends, Attachment] = {}
+        self._held: dict[Ends, Weld] = {}
         for name, action in (("attach", self._attach), ("detach", self._detach)):
             host.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
         host.on_close(self._let_go)
@@ -53,10 +53,10 @@ class LinkAttacherPlugin:
 
     def _detach(self, ends: Ends) -> bool:
         """Upstream answers that it went well only if there is something to part."""
-        attachment = self._held.pop(ends, None)
-        if attachment is None:
+        weld = self._held.pop(ends, None)
+        if weld is None:
             return False
-        attachment.release()
+        weld.release()
         return True
 
     def _let_go(self) -> None:

@@ -1,0 +1,75 @@
+"""Welds made while the world runs: of two links, or of a link to a place in the world."""
+
+from __future__ import annotations
+
+from bullet_sim.physics.body import Body
+from bullet_sim.physics.quiet import pybullet
+from bullet_sim.pose import IDENTITY, Pose
+
+WORLD_BODY = -1  # PyBullet's number of what is no body
+STRONGEST = 1e6  # N and N m: more than anything that hangs on a robot
+
+
+class Weld:
+    """Holds a link as it is now, seen from another one or from the world, until `release`.
+
+    It outlives a body's rebuild. The engine's constraint ties centres of mass, which a rebuild may
+    move; what is kept is therefore the pose of the link's own frame.
+    """
+
+    def __init__(self, body: Body, link: str, other: Body | None = None, other_link: str = ""):
+        self._body, self._link = body, link
+        self._other, self._other_link = other, other_link
+        self.bodies = [body] if other is None else [body, other]
+        holder = IDENTITY if other is None else other.engine_frame(other.index(other_link))
+        self._pose_holder_link = holder.inverse() * body.engine_frame(body.index(link))
+        self._constraint: int | None = None
+        self.attach()
+        for each in self.bodies:
+            each.attached.append(self)
+
+    def attach(self) -> None:
+        """Put the constraint in, if both bodies are there."""
+        if self._constraint is not None or not all(each.is_loaded for each in self.bodies):
+            return
+        held = self._held()
+        index, _ = self._body.centre(self._link)
+        holder = ((WORLD_BODY, -1) if self._other is None else
+                  (self._other.number, self._other.index(self._other_link)))
+        client = self._body.client
+        self._constraint = client.call(
+            pybullet.createConstraint, self._body.number, index, *holder, pybullet.JOINT_FIXED,
+            (0, 0, 0), (0, 0, 0), held.position, (0, 0, 0, 1), held.orientation)
+        client.call(pybullet.changeConstraint, self._constraint, maxForce=STRONGEST)
+
+    def detach(self) -> None:
+        """Take the constraint out; `attach` puts it in again."""
+        if self._constraint is None:
+            return
+        constraint, self._constraint = self._constraint, None
+        self._body.client.call(pybullet.removeConstraint, constraint)
+
+    def _held(self) -> Pose:
+        """Where the link's centre of mass is held: seen from the holder's, or in the world."""
+        held = self._pose_holder_link * self._body.com_in_link(self._body.index(self._link))
+        if self._other is None:
+            return held
+        com = self._other.com_in_link(self._other.index(self._other_link))
+        return com.inverse() * held
+
+    def shift(self, change: Pose) -> None:
+        """Of a link held in the world: move where it is held by a displacement in the world."""
+        self._pose_holder_link = change * self._pose_holder_link
+        if self._constraint is None:
+            return
+        held = self._held()
+        self._body.client.call(
+            pybullet.changeConstraint, self._constraint, jointChildPivot=held.position,
+            jointChildFrameOrientation=held.orientation, maxForce=STRONGEST)
+
+    def release(self) -> None:
+        """Let go; a second time does nothing."""
+        self.detach()
+        for each in self.bodies:
+            if self in each.attached:
+                each.attached.remove(self)
