@@ -12,8 +12,9 @@ from gazebo_msgs.msg import LinkStates, ModelStates, PerformanceMetrics
 import bullet_sim.formats  # its modules have to be there to be changed
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins import registry
-from bullet_sim_ros.plugins.parameters import PluginParameters
+from bullet_sim_ros.plugin_host import registry
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services import answers
 
 TOPICS = {"model_states": ModelStates, "link_states": LinkStates,
@@ -38,6 +39,7 @@ def pytest_configure() -> None:
 
 def _hide_plugin(library: str, tag: str) -> None:
     """The plugin does not see the tag; without a tag the plugin is not known."""
+    register_plugins()
     if not tag or tag.endswith(".so"):
         registry._registry.pop(tag or library, None)
         return

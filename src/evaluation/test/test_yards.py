@@ -10,7 +10,7 @@ from rospkg import RosPack
 
 from bullet_sim.description import Collision, Cylinder, LinkDescription, ModelDescription
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from evaluation.mapping.true_map import open_walls

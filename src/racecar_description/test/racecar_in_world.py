@@ -7,7 +7,7 @@ import yaml
 
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 

@@ -13,7 +13,7 @@ import yaml
 from racecar_in_world import AXLES, HINGES, TRACK, WHEEL_RADIUS, WHEELBASE, Car, at
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.sensors.laser import Laser
 
 PACKAGE = Path(__file__).resolve().parent.parent

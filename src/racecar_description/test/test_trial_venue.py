@@ -8,7 +8,7 @@ from trial_venue import VENUES, Truth, prepare
 
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.contact import ContactSensor
 from bullet_sim.world import World

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 
 URDF = Path(__file__).resolve().parent.parent / "urdf"
 JOINTS = {  # robot: joint, parent, child, xyz (m), rpy (rad)

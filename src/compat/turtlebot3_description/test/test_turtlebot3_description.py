@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 
 PACKAGE = Path(__file__).resolve().parent.parent
 MODELS = ("burger", "waffle", "waffle_pi")

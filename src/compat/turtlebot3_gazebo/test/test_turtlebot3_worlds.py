@@ -12,7 +12,7 @@ from turtlebot3_gazebo.making.everything import everything
 from turtlebot3_gazebo.making.painting import RED, WHITE, YELLOW, Canvas
 
 from bullet_sim.formats import load_model, load_world
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from bullet_sim_ros.package_paths import open_resources

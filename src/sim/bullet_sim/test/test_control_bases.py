@@ -4,9 +4,12 @@ import math
 
 import pytest
 
-from bullet_sim.control.controllers.ackermann_steering import AckermannGeometry, AckermannSteering
-from bullet_sim.control.controllers.diff_drive import DiffDrive, DiffDriveGeometry
-from bullet_sim.control.controllers.four_wheel_steering import (
+from bullet_sim.control.controllers.ackermann_steering_controller import (
+    AckermannGeometry,
+    AckermannSteering,
+)
+from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
+from bullet_sim.control.controllers.four_wheel_steering_controller import (
     FourWheelGeometry,
     FourWheelSteering,
     measured_twist,

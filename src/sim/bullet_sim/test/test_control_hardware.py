@@ -12,7 +12,7 @@ from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.description import Inertial, JointDescription, LinkDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.formats.urdf_transmission import Transmission
+from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.world import World
 
 DT = 0.001  # s, a step

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from bullet_sim.control.angles import shortest_angular_distance
-from bullet_sim.control.pace import Pace
 from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim.control.rate import Pace
 from bullet_sim.errors import SimulationError
 
 DT = 0.1  # s

@@ -6,8 +6,8 @@ import pytest
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.control.trajectory.drives import PidDrive, PositionDrive
 from bullet_sim.control.trajectory.follower import TrajectoryFollower, Verdict
+from bullet_sim.control.trajectory.joint_commands import PidDrive, PositionDrive
 from bullet_sim.control.trajectory.path import Path, stopping
 from bullet_sim.control.trajectory.request import (
     InvalidJoints,

@@ -7,8 +7,8 @@ import pytest
 
 from bullet_sim.control.limits import JointLimits, SoftLimits
 from bullet_sim.errors import FormatError, UnknownName
-from bullet_sim.formats.urdf_facts import RobotFacts
-from bullet_sim.formats.urdf_transmission import Transmission, read_transmissions
+from bullet_sim.formats.urdf.facts import RobotFacts
+from bullet_sim.formats.urdf.transmission import Transmission, read_transmissions
 from bullet_sim.formats.xml_values import parse_xml
 
 EFFORT = "<hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface>"

@@ -14,7 +14,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.drives.bumper import pressed_bumpers
 from bullet_sim.drives.grasp import turned_round
-from bullet_sim.drives.hand import rotation_vector
+from bullet_sim.drives.spring_damper import rotation_vector
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import IDENTITY, Pose, quaternion_from_rpy
 from bullet_sim.twist import Twist

@@ -14,7 +14,8 @@ from bullet_sim.description import (
     Surface,
     WorldDescription,
 )
-from bullet_sim.physics import embedded
+from bullet_sim.physics import correcting_velocity
+from bullet_sim.physics.correcting_velocity import FASTEST
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
@@ -62,14 +63,14 @@ def test_a_spawned_body_rises_to_the_floor_and_no_higher(world, depth):
     assert max(rising) < HALF + 0.005
     assert rising[-1] == pytest.approx(HALF, abs=0.001)
     fastest = max(b - a for a, b in itertools.pairwise(rising)) / 0.01
-    assert 0.5 * embedded.FASTEST < fastest < 1.1 * embedded.FASTEST
+    assert 0.5 * FASTEST < fastest < 1.1 * FASTEST
 
 
 @pytest.mark.parametrize("mass", [0.01, 0.1, 100.0])
 def test_light_things_leave_no_faster(world, mass):
     rising = heights(world, world.spawn(cube(mass), Pose((0, 0, HALF - 0.06))), 2.0)
     assert max(rising) < HALF + 0.002
-    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * embedded.FASTEST
+    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * FASTEST
 
 
 @pytest.mark.parametrize("ground, thing", [
@@ -79,7 +80,7 @@ def test_whatever_the_surfaces_are_like(ground, thing):
     rising = heights(world, world.spawn(cube(1.0, thing), Pose((0, 0, HALF - 0.06))), 3.0)
     assert max(rising) < HALF + 0.005
     assert rising[-1] == pytest.approx(HALF, abs=0.001)
-    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * embedded.FASTEST
+    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * FASTEST
     world.close()
 
 
@@ -92,6 +93,6 @@ def test_a_moved_body_does_so_too(world):
 
 
 def test_what_is_deep_for_good_is_left_to_the_engine_in_the_end(world, monkeypatch):
-    monkeypatch.setattr(embedded, "LONGEST", 0.1)
+    monkeypatch.setattr(correcting_velocity, "LONGEST", 0.1)
     cube = world.spawn(CUBE, Pose((0, 0, 0.02)))
     assert max(heights(world, cube, 1.0)) > HALF + 0.1

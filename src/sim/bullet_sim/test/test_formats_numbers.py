@@ -104,6 +104,6 @@ def test_what_is_no_xml_gets_the_spawn_services_sentence(load, text, reason):
 
 
 def test_the_xacro_command_does_not_wait_for_the_model_readers():
-    code = "import sys, bullet_sim.formats.xacro_files; sys.exit('numpy' in sys.modules)"
+    code = "import sys, bullet_sim.formats.xacro.files; sys.exit('numpy' in sys.modules)"
     env = {"PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], env=env, check=False).returncode == 0

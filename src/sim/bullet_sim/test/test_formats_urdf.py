@@ -8,7 +8,7 @@ import pytest
 from bullet_sim.description import Box, Cylinder, Inertial
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.formats.lumping import combined
+from bullet_sim.formats.urdf.lumping import combined
 from bullet_sim.pose import Pose
 
 NO_FILES = Resources()

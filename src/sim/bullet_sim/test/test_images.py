@@ -11,8 +11,8 @@ import pytest
 
 from bullet_sim.description import Heightmap, ImageExtrusion
 from bullet_sim.errors import FormatError
-from bullet_sim.generated import generated_parts
-from bullet_sim.images import check_image, read_image, shrunk, warn_if_unreadable
+from bullet_sim.meshes.generated import generated_parts
+from bullet_sim.meshes.images import check_image, read_image, shrunk, warn_if_unreadable
 from bullet_sim.rendering.textures import load_image
 
 
@@ -86,7 +86,7 @@ def test_other_kinds_are_no_bombs_either(tmp_path):
     path = tmp_path / "a.tif"
     path.write_bytes(b"II*\0" + struct.pack("<I", 8 + len(pixels)) + pixels
                      + struct.pack("<H", len(values)) + entries + bytes(4))
-    script = (f"from bullet_sim.images import *\ntry: read_image({str(path)!r}, 1)\n"
+    script = (f"from bullet_sim.meshes.images import *\ntry: read_image({str(path)!r}, 1)\n"
               "except FormatError as error: print(error)")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert done.stdout == (

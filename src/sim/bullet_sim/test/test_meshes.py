@@ -12,7 +12,7 @@ import trimesh
 
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes import collision_mesh, load_mesh, to_obj
+from bullet_sim.meshes.loading import collision_mesh, load_mesh, to_obj
 
 DAE = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -163,7 +163,8 @@ def test_the_robots_meshes_are_read_without_trimesh(tmp_path, box, dae):
     """Its import costs more than all of a robot's spawning."""
     box.export(tmp_path / "box.stl")
     script = (
-        "import sys; from bullet_sim.description import Mesh; from bullet_sim.meshes import *;"
+        "import sys; from bullet_sim.description import Mesh; "
+        "from bullet_sim.meshes.loading import *;"
         f"load_mesh(Mesh({str(tmp_path / 'box.stl')!r})); load_mesh(Mesh({str(dae)!r}));"
         "sys.exit(' '.join({'trimesh', 'scipy'} & sys.modules.keys()) or 0)"
     )

@@ -22,8 +22,8 @@ from bullet_sim.description import (
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.pose import IDENTITY, Pose
-from bullet_sim.schedule import Schedule
 from bullet_sim.sensors.odometry import WheelOdometry, true_odometry
+from bullet_sim.tick_rate import Schedule
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 

@@ -150,7 +150,7 @@ def test_rest_changes_no_result(counted, monkeypatch):
     for leave_out in (True, False):
         world = World()
         if not leave_out:
-            monkeypatch.setattr("bullet_sim.physics.rest.STILL_SPEED", 0.0)
+            monkeypatch.setattr("bullet_sim.physics.auto_disable.STILL_SPEED", 0.0)
         world.spawn(ground())
         drive = Drive(world)
         world.step(30_000)

@@ -8,7 +8,7 @@ import pytest
 import xacro
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xacro_files import expand, expand_file
+from bullet_sim.formats.xacro.files import expand, expand_file
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 

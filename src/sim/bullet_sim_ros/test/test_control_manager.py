@@ -6,7 +6,7 @@ import time
 import pytest
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.pace import Pace
+from bullet_sim.control.rate import Pace
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.parameters import ControllerParameters

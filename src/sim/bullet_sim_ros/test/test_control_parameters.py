@@ -6,7 +6,7 @@ import pytest
 
 from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
-from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import params
 from bullet_sim_ros.control import (
     controllers,  # noqa: F401  (they register)

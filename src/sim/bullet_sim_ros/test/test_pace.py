@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import pytest
 
-from bullet_sim.stages import Stages
+from bullet_sim.profiler import Stages
 from bullet_sim.world import World
-from bullet_sim_ros import speed as speed_module
-from bullet_sim_ros.agenda import Agenda
+from bullet_sim_ros import real_time_factor as speed_module
 from bullet_sim_ros.pacer import CATCH_UP, SLACK, Pacer
-from bullet_sim_ros.speed import Speed
+from bullet_sim_ros.real_time_factor import Speed
+from bullet_sim_ros.scheduler import Agenda
 
 
 class Clock:
@@ -166,7 +166,7 @@ def test_time_that_keeps_up_is_no_warning(monkeypatch, caplog, each, wanted):
 
 def test_stages_inside_others_count_once(monkeypatch):
     clock = Clock()
-    monkeypatch.setattr("bullet_sim.stages.time.perf_counter", clock)
+    monkeypatch.setattr("bullet_sim.profiler.time.perf_counter", clock)
     stages = Stages()
     with stages.measure("plugins"):
         clock.now += 1.0

@@ -12,11 +12,12 @@ from bullet_sim.description import (
     SensorDescription,
 )
 from bullet_sim.world import World
-from bullet_sim_ros.agenda import Agenda
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins import load_plugins, plugin, registry
-from bullet_sim_ros.plugins.parameters import PluginParameters
-from bullet_sim_ros.plugins.shared import Shared
+from bullet_sim_ros.plugin_host import registry
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
+from bullet_sim_ros.plugin_host.services import Shared
+from bullet_sim_ros.scheduler import Agenda
 from bullet_sim_ros.services.models import with_namespace
 
 

@@ -6,7 +6,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from bullet_sim.stages import Stages
+from bullet_sim.profiler import Stages
 from bullet_sim_ros.array_image import ArrayImage
 
 

@@ -10,7 +10,7 @@ import rospkg
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.formats import Resources, load_model, load_world
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import IDENTITY
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import Renderer

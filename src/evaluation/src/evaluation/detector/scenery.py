@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from bullet_sim.description import Fog, LightDescription, Plane, SceneDescription
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.primitives import primitive_part
 from evaluation.detector.patterns import FLOOR_PX, any_colour, pattern

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bullet_sim.description import Box, Cylinder, Material, Sphere
-from bullet_sim.mesh_part import MeshPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, flat_shaded
 from bullet_sim.pose import Pose, Vector3
 from bullet_sim.rendering.primitives import primitive_part
 from bullet_sim.rendering.scene import LinkShape

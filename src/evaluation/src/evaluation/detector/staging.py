@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bullet_sim.description import LightDescription, SceneDescription
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from evaluation.detector.classes import CLASSES

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from bullet_sim.description import Material
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
 from evaluation.detector.patterns import any_colour, pattern, stop_face
 from evaluation.detector.solids import Thing, ball, bar, box, coloured, frustum, plate

@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bullet_sim.description import Inertial, LinkDescription
-from bullet_sim.physics.weld import Weld
+from bullet_sim.joint_projection import put_in_joint
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.inertia import check_inertial
+from bullet_sim.physics.weld import Weld
 from bullet_sim.pose import Pose, Vector3
-from bullet_sim.seat import put_in_joint
 from bullet_sim.twist import Twist, twist_difference
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from bullet_sim.physics.assembly import WORLD, Tree, assemble, loose_joints
 from bullet_sim.physics.axes import SECOND
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.filters import Filters
+from bullet_sim.physics.collision_filters import Filters
 from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.physics.levelling import levelled
 from bullet_sim.physics.limits import check_trees
-from bullet_sim.physics.loops import Closures
+from bullet_sim.physics.loop_constraints import Closures
 from bullet_sim.pose import Pose, Vector3
 from bullet_sim.twist import STILL, Twist, shifted_twist
 

@@ -20,14 +20,14 @@ from bullet_sim.model import Model
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
 from bullet_sim.physics.limits import check_kept, check_physics, possible_physics
-from bullet_sim.physics.mending import lost_models, mend
+from bullet_sim.physics.nan_recovery import lost_models, mend
 from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.profiler import Stages
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
 from bullet_sim.snapshot import Snapshot, take_snapshot
-from bullet_sim.stages import Stages
 from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)

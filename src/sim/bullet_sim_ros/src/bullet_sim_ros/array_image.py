@@ -8,7 +8,7 @@ from io import BytesIO
 import numpy as np
 from sensor_msgs.msg import Image
 
-from bullet_sim.stages import Stages
+from bullet_sim.profiler import Stages
 
 
 class ArrayImage(Image):

@@ -15,11 +15,11 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2,
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, normalised
+from bullet_sim.profiler import Stages
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
-from bullet_sim.stages import Stages
 from bullet_sim.twist import Twist
 from bullet_sim_ros.array_image import ArrayImage
 from bullet_sim_ros.cameras.encodings import encode

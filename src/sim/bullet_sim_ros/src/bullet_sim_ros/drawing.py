@@ -11,8 +11,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 import rospy
 
+from bullet_sim.profiler import Stages
 from bullet_sim.rendering.renderer import Renderer, open_renderer
-from bullet_sim.stages import Stages
 
 PATIENCE = 1.0  # s, wall
 

@@ -9,7 +9,7 @@ import rospy
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugin_host.context import Host
 
 if TYPE_CHECKING:
     from bullet_sim_ros.simulation import Simulation

@@ -24,6 +24,7 @@ from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
+from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.simulation import Simulation
@@ -126,6 +127,7 @@ def main() -> int:
     rospy.rostime.set_rostime_initialized(True)
     forward_core_log(options.verbose)
     check_engine(options.physics)
+    register_plugins()
     resources = open_resources()
     try:
         world = open_world(options, resources)

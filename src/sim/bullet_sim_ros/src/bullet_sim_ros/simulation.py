@@ -11,18 +11,18 @@ from bullet_sim.physics.quiet import EngineError
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.agenda import Agenda
 from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugins import load_plugins, load_world_plugins
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.shared import Shared
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
+from bullet_sim_ros.plugin_host.services import Shared
+from bullet_sim_ros.real_time_factor import Speed
 from bullet_sim_ros.scene_topic import SceneTopic
-from bullet_sim_ros.speed import Speed
+from bullet_sim_ros.scheduler import Agenda
 from bullet_sim_ros.state_topics import StateTopics
 
 IDLE = 0.05  # s, wall: how long to wait for a call before looking whether all is to end

@@ -20,6 +20,7 @@ from bullet_sim.world import World
 from bullet_sim_ros.check.stand_ins import Graph, without_master
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
+from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.services.models import with_namespace
 from bullet_sim_ros.simulation import Simulation
@@ -36,6 +37,7 @@ class Bench:
     """A simulation to try things on. Time passes only in `run`."""
 
     def __init__(self, graph: Graph, world_text: str, folder, parameters: NodeParameters):
+        register_plugins()
         self.graph = graph
         self.resources = open_resources()
         path = folder / "bench.world"

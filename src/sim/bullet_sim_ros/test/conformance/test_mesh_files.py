@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from bullet_sim import mesh_collada, meshes
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.meshes import collision_mesh, load_mesh
+from bullet_sim.meshes import collada, loading
+from bullet_sim.meshes.loading import collision_mesh, load_mesh
 
 INERTIAL = """<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>
     </inertial>"""
@@ -110,7 +110,7 @@ def test_nodes_that_come_again_and_again(tmp_path, monkeypatch, bound, least, sa
                     .replace('<instance_geometry url="#g"><bind', '<instance_node url="#n2"/><bind')
                     .replace("</bind_material></instance_geometry>", "</bind_material>"))
     assert sum(len(part.faces) for part in load_mesh(Mesh(str(path)))) == 800
-    monkeypatch.setattr(mesh_collada, bound, least)
+    monkeypatch.setattr(collada, bound, least)
     path.touch()
     with pytest.raises(FormatError, match=said):
         load_mesh(Mesh(str(path)))
@@ -202,9 +202,9 @@ def test_a_robot_with_a_broken_mesh_still_spawns(bench, tmp_path, caplog, name, 
 
 def test_huge_meshes_are_thinned_out(tmp_path, caplog, monkeypatch):
     # conforms: mesh files/huge files
-    monkeypatch.setattr(meshes, "MOST_DRAWN", 15_000)
-    monkeypatch.setattr(meshes, "MOST_COLLIDING", 6_000)
-    monkeypatch.setattr(meshes, "LARGEST_FILE", 2_000_000)
+    monkeypatch.setattr(loading, "MOST_DRAWN", 15_000)
+    monkeypatch.setattr(loading, "MOST_COLLIDING", 6_000)
+    monkeypatch.setattr(loading, "LARGEST_FILE", 2_000_000)
     sphere = trimesh.creation.icosphere(subdivisions=5)  # 20 480 triangles
     path = tmp_path / "ball.stl"
     path.write_bytes(sphere.export(file_type="stl"))

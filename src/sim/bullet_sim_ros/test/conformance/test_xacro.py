@@ -16,11 +16,12 @@ import pytest
 
 import bullet_sim
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import xacro_limits, xacro_reading
-from bullet_sim.formats.xacro_attempt import Run, attempt
-from bullet_sim.formats.xacro_files import expand, expand_file
-from bullet_sim.formats.xacro_limits import run_bounded
-from bullet_sim.formats.xacro_nodes import Siblings, replace_node
+from bullet_sim.formats.xacro import limits as xacro_limits
+from bullet_sim.formats.xacro import opening as xacro_opening
+from bullet_sim.formats.xacro.expansion import Run, attempt
+from bullet_sim.formats.xacro.files import expand, expand_file
+from bullet_sim.formats.xacro.limits import run_bounded
+from bullet_sim.formats.xacro.nodes import Siblings, replace_node
 
 ROOT = Path(__file__).resolve().parents[5]
 COMMAND = ROOT / "src/compat/xacro/xacro"
@@ -291,12 +292,12 @@ def test_parts_that_come_too_often(write, monkeypatch):
     monkeypatch.setattr(xacro_limits, "MOST_TEXTS", 1000)
     with pytest.raises(FormatError, match="more than 1000 attributes and texts"):
         expand(write('<link name="a"/>' * 1001))
-    monkeypatch.setattr(xacro_reading, "MOST_FILES", 10)
+    monkeypatch.setattr(xacro_opening, "MOST_FILES", 10)
     part = write("", "part.xacro")
     assert expand(write(f'<xacro:include filename="{part}"/>' * 10))
     with pytest.raises(FormatError, match="more than 10 files are included"):
         expand(write(f'<xacro:include filename="{part}"/>' * 11))
-    monkeypatch.setattr(xacro_reading, "LARGEST_FILE", 1000)
+    monkeypatch.setattr(xacro_opening, "LARGEST_FILE", 1000)
     part.write_text("<a>" + " " * 1000 + "</a>")
     with pytest.raises(FormatError, match=r"part.xacro cannot be read: 0 MB, more than 0; split"):
         expand(write(f'<xacro:include filename="{part}"/>'))

@@ -15,7 +15,7 @@ import numpy as np
 from aiohttp import web
 
 from bullet_sim.description import Visual
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape, link_shape
 from sim_viewer.context import Node
 

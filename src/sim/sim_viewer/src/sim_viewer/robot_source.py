@@ -13,7 +13,7 @@ from tf2_msgs.msg import TFMessage
 
 from bullet_sim.description import LightDescription, SceneDescription
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.urdf_visuals import RobotLinks, read_robot_visuals
+from bullet_sim.formats.urdf.visuals import RobotLinks, read_robot_visuals
 from bullet_sim.pose import IDENTITY
 from bullet_sim.rendering.scene_text import SceneContent
 from sim_viewer.subscription import Subscription

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import rospkg
 
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from evaluation.bench import simulator
 from evaluation.bench.course import Course, drive_of

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import rospkg
 
-from bullet_sim.formats.xacro_files import expand
+from bullet_sim.formats.xacro.files import expand
 from evaluation.bench import simulator
 from evaluation.bench.figures import Figure, figure
 from evaluation.bench.parts.growth import grid

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from bullet_sim.control.drives import EffortDrive, make_drive
 from bullet_sim.control.handles import CommandHandle, JointHandle
+from bullet_sim.control.joint_drives import EffortDrive, make_drive
 from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.formats.urdf_transmission import Transmission
+from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.joint import Joint
 from bullet_sim.model import Model
 

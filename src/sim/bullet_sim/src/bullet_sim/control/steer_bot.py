@@ -15,7 +15,7 @@ from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.limits import JointLimits
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats.urdf_transmission import Transmission
+from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model
 
 STEEPEST = math.radians(89.0)  # of the virtual joint; beyond it there is no circle to drive

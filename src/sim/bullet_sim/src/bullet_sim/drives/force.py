@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.link import Link
-from bullet_sim.physics.rest import STILL_RATE, STILL_SPEED
+from bullet_sim.physics.auto_disable import STILL_RATE, STILL_SPEED
 from bullet_sim.pose import rotate
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import twist_in

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bullet_sim.model import Model
-from bullet_sim.physics.rest import STILL_RATE, STILL_SPEED
+from bullet_sim.physics.auto_disable import STILL_RATE, STILL_SPEED
 from bullet_sim.pose import quaternion_from_rpy, rotate
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import Twist

@@ -9,14 +9,15 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import FormatError, ResourceNotFound
-from bullet_sim.formats import sdf_model, sdf_world
 from bullet_sim.formats.mistakes import reading
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.sdf_include import read_include
-from bullet_sim.formats.sdf_light import read_light
-from bullet_sim.formats.sdf_schema import warn_of_unknown_elements
+from bullet_sim.formats.sdf import model as sdf_model
+from bullet_sim.formats.sdf import world as sdf_world
+from bullet_sim.formats.sdf.include import read_include
+from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.schema import warn_of_unknown_elements
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.urdf import read_robot
+from bullet_sim.formats.urdf.robot import read_robot
 from bullet_sim.formats.xml_values import parse_xml, read_xml_file
 from bullet_sim.pose import IDENTITY
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from bullet_sim.description import Geometry
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.resources import DATA_FOLDER
-from bullet_sim.formats.scaling import scaled
+from bullet_sim.formats.sdf.scale import scaled
 from bullet_sim.pose import IDENTITY, Pose, Vector3, rotate
 
 FILE = DATA_FOLDER / "prop_meshes.toml"

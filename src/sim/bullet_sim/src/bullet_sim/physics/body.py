@@ -9,12 +9,17 @@ from typing import Protocol
 
 from bullet_sim.description import Inertial
 from bullet_sim.physics.assembly import PhysicsLink, Tree
+from bullet_sim.physics.body_joints import JointSide
+from bullet_sim.physics.body_links import BASE, LinkSide
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.contact_parameters import (
+    coming_out,
+    contact_values,
+    corrected_part,
+    hardness,
+)
 from bullet_sim.physics.inertia import sound_inertial
-from bullet_sim.physics.joint_side import JointSide
-from bullet_sim.physics.link_side import BASE, LinkSide
 from bullet_sim.physics.quiet import EngineError, pybullet
-from bullet_sim.physics.surfaces import coming_out, contact_values, corrected_part, hardness
 from bullet_sim.pose import Pose
 
 NOWHERE = -1  # the number of what the engine does not have

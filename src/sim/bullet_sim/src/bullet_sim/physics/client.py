@@ -8,11 +8,11 @@ from pathlib import Path
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.physics.assembly import Tree
-from bullet_sim.physics.auto_disable import AutoDisable
-from bullet_sim.physics.embedded import Embedded
+from bullet_sim.physics.auto_disable import Rest
+from bullet_sim.physics.correcting_velocity import Embedded
+from bullet_sim.physics.island_sleeping import AutoDisable
 from bullet_sim.physics.planes import Planes
 from bullet_sim.physics.quiet import STDOUT, EngineError, pybullet, quiet
-from bullet_sim.physics.rest import Rest
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Plane, Sphere
 from bullet_sim.errors import FormatError, SimulationError
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.meshes.loading import collision_mesh
 
 log = logging.getLogger(__name__)
 

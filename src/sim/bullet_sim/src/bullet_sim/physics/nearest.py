@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bullet_sim.description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.pose import Vector3, conjugate, rotate
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from bullet_sim.description import Box, Collision, Cylinder, Mesh, Sphere
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.tyres import CENTRED, ROLLING, find_tyre, rolls
 from bullet_sim.pose import Pose, Vector3, rotate, rotation_matrix

@@ -16,7 +16,7 @@ import numpy as np
 
 from bullet_sim.description import Collision, Cylinder, Mesh
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.pose import Pose, Quaternion, Vector3, rotate, rotation_matrix
 

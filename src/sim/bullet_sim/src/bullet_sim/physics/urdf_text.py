@@ -24,7 +24,7 @@ from bullet_sim.description import (
     Sphere,
 )
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.tyres import engine_shapes
 from bullet_sim.pose import Pose

@@ -17,8 +17,16 @@ import cv2
 import moderngl
 import numpy as np
 
+from bullet_sim.profiler import Stages
 from bullet_sim.rendering import lights
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
+from bullet_sim.rendering.gpu_surfaces import (
+    LIGHTS_BINDING,
+    SURFACE_BINDING,
+    Program,
+    Surface,
+    SurfaceStore,
+)
 from bullet_sim.rendering.own_memory import own_array, own_blocks
 from bullet_sim.rendering.projection import (
     metres_from_depth,
@@ -27,15 +35,7 @@ from bullet_sim.rendering.projection import (
 )
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.sky import Sky
-from bullet_sim.rendering.surfaces import (
-    LIGHTS_BINDING,
-    SURFACE_BINDING,
-    Program,
-    Surface,
-    SurfaceStore,
-)
 from bullet_sim.rendering.visibility import Outlines
-from bullet_sim.stages import Stages
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from bullet_sim.description import Box, Cylinder, Plane, Sphere
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Vector3
 
 CYLINDER_SEGMENTS = 32

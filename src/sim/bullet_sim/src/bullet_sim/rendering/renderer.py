@@ -12,9 +12,9 @@ from typing import Protocol
 from bullet_sim.description import Box, LightDescription, Plane, Visual
 from bullet_sim.errors import SimulationError
 from bullet_sim.pose import Pose
+from bullet_sim.profiler import Stages
 from bullet_sim.rendering.frame import CameraView, Frame
 from bullet_sim.rendering.scene import Scene, SceneState
-from bullet_sim.stages import Stages
 
 log = logging.getLogger(__name__)
 

@@ -20,8 +20,8 @@ from bullet_sim.description import (
     Visual,
 )
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
-from bullet_sim.mesh_part import MeshPart
-from bullet_sim.meshes import load_mesh
+from bullet_sim.meshes.loading import load_mesh
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.primitives import primitive_part
 

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from bullet_sim.errors import FormatError
-from bullet_sim.images import read_image, shrunk
+from bullet_sim.meshes.images import read_image, shrunk
 
 log = logging.getLogger(__name__)
 

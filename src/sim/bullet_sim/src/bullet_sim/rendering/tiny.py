@@ -15,13 +15,13 @@ import pybullet
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
-from bullet_sim.images import check_image
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.images import check_image
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose, rotate
+from bullet_sim.profiler import Stages
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.projection import metres_from_depth, projection_matrix, view_matrix
 from bullet_sim.rendering.scene import LinkKey, LinkShape, SceneState
-from bullet_sim.stages import Stages
 
 log = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bullet_sim.mesh_part import MeshPart
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape, Node
 
 

@@ -11,10 +11,10 @@ from sensor_msgs.msg import CompressedImage
 
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import encode
-from bullet_sim_ros.control.value_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 FORMATS = ("jpeg", "png")
 JPEG_QUALITY, PNG_LEVEL = 80, 9  # the plugin's defaults; 1..100 and 1..9

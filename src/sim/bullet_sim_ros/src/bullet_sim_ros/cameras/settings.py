@@ -13,7 +13,7 @@ from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -15,10 +15,10 @@ from bullet_sim.sensors.camera import CameraReading
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.cameras.compressed import CompressedTopic
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.control.value_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -8,15 +8,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from bullet_sim.description import ModelDescription, WorldDescription
-from bullet_sim.images import warn_if_unreadable
+from bullet_sim.meshes.images import warn_if_unreadable
 from bullet_sim.pose import IDENTITY
 from bullet_sim.world import World
 from bullet_sim_ros.check.findings import PROBLEM
 from bullet_sim_ros.check.stand_ins import without_master
 from bullet_sim_ros.interface import APPROXIMATED
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugins.logged_parameters import defaults
-from bullet_sim_ros.plugins.unknown import log as unknown_plugins
+from bullet_sim_ros.plugin_host.logged_parameters import defaults
+from bullet_sim_ros.plugin_host.unknown import log as unknown_plugins
+from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services.models import with_namespace
 from bullet_sim_ros.simulation import Simulation
 
@@ -25,7 +26,7 @@ LOGGERS = ("bullet_sim", "rosout")
 UNHEARD = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
 # Whose warnings are about what goes on otherwise; others' are about what is left out.
 GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.sensors",
-         "bullet_sim.meshes", "bullet_sim.formats.urdf_transmission")
+         "bullet_sim.meshes.loading", "bullet_sim.formats.urdf.transmission")
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,7 @@ def try_world(description: WorldDescription, parameters: Mapping[str, object]) -
 def _try(world: World, parameters: Mapping[str, object],
          fill: Callable[[Simulation], object]) -> None:
     """`parameters` are what the parameter server would have, by full name."""
+    register_plugins()
     with without_master() as graph:
         graph.parameters.update(parameters)
         simulation = Simulation(world, NodeParameters(enable_ros_network=False))

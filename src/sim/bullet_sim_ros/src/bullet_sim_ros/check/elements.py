@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, WORKS, Entry, Row
-from bullet_sim_ros.plugins.registry import NOT_NEEDED
+from bullet_sim_ros.plugin_host.registry import NOT_NEEDED
 
 EVERY_PLUGIN = ("robotNamespace", "alwaysOn", "always_on", "update_rate", "visualize", "plugin")
 MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or tells is missing",

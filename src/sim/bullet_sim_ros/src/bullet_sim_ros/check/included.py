@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources
 from bullet_sim.formats.resources import DATA_FOLDER
-from bullet_sim.formats.sdf_include import model_file
+from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.xml_values import child_text, read_xml_file
 
 

@@ -9,15 +9,15 @@ import rospy
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.pace import Pace
-from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim.control.rate import Pace
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
 from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 
 class ControllerHost:

@@ -7,7 +7,7 @@ import threading
 import time as wall
 from collections.abc import Callable, Sequence
 
-from bullet_sim.control.pace import Pace
+from bullet_sim.control.rate import Pace
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.switching import (

@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
-from bullet_sim.control.pace import Pace
+from bullet_sim.control.rate import Pace
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.parameters import ControllerParameters

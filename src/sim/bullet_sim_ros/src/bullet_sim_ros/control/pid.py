@@ -8,8 +8,8 @@ from rospy import Duration
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.gains_reconfigure import offer_gains
 from bullet_sim_ros.control.parameters import ControllerParameters
-from bullet_sim_ros.control.reconfigure import offer_gains
 
 
 def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:

@@ -29,7 +29,7 @@ from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 log = logging.getLogger("bullet_sim.control")
 

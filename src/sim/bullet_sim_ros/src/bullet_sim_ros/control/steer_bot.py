@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
-from bullet_sim.formats.urdf_facts import RobotFacts
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.model import Model
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import read_joint_limits

@@ -13,7 +13,7 @@ from bullet_sim_ros import params
 from bullet_sim_ros.errors import told
 
 if TYPE_CHECKING:
-    from bullet_sim_ros.plugins.host import Host
+    from bullet_sim_ros.plugin_host.context import Host
 
 log = logging.getLogger("bullet_sim.control")
 

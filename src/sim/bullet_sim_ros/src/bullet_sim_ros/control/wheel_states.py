@@ -7,7 +7,7 @@ import math
 from control_msgs.msg import JointTrajectoryControllerState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from bullet_sim.control.controllers.diff_drive import DiffDrive
+from bullet_sim.control.controllers.diff_drive_controller import DiffDrive
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
 

@@ -3,9 +3,8 @@
 import importlib
 import pkgutil
 
-from bullet_sim_ros.plugins.registry import load_plugins, load_world_plugins, plugin
 
-for _module in pkgutil.iter_modules(__path__):
-    importlib.import_module(f"{__name__}.{_module.name}")
-
-__all__ = ["load_plugins", "load_world_plugins", "plugin"]
+def register_plugins() -> None:
+    """Import every module in this folder, each of which registers its classes."""
+    for module in pkgutil.walk_packages(__path__, f"{__name__}."):
+        importlib.import_module(module.name)

@@ -8,8 +8,8 @@ from sensor_msgs.msg import ChannelFloat32, PointCloud
 
 from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_block_laser.so")

@@ -7,8 +7,8 @@ from geometry_msgs.msg import Vector3, Wrench
 
 from bullet_sim.sensors.contact import ContactSensor, TouchingPair
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_bumper.so")

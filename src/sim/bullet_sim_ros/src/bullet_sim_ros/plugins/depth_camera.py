@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.openni_kinect import OpenniKinectPlugin
-from bullet_sim_ros.plugins.registry import plugin
 
 
 @plugin("libgazebo_ros_depth_camera.so")

@@ -10,8 +10,8 @@ from std_msgs.msg import String
 
 from bullet_sim.drives.elevator import Elevator
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from geometry_msgs.msg import Wrench
 
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 NONE = (0.0, 0.0, 0.0)
 

@@ -11,9 +11,9 @@ from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.force import ForceDrive, ForceGains
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.odometry_output import OdometryOutput
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.registry import plugin
 
 VARIANCE = 1e-3  # m^2
 YAW_VARIANCES = (0.01, 100.0)  # rad^2: going straight, and turning

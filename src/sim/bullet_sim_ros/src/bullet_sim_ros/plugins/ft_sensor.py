@@ -7,8 +7,8 @@ from geometry_msgs.msg import Vector3, WrenchStamped
 
 from bullet_sim.sensors.net_force import NetForce
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_ft_sensor.so")

@@ -9,9 +9,9 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import PluginDescription
 from bullet_sim.drives.grasp import Grasp, GraspParameters
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.parameters import PluginParameters
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

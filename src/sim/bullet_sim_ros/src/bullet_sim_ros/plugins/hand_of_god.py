@@ -6,12 +6,12 @@ import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
-from bullet_sim.drives.hand import Hand
+from bullet_sim.drives.spring_damper import Hand
 from bullet_sim.pose import Pose, normalised
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 WORLD = "world"
 

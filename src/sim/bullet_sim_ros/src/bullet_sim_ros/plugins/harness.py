@@ -12,9 +12,9 @@ from std_msgs.msg import Bool, Float32
 from bullet_sim.drives.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.parameters import read_numbers
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.parameters import read_numbers
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -9,8 +9,8 @@ from bullet_sim.pose import multiply, quaternion_from_rpy
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.imu_sensor import ImuSensor
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_imu_sensor.so")

@@ -14,8 +14,8 @@ from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError, told
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -10,8 +10,8 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.joint import HeldJoint, Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

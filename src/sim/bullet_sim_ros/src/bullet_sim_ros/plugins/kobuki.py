@@ -14,11 +14,11 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.imu_sensor import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.kobuki_core import CoreTopic
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
-from bullet_sim_ros.plugins.registry import plugin
 
 RATE = 50.0  # Hz: what the real base does; upstream publishes at each step
 SIDES = ("left", "center", "right")

@@ -13,7 +13,7 @@ from bullet_sim.drives.wheel_drop import WheelDrop
 from bullet_sim.link import Link
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugin_host.context import Host
 
 CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading for a distance in m
 

@@ -11,7 +11,7 @@ from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
+from bullet_sim_ros.plugin_host.context import Host
 
 POSE_VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)  # m^2 and rad^2
 GYRO_VARIANCES = (1e6, 1e6, 0.05)

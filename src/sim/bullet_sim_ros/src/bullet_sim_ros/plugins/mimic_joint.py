@@ -8,8 +8,8 @@ from bullet_sim.control.pid import Pid
 from bullet_sim.drives.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

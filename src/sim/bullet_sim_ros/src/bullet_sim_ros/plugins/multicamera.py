@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import logging
 
-from bullet_sim_ros.cameras.eye import Eye
-from bullet_sim_ros.cameras.eyes import Eyes
+from bullet_sim_ros.cameras.camera_group import Eyes
+from bullet_sim_ros.cameras.camera_publisher import Eye
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

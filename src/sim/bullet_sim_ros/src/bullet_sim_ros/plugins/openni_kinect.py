@@ -10,11 +10,11 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 
 from bullet_sim.sensors.camera import CameraReading, Exposure
 from bullet_sim_ros import convert
-from bullet_sim_ros.cameras.eye import Eye
-from bullet_sim_ros.cameras.eyes import pictures_rate
+from bullet_sim_ros.cameras.camera_group import pictures_rate
+from bullet_sim_ros.cameras.camera_publisher import Eye
 from bullet_sim_ros.cameras.topics import offer_rate
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 FAR = 5.0  # m, where <pointCloudCutoffMax> is absent
 LARGEST = float(np.finfo(np.float32).max)  # m; beyond is nothing at all

@@ -8,8 +8,8 @@ from nav_msgs.msg import Odometry
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 INERTIAL = ("world", "/world", "map", "/map")
 

@@ -8,9 +8,9 @@ from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.odometry_output import OdometryOutput
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_planar_move.so")

@@ -7,8 +7,8 @@ import logging
 from std_msgs.msg import Int32, String
 
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -11,8 +11,8 @@ from std_msgs.msg import Bool
 
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats.urdf_facts import RobotFacts
-from bullet_sim.formats.urdf_transmission import read_transmissions
+from bullet_sim.formats.urdf.facts import RobotFacts
+from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim_ros import names
 from bullet_sim_ros.control import controllers, services  # noqa: F401  (controllers register)
@@ -21,8 +21,8 @@ from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.steer_bot import open_steer_bot
 from bullet_sim_ros.control.urdf_parameter import with_urdf
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.control")
 

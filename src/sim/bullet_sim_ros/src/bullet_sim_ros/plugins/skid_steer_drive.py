@@ -9,9 +9,9 @@ from geometry_msgs.msg import Twist
 from bullet_sim.drives.skid_steer import SkidSteer
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.odometry_output import OdometryOutput
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_skid_steer_drive.so")

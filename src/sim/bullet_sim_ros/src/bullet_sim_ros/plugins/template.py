@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_template.so")

@@ -12,11 +12,11 @@ from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugins.odometry_output import OdometryOutput
-from bullet_sim_ros.plugins.odometry_source import OdometrySource
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_tricycle_drive.so")

@@ -7,8 +7,8 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.drives.vacuum import Vacuum, VacuumParameters
 from bullet_sim_ros import names
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 
 @plugin("libgazebo_ros_vacuum_gripper.so")

@@ -9,8 +9,8 @@ from sensor_msgs.msg import PointCloud2, PointField
 
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"),
                   ("ring", "<u2"), ("time", "<f4")])  # as velodyne_pointcloud lays points out

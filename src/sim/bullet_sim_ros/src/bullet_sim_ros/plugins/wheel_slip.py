@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugins.host import Host
-from bullet_sim_ros.plugins.registry import plugin
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

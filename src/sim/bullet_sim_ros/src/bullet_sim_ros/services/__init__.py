@@ -13,7 +13,7 @@ from bullet_sim_ros.services.lights import offer_light_services
 from bullet_sim_ros.services.links import offer_link_services
 from bullet_sim_ros.services.models import offer_model_services
 from bullet_sim_ros.services.physics import offer_physics_services
-from bullet_sim_ros.services.reconfigure import PhysicsReconfigure
+from bullet_sim_ros.services.physics_reconfigure import PhysicsReconfigure
 from bullet_sim_ros.services.states import offer_state_services
 from bullet_sim_ros.services.worlds import offer_world_services
 

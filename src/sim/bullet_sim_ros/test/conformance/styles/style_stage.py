@@ -15,8 +15,8 @@ from genpy.message import fill_message_args
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 from bullet_sim.description import Box, Cylinder, Plane, Sphere
-from bullet_sim.formats.xacro_files import expand
-from bullet_sim.meshes import collision_mesh
+from bullet_sim.formats.xacro.files import expand
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose as Placement
 from bullet_sim.pose import quaternion_from_rpy, rotation_matrix

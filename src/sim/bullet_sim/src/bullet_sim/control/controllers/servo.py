@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from bullet_sim.control.drives import position_error
 from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.joint_drives import position_error
 from bullet_sim.control.limits import clamp
 from bullet_sim.control.pid import Pid
 

@@ -14,7 +14,7 @@ from bullet_sim.control.controllers.gripper import (
     move_by_effort,
     move_by_position,
 )
-from bullet_sim.control.pace import Pace
+from bullet_sim.control.rate import Pace
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.goal_slot import GoalSlot

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sensor_msgs.msg import JointState
 
-from bullet_sim.control.pace import Pace
+from bullet_sim.control.rate import Pace
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.registry import Controller, controller

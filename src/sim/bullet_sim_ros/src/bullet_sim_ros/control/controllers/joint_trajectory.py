@@ -20,9 +20,9 @@ from control_msgs.srv import (
 )
 from trajectory_msgs.msg import JointTrajectory
 
-from bullet_sim.control.pace import Pace
-from bullet_sim.control.trajectory.drives import PidDrive, PositionDrive
+from bullet_sim.control.rate import Pace
 from bullet_sim.control.trajectory.follower import Outcome, TrajectoryFollower, Verdict
+from bullet_sim.control.trajectory.joint_commands import PidDrive, PositionDrive
 from bullet_sim.control.trajectory.request import InvalidJoints, InvalidTrajectory
 from bullet_sim_ros.control.controller_host import ControllerHost
 from bullet_sim_ros.control.goal_slot import GoalSlot

@@ -1,0 +1,1 @@
+"""Reading SDF, all versions that Gazebo 11 reads."""

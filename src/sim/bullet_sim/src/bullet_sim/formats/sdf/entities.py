@@ -1,0 +1,93 @@
+"""What a `<world>` contains: models, actors, populations, lights and roads, where it puts them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import LightDescription, ModelDescription, Visual
+from bullet_sim.formats.mistakes import or_without
+from bullet_sim.formats.sdf.actor import read_actor
+from bullet_sim.formats.sdf.frames import Frames, relative_to
+from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.population import read_population
+from bullet_sim.formats.sdf.road import read_road
+from bullet_sim.formats.source import Source
+
+Entity = ModelDescription | LightDescription
+IncludeReader = Callable[[Element, Source], Entity | None]
+ModelReader = Callable[[Element, Source], ModelDescription]
+
+
+@dataclass
+class Entities:
+    """In the order of the file, each kind with names that are unique."""
+
+    models: dict[str, ModelDescription] = field(default_factory=dict)
+    lights: dict[str, LightDescription] = field(default_factory=dict)
+    roads: dict[str, Visual] = field(default_factory=dict)
+
+    def add(self, entity: Entity, source: Source) -> None:
+        """Put it in; a name that is taken is changed, with a warning."""
+        kind = "model" if isinstance(entity, ModelDescription) else "light"
+        there = self.models if kind == "model" else self.lights
+        name = _own_name(entity.name, kind, there, source)
+        there[name] = replace(entity, name=name)
+
+
+def read_entities(
+    element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
+) -> Entities:
+    """Everything that stands in a world, in the world's frame."""
+    frames = Frames(source, f"world {element.get('name', 'default')}")
+    for frame in element.findall("frame"):
+        frames.add_element(frame, frame.get("attached_to", ""), f"frame {frame.get('name')!r}")
+    found = []
+    entities = Entities()
+    for child in element:
+        for entity in or_without(_read, child, source, read_model, read_include) or ():
+            if isinstance(entity, Visual):
+                name = _own_name(entity.name, "road", entities.roads, source)
+                entities.roads[name] = entity
+            else:
+                found.append((entity, relative_to(child)))
+    for entity, given_in in found:
+        frames.add(entity.name, given_in, entity.pose)
+    for entity, given_in in found:
+        if given_in:
+            placed = frames.in_model(given_in) * entity.pose
+            entity = replace(entity, pose=placed)
+        entities.add(entity, source)
+    return entities
+
+
+def _read(child: Element, source: Source, read_model: ModelReader,
+          read_include: IncludeReader) -> list[Entity | Visual]:
+    """What one element of a world brings; nothing where it is no such thing."""
+    if child.tag == "population":
+        return read_population(child, source, read_model)
+    match child.tag:
+        case "model":
+            entity = read_model(child, source)
+        case "actor":
+            entity = read_actor(child, source)
+        case "light":
+            entity = read_light(child)
+        case "road":
+            entity = read_road(child, source)
+        case "include":
+            entity = read_include(child, source)
+        case _:
+            entity = None
+    return [] if entity is None else [entity]
+
+
+def _own_name(name: str, kind: str, taken: Iterable[str], source: Source) -> str:
+    """A second `box` becomes `box_0`, the next one `box_1`."""
+    taken = set(taken)
+    if name not in taken:
+        return name
+    free = next(own for n in range(len(taken) + 1) if (own := f"{name}_{n}") not in taken)
+    source.warn_once(f"a {kind} named {name!r} is there already; this one becomes {free!r}")
+    return free

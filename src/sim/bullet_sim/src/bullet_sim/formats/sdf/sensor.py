@@ -1,0 +1,65 @@
+"""Reads SDF sensors, cameras, rays and `<plugin>` elements."""
+
+from __future__ import annotations
+
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import (
+    PluginDescription,
+    RayDescription,
+    SensorDescription,
+)
+from bullet_sim.formats.sdf.camera import read_camera
+from bullet_sim.formats.sdf.noise import read_imu, read_noise
+from bullet_sim.formats.xml_values import flag, integer, number, pose
+
+# Sensors whose `<camera>` or `<ray>` Gazebo asks for: sdformat makes a missing one of defaults.
+CAMERAS = ("camera", "wideanglecamera", "multicamera", "depth", "depth_camera", "rgbd_camera")
+RAYS = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+
+
+def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
+    """The plugins directly below an element, as written."""
+    return tuple(
+        PluginDescription(plugin.get("name", ""), plugin.get("filename", "").strip(), plugin)
+        for plugin in element.findall("plugin")
+    )
+
+
+def read_sensor(element: Element, link: str) -> SensorDescription:
+    """A sensor of a link, with the cameras or rays it has."""
+    name, kind = element.get("name", ""), element.get("type", "")
+    where = f"{link}, sensor {name!r}"
+    cameras = element.findall("camera") or [Element("camera")] * (kind in CAMERAS)
+    rays = [*element.findall("ray"), *element.findall("lidar")] or [Element("ray")] * (kind in RAYS)
+    return SensorDescription(
+        name=name,
+        type=kind,
+        pose=pose(element, where),
+        update_rate=number(element, "update_rate", 0.0, where),
+        always_on=flag(element, "always_on", False),
+        cameras=tuple(read_camera(camera, where) for camera in cameras),
+        ray=_ray(rays[0], f"{where} <{rays[0].tag}>") if rays else None,
+        imu=read_imu(element.find("imu"), where),
+        plugins=read_plugins(element),
+        element=element,
+    )
+
+
+def _ray(element: Element, where: str) -> RayDescription:
+    usual = RayDescription()
+    across, up = "scan/horizontal/", "scan/vertical/"
+    return RayDescription(
+        samples=integer(element, across + "samples", usual.samples, where),
+        resolution=number(element, across + "resolution", usual.resolution, where),
+        min_angle=number(element, across + "min_angle", usual.min_angle, where),
+        max_angle=number(element, across + "max_angle", usual.max_angle, where),
+        vertical_samples=integer(element, up + "samples", usual.vertical_samples, where),
+        vertical_resolution=number(element, up + "resolution", usual.vertical_resolution, where),
+        vertical_min_angle=number(element, up + "min_angle", usual.vertical_min_angle, where),
+        vertical_max_angle=number(element, up + "max_angle", usual.vertical_max_angle, where),
+        range_min=number(element, "range/min", usual.range_min, where),
+        range_max=number(element, "range/max", usual.range_max, where),
+        range_resolution=number(element, "range/resolution", usual.range_resolution, where),
+        noise=read_noise(element.find("noise"), where),
+    )

@@ -1,0 +1,99 @@
+"""Applies the `<state>` of a saved world: its poses win over those the models were written with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import instead
+from bullet_sim.formats.sdf.scale import scaled_model
+from bullet_sim.formats.sdf.state_joints import with_saved_joints
+from bullet_sim.formats.xml_values import (
+    child_text,
+    not_negative,
+    numbers,
+    or_default,
+    pose,
+    shown,
+    vector,
+)
+from bullet_sim.pose import Pose
+
+UNSCALED = (1.0, 1.0, 1.0)
+LATEST = 4e9  # s; ROS counts to 2**32
+
+
+def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
+    """The world as it was saved; names that do not exist (any more) are passed over."""
+    deleted = {(name.text or "").strip() for name in state.findall("deletions/name")}
+    models = {model.get("name", ""): model for model in state.findall("model")}
+    lights = {light.get("name", ""): light for light in state.findall("light")}
+    return replace(
+        world,
+        sim_time=_sim_time(state, world.sim_time),
+        models=tuple(
+            _moved_model(model, models[model.name]) if model.name in models else model
+            for model in world.models
+            if model.name not in deleted
+        ),
+        lights=tuple(
+            _moved_light(light, lights[light.name]) if light.name in lights else light
+            for light in world.lights
+            if light.name not in deleted
+        ),
+    )
+
+
+def _sim_time(state: Element, default: float) -> float:
+    """Seconds and nanoseconds, as two words."""
+    text = child_text(state, "sim_time")
+    if not text:
+        return default
+    where = "<state> <sim_time>"
+    count = 1 if len(text.split()) == 1 else 2
+
+    def read() -> float:
+        seconds, nanoseconds = (*not_negative(numbers(text, count, where), where), 0.0)[:2]
+        time = seconds + nanoseconds * 1e-9
+        if time > LATEST:
+            raise FormatError(f"{where}: {time:g} s is more than ROS can count; "
+                              f"at most {LATEST:g}")
+        return time
+
+    return or_default(read, default)
+
+
+def _moved_light(light: LightDescription, state: Element) -> LightDescription:
+    return replace(light, pose=pose(state, f"<state> of light {light.name!r}", light.pose))
+
+
+def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
+    where = f"<state> of model {model.name!r}"
+    model = replace(model, pose=pose(state, where, model.pose))
+    scale = vector(state, "scale", UNSCALED, where)
+    if min(scale) <= 0.0:
+        instead(FormatError(f"{where} <scale>: {min(scale):g} leaves nothing"), shown(UNSCALED))
+        scale = UNSCALED
+    model = scaled_model(model, scale)
+    saved = dict(_link_poses(state, "", where))
+    if model.joints and not model.static:
+        return with_saved_joints(model, saved)
+    to_model = model.pose.inverse()  # link poses are saved in the world frame
+    return replace(
+        model,
+        links=tuple(
+            replace(link, pose=to_model * saved[link.name]) if link.name in saved else link
+            for link in model.links
+        ),
+    )
+
+
+def _link_poses(state: Element, scope: str, where: str) -> Iterator[tuple[str, Pose]]:
+    for link in state.findall("link"):
+        if child_text(link, "pose"):
+            yield scope + link.get("name", ""), pose(link, f"{where}, link {link.get('name')!r}")
+    for nested in state.findall("model"):
+        yield from _link_poses(nested, f"{scope}{nested.get('name', '')}::", where)

@@ -1,0 +1,92 @@
+"""Reads SDF worlds: models, lights, physics, scene and the poses of a saved `<state>`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from xml.etree.ElementTree import Element
+
+from bullet_sim.description import PhysicsDescription, WorldDescription
+from bullet_sim.formats.mistakes import all_that_can
+from bullet_sim.formats.sdf.entities import IncludeReader, ModelReader, read_entities
+from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.scene import read_scene
+from bullet_sim.formats.sdf.sensor import read_plugins
+from bullet_sim.formats.sdf.spherical_coordinates import read_spherical
+from bullet_sim.formats.sdf.state import apply_state
+from bullet_sim.formats.source import Source
+from bullet_sim.formats.xml_values import integer, number, vector
+
+
+def read_world(
+    element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
+) -> WorldDescription:
+    """A `<world>`, its models in the order of the file."""
+    where = f"world {element.get('name', 'default')!r}"
+    usual = WorldDescription()
+    physics = _physics_element(element)
+    # In <physics> up to SDF 1.5.
+    old_gravity = vector(physics, "gravity", usual.gravity, where)
+    old_field = vector(physics, "magnetic_field", usual.magnetic_field, where)
+    entities = read_entities(element, source, read_model, read_include)
+    world = WorldDescription(
+        name=element.get("name", usual.name),
+        gravity=vector(element, "gravity", old_gravity, where),
+        magnetic_field=vector(element, "magnetic_field", old_field, where),
+        physics=_read_physics(physics, where),
+        scene=read_scene(element.find("scene"), where),
+        spherical=read_spherical(element.find("spherical_coordinates"), where),
+        models=tuple(entities.models.values()),
+        lights=tuple(entities.lights.values()),
+        plugins=read_plugins(element),
+        scenery=tuple(entities.roads.items()),
+    )
+    for state in element.findall("state"):
+        world = apply_state(_with_insertions(world, state, source, read_model), state)
+    return world
+
+
+def _with_insertions(
+    world: WorldDescription, state: Element, source: Source, read_model: ModelReader
+) -> WorldDescription:
+    """What was put in after the world had been opened; what the file has by now stays as it is."""
+    models = {model.name: model for model in world.models}
+    for model in all_that_can(read_model, state.findall("insertions/model"), source):
+        models.setdefault(model.name, model)
+    lights = {light.name: light for light in world.lights}
+    for light in all_that_can(read_light, state.findall("insertions/light")):
+        lights.setdefault(light.name, light)
+    return replace(world, models=tuple(models.values()), lights=tuple(lights.values()))
+
+
+def _physics_element(element: Element) -> Element:
+    """The profile marked as default, else the first."""
+    profiles = element.findall("physics")
+    marked = [profile for profile in profiles if profile.get("default") in ("true", "1")]
+    return (marked or profiles or [Element("physics")])[0]
+
+
+def _read_physics(element: Element, world: str) -> PhysicsDescription:
+    where = f"{world} <physics>"
+    usual = PhysicsDescription()
+    solver, limits = "ode/solver/", "ode/constraints/"
+    old_step = number(element, solver + "dt", usual.max_step_size, where)  # names of SDF 1.2
+    old_rate_hz = number(element, "update_rate", usual.real_time_update_rate, where)
+    return PhysicsDescription(
+        max_step_size=number(element, "max_step_size", old_step, where),
+        real_time_update_rate=number(element, "real_time_update_rate", old_rate_hz, where),
+        real_time_factor=number(element, "real_time_factor", usual.real_time_factor, where),
+        max_contacts=integer(element, "max_contacts", usual.max_contacts, where),
+        iterations=integer(element, solver + "iters", usual.iterations, where),
+        precon_iterations=integer(
+            element, solver + "precon_iters", usual.precon_iterations, where
+        ),
+        sor=number(element, solver + "sor", usual.sor, where),
+        cfm=number(element, limits + "cfm", usual.cfm, where),
+        erp=number(element, limits + "erp", usual.erp, where),
+        contact_max_correcting_vel=number(
+            element, limits + "contact_max_correcting_vel", usual.contact_max_correcting_vel, where
+        ),
+        contact_surface_layer=number(
+            element, limits + "contact_surface_layer", usual.contact_surface_layer, where
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Reading URDF by Gazebo's rules."""

@@ -1,0 +1,146 @@
+"""Writes a URDF link's shapes as SDF elements, so that `<gazebo>` tags can merge into them."""
+
+from __future__ import annotations
+
+from functools import partial
+from xml.etree.ElementTree import Element, SubElement
+
+from bullet_sim.description import Inertial
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.mistakes import mistake
+from bullet_sim.formats.urdf.tree import read_origin
+from bullet_sim.formats.xml_values import (
+    bounded,
+    not_negative,
+    numbers,
+    or_default,
+    vector_text,
+)
+from bullet_sim.pose import Pose
+
+SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ()}
+TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+DIAGONAL = ("ixx", "iyy", "izz")  # the products of inertia may be negative
+
+
+def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError | None]:
+    """An SDF `<link>` as of `link_as_sdf`, what `read_urdf_inertial` finds, and what was wrong.
+
+    As with urdfdom, what cannot be read is an error line, and neither it nor what comes after it
+    in the link is there; inertial, visuals and collisions are read in this order.
+    """
+    shapes, inertial, wrong = _named_link(link), None, None
+    try:
+        inertial = read_urdf_inertial(link)
+        _add_shapes(shapes, link)
+    except FormatError as error:
+        wrong = error
+        mistake(f"{error}; left out, with the visuals and collisions after it")
+    return shapes, inertial, wrong
+
+
+def link_as_sdf(link: Element) -> Element:
+    """An SDF `<link>` with the URDF link's shapes; their names are still URDF's, often empty."""
+    result = _named_link(link)
+    _add_shapes(result, link)
+    return result
+
+
+def _named_link(link: Element) -> Element:
+    return Element("link", {"name": link.get("name", "")})
+
+
+def _add_shapes(result: Element, link: Element) -> None:
+    for tag in ("visual", "collision"):
+        for part in link.findall(tag):
+            result.extend(_part_as_sdf(part, f"link {link.get('name', '')!r} <{tag}>"))
+
+
+def read_urdf_inertial(link: Element) -> Inertial | None:
+    """A link's mass and tensor; None without `<inertial>` or with mass 0."""
+    element = link.find("inertial")
+    if element is None:
+        return None
+    where = f"link {link.get('name')!r} <inertial>"
+    mass = _attribute(element.find("mass"), "value", f"{where} <mass value>")
+    tensor = element.find("inertia")
+    values = tuple(_attribute(tensor, key, f"{where} <inertia {key}>") for key in TENSOR)
+    if mass == 0.0:
+        return None
+    return Inertial(
+        mass=_possible(mass, f"{where} <mass value>"),
+        pose=read_origin(element, where),
+        inertia=tuple(
+            _possible(value, f"{where} <inertia {key}>") if key in DIAGONAL
+            else or_default(partial(bounded, (value,), f"{where} <inertia {key}>"), (0.0,))[0]
+            for key, value in zip(TENSOR, values, strict=True)))
+
+
+def _possible(value: float, where: str) -> float:
+    """A mass or moment of inertia; SDF's default of 1, with an error line, for one below zero."""
+    return or_default(partial(not_negative, (value,), where), (1.0,))[0]
+
+
+def _attribute(element: Element | None, key: str, where: str) -> float:
+    if element is None or element.get(key) is None:
+        raise FormatError(f"{where} is missing")
+    return numbers(element.get(key, ""), 1, where)[0]
+
+
+def _part_as_sdf(part: Element, where: str) -> list[Element]:
+    """One SDF element; three for a capsule, which SDF 1.7 has no word for."""
+    place = read_origin(part, where)  # complains in URDF's terms
+    shapes = _plain_shapes(part.find("geometry"), where)
+    result = []
+    for shape, offset in shapes:
+        sdf = Element(part.tag, {"name": part.get("name", "")})
+        pose = place * Pose((0.0, 0.0, offset))
+        SubElement(sdf, "pose").text = vector_text((*pose.position, *pose.rpy()))
+        sdf.append(_geometry_as_sdf(shape, where))
+        result.append(sdf)
+    return result
+
+
+def _plain_shapes(
+    geometry: Element | None, where: str
+) -> list[tuple[Element | None, float]]:
+    """The shapes that make up a geometry, and how far along z each stands, m."""
+    shape = None if geometry is None or len(geometry) == 0 else geometry[0]
+    if shape is None or shape.tag != "capsule":
+        return [(shape, 0.0)]
+    where = f"{where} <capsule"
+    length, radius = (
+        not_negative([_attribute(shape, key, f"{where} {key}>")], f"{where} {key}>")[0]
+        for key in ("length", "radius")
+    )
+    tube = Element("cylinder", {"radius": repr(radius), "length": repr(length)})
+    end = Element("sphere", {"radius": repr(radius)})
+    return [(tube, 0.0), (end, length / 2), (end, -length / 2)]
+
+
+def _geometry_as_sdf(shape: Element | None, where: str) -> Element:
+    if shape is None or shape.tag not in SHAPES:
+        written = "nothing" if shape is None else f"<{shape.tag}>"
+        raise FormatError(f"{where} <geometry> holds {written}; there are: "
+                          f"{', '.join(SHAPES)}, capsule")
+    result = Element("geometry")
+    target = SubElement(result, shape.tag)
+    where = f"{where} <{shape.tag}"
+    for key in SHAPES[shape.tag]:
+        text = shape.get(key)
+        if text is None:
+            raise FormatError(f"{where} {key}> is missing")
+        numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
+        SubElement(target, key).text = text
+    if shape.tag == "mesh":
+        _mesh_as_sdf(shape, target, where)
+    return result
+
+
+def _mesh_as_sdf(shape: Element, target: Element, where: str) -> None:
+    if not shape.get("filename"):
+        raise FormatError(f"{where} filename> is missing")
+    SubElement(target, "uri").text = shape.get("filename")
+    scale = numbers(shape.get("scale", "1 1 1"), 3, f"{where} scale>")
+    SubElement(target, "scale").text = vector_text(scale)

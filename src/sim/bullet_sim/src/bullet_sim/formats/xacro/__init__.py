@@ -1,0 +1,1 @@
+"""Expanding xacro files with PyPI's xacro."""

@@ -1,0 +1,115 @@
+"""Bounds of an expansion: how many parts it may have, and what one process may take for it."""
+
+from __future__ import annotations
+
+import gc
+import mmap
+import os
+import resource
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import xacro
+
+from bullet_sim.errors import FormatError
+from bullet_sim.formats.xacro.errors import one_line, place
+from bullet_sim.formats.xacro.nodes import replace_node
+
+MOST_PARTS = 15_000  # macro calls, properties, conditions, blocks; large robots have 3 000
+MOST_TEXTS = 150_000  # attributes and texts looked through; TurtleBot3 has 110 for each link
+MOST_SECONDS = 3.5  # of processor time; large robots take 1
+LONG = 1.0  # s; an expression that took so long is what took the time
+MOST_BYTES = 2**30
+NO_MEMORY = 70  # exit code of the process that expands
+NOTE_BYTES = 1024
+
+_note = mmap.mmap(-1, NOTE_BYTES)  # what is being evaluated, and since when; shared with the child
+
+
+class TooLarge(FormatError):
+    """An expansion went beyond a bound; another reading of the file will not do better."""
+
+
+class Budget:
+    """Counts what is put into the document, so that macros cannot double without end."""
+
+    def __init__(self) -> None:
+        self._parts = self._texts = 0
+        self._eval_text = xacro.eval_text
+
+    def replace_node(self, node: Any, by: Any, content_only: bool = False) -> None:
+        """xacro calls it once for each macro, property, condition, block, include."""
+        self._parts += 1
+        if self._parts > MOST_PARTS:
+            raise TooLarge(f"{place('xacro')}: more than {MOST_PARTS} macro calls, properties "
+                           "and conditions; do macros call each other without end?")
+        replace_node(node, by, content_only)
+
+    def eval_text(self, text: str, symbols: Any) -> Any:
+        """xacro calls it once for each attribute and text; most hold nothing to evaluate."""
+        self._texts += 1
+        if self._texts > MOST_TEXTS:
+            raise TooLarge(f"{place('xacro')}: more than {MOST_TEXTS} attributes and texts; do "
+                           "macros repeat too much, or is a part in the file too often?")
+        return self._eval_text(text, symbols) if "$" in text else text
+
+
+def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
+    """The same function, which leaves word of what it is doing."""
+    def noted(expression: str, symbols: dict, local: dict | None = None) -> Any:
+        said = f"{time.monotonic()} {place('xacro')}: ${{{one_line(expression[:200])}}}"
+        _note[:] = said.encode()[:NOTE_BYTES].ljust(NOTE_BYTES, b"\0")
+        value = evaluate(expression, symbols, local)
+        _note[:1] = b"\0"
+        return value
+
+    return noted
+
+
+def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECONDS) -> int:
+    """What `work` returns, as an exit code, from a process of its own that expands `file`.
+
+    Expressions are Python: no bound inside the interpreter ends `10 ** 10 ** 10`. TooLarge says
+    what was being evaluated when the processor time ran out, if that is what took it.
+    """
+    sys.stdout.flush()
+    _note[:1] = b"\0"
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            gc.disable()  # it would walk through the growing document again and again
+            signal.signal(signal.SIGPROF, signal.SIG_DFL)  # which ends the process
+            signal.setitimer(signal.ITIMER_PROF, seconds)
+            resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+            code = work()
+            sys.stdout.flush()
+        except MemoryError:
+            code = NO_MEMORY
+        except BrokenPipeError:  # nobody reads on
+            pass
+        except Exception:
+            traceback.print_exc()
+        finally:
+            os._exit(code)
+    _, status = os.waitpid(child, 0)
+    if os.WIFEXITED(status) and os.WEXITSTATUS(status) != NO_MEMORY:
+        return os.WEXITSTATUS(status)
+    if os.WIFEXITED(status):
+        raise TooLarge(f"{file}: the result needs more memory than there is; make it smaller")
+    where = _what_took(min(LONG, seconds / 2), file)
+    if os.WTERMSIG(status) == signal.SIGPROF:
+        raise TooLarge(f"{where} takes longer than {seconds:g} s of processor time; simplify it")
+    raise TooLarge(f"{where} was ended by signal {os.WTERMSIG(status)}")
+
+
+def _what_took(long: float, file: str) -> str:
+    """The expression that ran until now, if for so many seconds; else all of the file."""
+    began, _, noted = _note[:].rstrip(b"\0").decode(errors="replace").partition(" ")
+    if _note[0] and time.monotonic() - float(began) >= long:
+        return noted
+    return f"{file}: expanding it"

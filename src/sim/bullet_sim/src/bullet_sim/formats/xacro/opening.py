@@ -1,0 +1,64 @@
+"""How xacro's files are opened: plain ones only, so large, so many, and none within itself."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from typing import Any
+from xml.dom import minidom
+
+import xacro
+
+from bullet_sim.errors import FormatError
+from bullet_sim.files import check_file
+from bullet_sim.formats.xacro.errors import includes_itself, place
+from bullet_sim.formats.xacro.limits import TooLarge
+
+MOST_FILES = 2000  # includes; large robots have 100
+LARGEST_FILE = 8 * 10**6  # bytes; large robots have 100 kB
+REPEATED = 20  # a file this often in the stack of includes includes itself
+_xacros_load_yaml = xacro.load_yaml
+
+
+def parse(_source: object, filename: str) -> minidom.Document:
+    """Reads bytes, so that the file's own encoding counts and not the terminal's."""
+    if len(xacro.all_includes) > MOST_FILES:
+        raise TooLarge(f"{place('xacro')}: more than {MOST_FILES} files are included; include each "
+                       "once and call its macros")
+    if [os.path.normpath(name) for name in xacro.filestack].count(
+            os.path.normpath(filename)) > REPEATED:
+        raise TooLarge(f"{place('xacro')}: {includes_itself(xacro.filestack)}")
+    try:
+        _check(filename)
+        content = Path(filename).read_bytes()
+    except OSError as error:
+        xacro.filestack.pop()  # the place of the mistake is the file that asked for this one
+        raise xacro.XacroException(_unreadable(filename, error), exc=error) from error
+    return minidom.parseString(content)
+
+
+def load_yaml(filename: str) -> Any:
+    """Stands for xacro's."""
+    try:
+        _check(xacro.abs_filename_spec(filename))
+        return _xacros_load_yaml(filename)
+    except OSError as error:
+        raise FormatError(_unreadable(filename, error)) from None
+    except RecursionError:
+        raise FormatError(f"{filename} is nested too deep; flatten it") from None
+
+
+def _check(filename: str) -> None:
+    """OSError for what is there and no file to open: a pipe would keep its reader for ever."""
+    if os.path.exists(filename):
+        try:
+            check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")
+        except FormatError as error:
+            said = str(error).removeprefix(f"{filename} cannot be read: ")
+            raise OSError(errno.EINVAL, said) from None
+
+
+def _unreadable(filename: str, error: OSError) -> str:
+    missing = isinstance(error, FileNotFoundError)
+    return f"{filename} {'does not exist' if missing else f'cannot be read: {error.strerror}'}"

@@ -1,0 +1,1 @@
+"""Triangles: of mesh files, heightmaps, extrusions and pictures."""

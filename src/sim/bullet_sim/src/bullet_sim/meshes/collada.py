@@ -1,0 +1,177 @@
+"""COLLADA (.dae) files as Gazebo reads them: the unit scales, up_axis is ignored.
+
+Gazebo multiplies by the file's metres per unit and never turns the model, whatever up_axis says;
+models made for it are drawn accordingly, so a Y_UP file stays as its numbers are. Skins are drawn
+in their bind pose.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+import numpy as np
+
+from bullet_sim.description import Material, Rgba
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+
+_log = logging.getLogger(__name__)
+
+MOST_NODES = 20_000  # counted as often as they are instanced: ten lines can ask for millions
+MOST_TRIANGLES = 4_000_000
+
+
+def read_collada(path: Path, split: bool) -> list[NamedPart]:
+    """One part per primitive, named after the scene node it hangs on."""
+    import collada
+
+    ignored = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
+    document = collada.Collada(str(path), ignore=ignored)
+    if document.scene is None:
+        return []
+    unit = document.assetInfo.unitmeter or 1.0
+    root = np.diag([unit, unit, unit, 1.0])
+    folder = path.parent
+    parts: list[NamedPart] = []
+    left, triangles = iter(range(MOST_NODES)), 0
+    for node in document.scene.nodes:
+        for name, instance, matrix in _instances(node, root, "", left):
+            for part in _parts(instance, matrix, folder):
+                parts.append((name, part))
+                triangles += len(part.faces)
+                if triangles > MOST_TRIANGLES:
+                    raise FormatError(f"it has more than {MOST_TRIANGLES} triangles; export it "
+                                      "with fewer")
+    return parts
+
+
+def _instances(node: Any, matrix: np.ndarray, name: str, left: Iterator[int],
+               ) -> Iterator[tuple[str, Any, np.ndarray]]:
+    """Every geometry or controller of a tree, with its node's name and its matrix in the mesh.
+
+    `left` yields once for each node that may still come; FormatError when it ends.
+    """
+    import collada.scene as tree
+
+    if next(left, None) is None:
+        raise FormatError(f"its scene has more than {MOST_NODES} nodes, each counted as often as "
+                          "it is instanced; export it as one mesh")
+    if isinstance(node, tree.GeometryNode | tree.ControllerNode):
+        yield name, node, matrix
+        return
+    if isinstance(node, tree.NodeNode):
+        children, matrix = [node.node], matrix
+    elif isinstance(node, tree.Node):
+        children, matrix = node.children, matrix @ node.matrix
+        name = (node.xmlnode.get("name") if node.xmlnode is not None else None) or name
+    else:
+        return
+    for child in children:
+        yield from _instances(child, matrix, name, left)
+
+
+def _parts(instance: Any, matrix: np.ndarray, folder: Path) -> Iterator[MeshPart]:
+    geometry = getattr(instance, "geometry", None)
+    if geometry is None:  # a controller: its skin, placed by the bind shape
+        skin = instance.controller
+        geometry = skin.geometry
+        matrix = matrix @ np.asarray(skin.bind_shape_matrix).reshape(4, 4)
+    effects = {node.symbol: getattr(node.target, "effect", None) for node in instance.materials}
+    for primitive in geometry.primitives:
+        triangles = _triangles(primitive)
+        if triangles is None or triangles.vertex is None or len(triangles) == 0:
+            continue
+        effect = effects.get(primitive.material)
+        material = None if effect is None else _material(effect, folder)
+        yield _part(triangles, matrix, material)
+
+
+def _triangles(primitive: Any) -> Any:
+    import collada
+
+    if isinstance(primitive, collada.triangleset.TriangleSet):
+        return primitive
+    if isinstance(primitive, collada.polylist.Polylist):  # polygons are a kind of polylist
+        return primitive.triangleset()
+    return None  # lines have no surface
+
+
+def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> MeshPart:
+    """Corners are not shared: positions, normals and image coordinates have separate indices."""
+    count = len(triangles.vertex_index) * 3
+    vertices = triangles.vertex[triangles.vertex_index].reshape(count, 3)
+    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    faces = np.arange(count, dtype=np.uint32).reshape(-1, 3)
+    mirrored = np.linalg.det(matrix[:3, :3]) < 0
+    if mirrored:
+        faces = np.ascontiguousarray(faces[:, ::-1])
+    uv = None
+    if len(triangles.texcoordset):
+        uv = triangles.texcoordset[0][triangles.texcoord_indexset[0]][..., :2]
+        uv = uv.reshape(count, 2).astype(np.float32)
+    part = flat_shaded(vertices, faces, None, material)
+    if mirrored:
+        part = replace(part, vertices=vertices.astype(np.float32), faces=faces)
+    part = replace(part, uv=uv)
+    if triangles.normal is None or triangles.normal_index is None:
+        return part
+    normals = triangles.normal[triangles.normal_index].reshape(count, 3)
+    normals = normals @ np.linalg.inv(matrix[:3, :3])
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = normals / np.where(length > 0, length, 1)
+    return replace(part, normals=normals.astype(np.float32))
+
+
+def _material(effect: Any, folder: Path) -> Material:
+    """Gazebo reads no specular colour from COLLADA, so nor do we."""
+    texture = _texture(effect.diffuse, folder)
+    diffuse = _colour(effect.diffuse, (1.0, 1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7, 1.0))
+    return Material(
+        # Exporters leave ambient black or white whatever the surface is.
+        ambient=(*diffuse[:3], 1.0),
+        diffuse=(*diffuse[:3], _opacity(effect)),
+        emissive=_colour(effect.emission, (0.0, 0.0, 0.0, 1.0)),
+        texture=texture,
+    )
+
+
+def _colour(value: Any, default: Rgba) -> Rgba:
+    if not isinstance(value, tuple | list) or len(value) < 3:
+        return default
+    red, green, blue = (float(channel) for channel in value[:3])
+    return (red, green, blue, 1.0)
+
+
+def _opacity(effect: Any) -> float:
+    """COLLADA's two conventions; exporters that mean opaque often write what would be invisible."""
+    import collada.material
+
+    colour = effect.transparent if isinstance(effect.transparent, tuple | list) else None
+    amount = effect.transparency if isinstance(effect.transparency, float | int) else 1.0
+    if colour is None or len(colour) < 4:
+        return 1.0
+    if effect.opaque_mode == collada.material.OPAQUE_MODE.RGB_ZERO:
+        red, green, blue = colour[:3]
+        opacity = 1 - amount * (0.212671 * red + 0.71516 * green + 0.072169 * blue)
+    else:
+        opacity = amount * colour[3]
+    return float(opacity) if 0 < opacity < 1 else 1.0
+
+
+def _texture(value: Any, folder: Path) -> str | None:
+    """Absolute path of a diffuse map, sought as written and beside the file; else a warning."""
+    image = getattr(getattr(getattr(value, "sampler", None), "surface", None), "image", None)
+    written = getattr(image, "path", None)
+    if not written:
+        return None
+    name = unquote(written.removeprefix("file://").replace("\\", "/"))
+    for path in (folder / name, folder / Path(name).name):
+        if path.is_file():
+            return str(path.resolve())
+    _log.warning("a COLLADA mesh in %s: texture %s not found there; drawn without it", folder, name)
+    return None

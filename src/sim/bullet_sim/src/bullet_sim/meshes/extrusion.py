@@ -1,0 +1,161 @@
+"""Triangles of polylines, of pictures used as floor plans, and of roads."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from bullet_sim.description import ImageExtrusion, Polyline, Strip
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes.images import read_image, shrunk
+from bullet_sim.meshes.part import MeshPart, flat_shaded
+
+MOST_POINTS = 2000  # of all outlines together: the work grows with the square
+MOST_BLOCKS = 5000  # of a picture; beyond it the picture is taken at half its size
+LARGEST_PICTURE_PX = 1024  # longest side that is looked at
+PRISM_FACES = np.array([
+    (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7),  # bottom, top
+    (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7),
+])
+
+
+def polyline_part(shape: Polyline) -> MeshPart:
+    """The outlines as a solid that stands on z = 0."""
+    return _prisms(trapezoids(shape.outlines), shape.height)
+
+
+def image_part(shape: ImageExtrusion) -> MeshPart:
+    """Blocks where the picture is dark; its upper edge is +y, its right edge +x."""
+    try:
+        image = read_image(shape.path, cv2.IMREAD_GRAYSCALE)
+    except FormatError as error:
+        raise FormatError(f"image {error}") from None
+    pixel = shape.scale  # m
+    longest = max(image.shape)
+    if longest > LARGEST_PICTURE_PX:
+        shrink = LARGEST_PICTURE_PX / longest
+        image = shrunk(image, shrink)
+        pixel /= shrink
+    while len(blocks := dark_rectangles(image <= shape.threshold)) > MOST_BLOCKS:
+        image = shrunk(image, 0.5)
+        pixel *= 2
+    if not blocks:
+        raise FormatError(f"image {shape.path} has no pixel as dark as {shape.threshold}; "
+                          "raise <threshold>")
+    height_px, width_px = image.shape
+    left, top, right, bottom = np.array(blocks, float).T
+    x0, x1 = (left - width_px / 2) * pixel, (right - width_px / 2) * pixel
+    y0, y1 = (height_px / 2 - bottom) * pixel, (height_px / 2 - top) * pixel
+    corners = np.stack([np.stack(corner, axis=1) for corner in
+                        ((x0, y0), (x1, y0), (x1, y1), (x0, y1))], axis=1)
+    return _prisms(corners, shape.height)
+
+
+def strip_part(shape: Strip) -> MeshPart:
+    """A flat band; the image lies across it once and is repeated along it, undistorted."""
+    points = np.array(shape.points, float)
+    along = np.gradient(points[:, :2], axis=0)
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    across = np.stack([-along[:, 1], along[:, 0], np.zeros(len(along))], axis=1)
+    sides = [points + across * shape.width / 2, points - across * shape.width / 2]
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    uv = [np.stack([np.full(len(way), side), way / shape.width], axis=1) for side in (0.0, 1.0)]
+    left, right = np.arange(len(points) - 1), np.arange(len(points) - 1) + len(points)
+    faces = np.concatenate([np.stack([left, right, right + 1], axis=1),
+                            np.stack([left, right + 1, left + 1], axis=1)])
+    return flat_shaded(np.concatenate(sides), faces, np.concatenate(uv))
+
+
+def trapezoids(outlines: Iterable[Iterable[tuple[float, float]]]) -> np.ndarray:
+    """(n, 4, 2) m, counter-clockwise: what lies inside an odd number of closed outlines.
+
+    The plane is cut into slabs between all corners and crossings; in a slab no two edges meet, so
+    that every second gap between them is solid. Holes and crossed outlines need no other care.
+    """
+    loops = [np.array(list(outline), float) for outline in outlines]
+    if sum(len(loop) for loop in loops) > MOST_POINTS:
+        raise FormatError(f"<polyline>: more than {MOST_POINTS} points; leave some out")
+    edges = np.concatenate([
+        np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in loops])
+    edges = edges[edges[:, 0, 1] != edges[:, 1, 1]]
+    found = []
+    levels = _levels(edges)
+    for low, high in itertools.pairwise(levels):
+        middle = (low + high) / 2
+        ends = edges[:, :, 1]
+        crossing = edges[(ends.min(axis=1) < middle) & (ends.max(axis=1) > middle)]
+        crossing = crossing[np.argsort(_x_at(crossing, middle))]
+        at_low, at_high = _x_at(crossing, low), _x_at(crossing, high)
+        for i in range(0, len(crossing) - 1, 2):
+            found.append([(at_low[i], low), (at_low[i + 1], low),
+                          (at_high[i + 1], high), (at_high[i], high)])
+    if not found:
+        raise FormatError("<polyline>: its points enclose nothing; give three or more <point>s")
+    return np.array(found)
+
+
+def dark_rectangles(dark: np.ndarray) -> list[tuple[int, int, int, int]]:
+    """Rectangles (left, top, right, bottom), px, that cover a (height, width) mask exactly.
+
+    Runs of a row are joined with equal runs of the row above.
+    """
+    done: list[tuple[int, int, int, int]] = []
+    growing: dict[tuple[int, int], int] = {}  # run -> row it began in
+    for row in range(len(dark) + 1):
+        runs = _runs(dark[row]) if row < len(dark) else set()
+        for run in [run for run in growing if run not in runs]:
+            done.append((run[0], growing.pop(run), run[1], row))
+        for run in runs:
+            growing.setdefault(run, row)
+    return done
+
+
+def _levels(edges: np.ndarray) -> list[float]:
+    """Every y at which an edge ends or two cross."""
+    levels = set(edges[:, :, 1].ravel().tolist())
+    starts, ways = edges[:, 0], edges[:, 1] - edges[:, 0]
+    for start, way in zip(starts, ways, strict=True):
+        gap = starts - start
+        across = way[0] * ways[:, 1] - way[1] * ways[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mine = (gap[:, 0] * ways[:, 1] - gap[:, 1] * ways[:, 0]) / across
+            other = (gap[:, 0] * way[1] - gap[:, 1] * way[0]) / across
+        meet = (mine > 0) & (mine < 1) & (other > 0) & (other < 1)
+        levels.update((start[1] + mine[meet] * way[1]).tolist())
+    return sorted(levels)
+
+
+def _x_at(edges: np.ndarray, y: float) -> np.ndarray:
+    start, end = edges[:, 0], edges[:, 1]
+    return start[:, 0] + (y - start[:, 1]) / (end[:, 1] - start[:, 1]) * (end[:, 0] - start[:, 0])
+
+
+def _runs(row: np.ndarray) -> set[tuple[int, int]]:
+    change = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(np.int8), [0]])))
+    return set(zip(change[::2].tolist(), change[1::2].tolist(), strict=True))
+
+
+def _prisms(bases: np.ndarray, height: float) -> MeshPart:
+    """(n, 4, 2) m, counter-clockwise, from z = 0 to `height`."""
+    count = len(bases)
+    low = np.concatenate([bases, np.zeros((count, 4, 1))], axis=2)
+    high = np.concatenate([bases, np.full((count, 4, 1), height)], axis=2)
+    vertices = np.concatenate([low, high], axis=1).reshape(-1, 3)
+    faces = (np.arange(count)[:, None, None] * 8 + PRISM_FACES).reshape(-1, 3)
+    corners = vertices[faces]
+    area = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return _with_images(flat_shaded(vertices, faces[area > 0]))
+
+
+def _with_images(part: MeshPart) -> MeshPart:
+    """A texture covers 1 m: seen from above on what is level, upright on walls."""
+    x, y, z = part.vertices.T
+    level = np.abs(part.normals[:, 2:]) > 0.5
+    along = -part.normals[:, 1] * x + part.normals[:, 0] * y
+    uv = np.where(level, np.stack([x, y], axis=1), np.stack([along, z], axis=1))
+    return replace(part, uv=uv.astype(np.float32))

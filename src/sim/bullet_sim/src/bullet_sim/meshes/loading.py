@@ -1,0 +1,200 @@
+"""Triangles of mesh files: loaded once, scaled, with the materials that the file itself names."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import warnings
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from bullet_sim.description import Generated, Mesh
+from bullet_sim.errors import FormatError
+from bullet_sim.files import check_file
+from bullet_sim.meshes.collada import read_collada
+from bullet_sim.meshes.generated import generated_parts
+from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.simplify import cluster
+from bullet_sim.meshes.stl import read_stl
+from bullet_sim.meshes.trimesh_files import read_scene
+from bullet_sim.meshes.wavefront import read_wavefront
+
+__all__ = ["MeshPart", "collision_mesh", "load_mesh", "to_obj"]
+
+LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times that of memory
+MOST_DRAWN = 300_000  # triangles of one file; more hold the camera up
+MOST_COLLIDING = 60_000  # triangles of one file; with a million the engine takes ten seconds
+
+_log = logging.getLogger(__name__)
+_trimesh_log = logging.getLogger("trimesh")
+_trimesh_log.addHandler(logging.NullHandler())
+_trimesh_log.propagate = False  # a learner's terminal shows our own warning, once
+
+
+@dataclass(frozen=True)
+class _FileVersion:
+    """What a cached mesh depends on: a file written again is read again."""
+
+    geometry: Mesh
+    modified_ns: int
+
+
+def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
+    """Parts of a file, one per material, in the mesh's own frame and in metres.
+
+    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning.
+    """
+    if not isinstance(geometry, Mesh):
+        return generated_parts(geometry)
+    try:
+        status = check_file(geometry.path, LARGEST_FILE, "export it with fewer triangles")
+    except FormatError as error:
+        raise FormatError(f"mesh {error}") from None
+    return _load(_FileVersion(geometry, status.st_mtime_ns))
+
+
+def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
+    """The triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32.
+
+    Of more than `MOST_COLLIDING`, so many that stay close to them.
+    """
+    parts = load_mesh(geometry)
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
+    vertices = np.concatenate([part.vertices for part in parts])
+    faces = np.concatenate([
+        part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
+    ])
+    if len(faces) > MOST_COLLIDING:
+        kept, faces = cluster(vertices, faces, MOST_COLLIDING)
+        return vertices[kept], faces
+    unique, index = np.unique(vertices, axis=0, return_inverse=True)
+    faces = index.reshape(-1)[faces].astype(np.uint32)
+    has_area = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return unique, faces[has_area]
+
+
+def to_obj(geometry: Mesh, folder: Path | str) -> Path:
+    """Write the collision triangles as plain OBJ into `folder`; equal meshes, equal names."""
+    vertices, faces = collision_mesh(geometry)
+    key = f"{geometry.path}|{geometry.scale}|{geometry.submesh}|{geometry.centre_submesh}"
+    path = Path(folder) / f"{Path(geometry.path).stem}-{_short_hash(key)}.obj"
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return path
+
+
+def _short_hash(text: str) -> str:
+    value = 0
+    for byte in text.encode():
+        value = (value * 1000003 ^ byte) & 0xFFFFFFFFFFFF
+    return f"{value:012x}"
+
+
+@functools.lru_cache(maxsize=256)
+def _load(version: _FileVersion) -> tuple[MeshPart, ...]:
+    geometry = version.geometry
+    named = _read(Path(geometry.path), geometry.submesh)
+    parts = [part for _, part in _chosen(named, geometry)]
+    if geometry.submesh is not None and geometry.centre_submesh:
+        parts = _centred(parts)
+    parts = _with_fewer_triangles(parts, geometry.path)
+    return tuple(_scaled(part, geometry.scale) for part in parts)
+
+
+def _read(path: Path, submesh: str | None) -> list[NamedPart]:
+    """Named parts of a file; whatever the parser stumbles over becomes one FormatError."""
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        known = ", ".join(sorted(_READERS))
+        raise FormatError(f"mesh {path}: unknown kind {path.suffix!r}; there are: {known}")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the parsers' own arithmetic
+            parts = reader(path, submesh is not None)
+    except Exception as error:  # parsers of three libraries, each with its own exceptions
+        raise FormatError(f"mesh {path} cannot be read: {_reason(error)}") from error
+    parts = [(name, part) for name, part in parts if len(part.faces)]
+    if not parts:
+        raise FormatError(f"mesh {path} cannot be read: it has no triangles")
+    if not all(np.isfinite(part.vertices).all() for _, part in parts):
+        raise FormatError(f"mesh {path} cannot be read: a vertex is not a finite number")
+    return parts
+
+
+def _reason(error: Exception) -> str:
+    """In one line, with what to do where a parser does not say it."""
+    reason = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, FormatError):
+        return reason
+    return f"{reason}; export the file again"
+
+
+def _chosen(parts: list[NamedPart], geometry: Mesh) -> list[NamedPart]:
+    if geometry.submesh is None:
+        return parts
+    chosen = [(name, part) for name, part in parts if name == geometry.submesh]
+    if not chosen:
+        known = ", ".join(sorted({name for name, _ in parts}))
+        raise FormatError(
+            f"mesh {geometry.path} has no submesh {geometry.submesh!r}; there are: {known}"
+        )
+    return chosen
+
+
+def _centred(parts: list[MeshPart]) -> list[MeshPart]:
+    """Moved so that the middle of the bounding box is the origin."""
+    low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
+    high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
+    middle = ((low + high) / 2).astype(np.float32)
+    return [replace(part, vertices=part.vertices - middle) for part in parts]
+
+
+def _with_fewer_triangles(parts: list[MeshPart], path: str) -> list[MeshPart]:
+    count = sum(len(part.faces) for part in parts)
+    if count <= MOST_DRAWN:
+        return parts
+    fewer = []
+    for part in parts:
+        kept, faces = cluster(part.vertices, part.faces, MOST_DRAWN * len(part.faces) // count)
+        uv = None if part.uv is None else part.uv[kept]
+        fewer.append(flat_shaded(part.vertices[kept], faces, uv, part.material))
+    fewer = [part for part in fewer if len(part.faces)]
+    left = sum(len(part.faces) for part in fewer)
+    _log.warning("mesh %s has %d triangles and is drawn with %d; export it with at most %d",
+                 path, count, left, MOST_DRAWN)
+    return fewer
+
+
+def _scaled(part: MeshPart, scale: tuple[float, float, float]) -> MeshPart:
+    """Scaled along the mesh's axes; a mirroring scale turns triangles so they still face out."""
+    if scale == (1.0, 1.0, 1.0):
+        return part
+    x, y, z = scale
+    factors = np.array(scale, np.float32)
+    normals = part.normals * np.array([y * z, z * x, x * y], np.float32)
+    mirrored = x * y * z < 0
+    if mirrored:
+        normals = -normals
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return replace(
+        part,
+        vertices=part.vertices * factors,
+        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
+        faces=np.ascontiguousarray(part.faces[:, ::-1]) if mirrored else part.faces,
+    )
+
+
+_READERS = {
+    ".stl": read_stl,
+    ".stla": read_stl,
+    ".stlb": read_stl,
+    ".obj": read_wavefront,
+    ".dae": read_collada,
+    ".glb": read_scene,
+    ".gltf": read_scene,
+    ".off": read_scene,
+    ".ply": read_scene,
+}

@@ -1,0 +1,134 @@
+"""Wavefront OBJ files: polygons of any number of corners, with the materials of their MTL files.
+
+Read here and not by trimesh, which refuses polygons of four corners in a group of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from bullet_sim.description import Material
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.wavefront_materials import read_materials
+
+LISTS = ("v", "vt", "vn")  # positions, image coordinates, normals
+WIDTHS = {"v": 3, "vt": 2, "vn": 3}
+
+
+@dataclass
+class _Statements:
+    """A file's lines by what they say."""
+
+    lists: dict[str, list[str]] = field(default_factory=lambda: {key: [] for key in LISTS})
+    corners: dict[tuple[str, str], list[str]] = field(default_factory=dict)
+    # object and material -> corners such as 7/3/5, three for each triangle
+    libraries: list[str] = field(default_factory=list)
+
+
+def read_wavefront(path: Path, split: bool) -> list[NamedPart]:
+    """One part per material; with `split`, one per object and material, named as in the file."""
+    statements = _statements(path, split)
+    materials = read_materials(path, statements.libraries)
+    arrays = {key: _array(rows, WIDTHS[key]) for key, rows in statements.lists.items()}
+    return [
+        (name, _part(_indices(corners), arrays, materials.get(material)))
+        for (name, material), corners in statements.corners.items() if corners
+    ]
+
+
+def _statements(path: Path, split: bool) -> _Statements:
+    found = _Statements()
+    name, material = path.stem, ""
+    target = found.corners.setdefault((name, material), [])
+    for line in path.read_text(errors="replace").replace("\\\n", " ").splitlines():
+        key, _, rest = line.strip().replace("\t", " ").partition(" ")
+        if key in found.lists:
+            found.lists[key].append(rest)
+        elif key == "f":
+            target += _triangles(rest.split(), found.lists)
+        elif key in ("o", "g", "usemtl"):
+            if key == "usemtl":
+                material = rest.strip()
+            elif split:
+                name = rest.strip() or name
+            target = found.corners.setdefault((name, material), [])
+        elif key == "mtllib":
+            found.libraries += [rest.strip()]
+    return found
+
+
+def _triangles(corners: list[str], lists: dict[str, list[str]]) -> Iterable[str]:
+    """A polygon as a fan; indices that count from the end of the lists so far, from the start."""
+    if any("-" in corner for corner in corners):
+        corners = [_from_the_start(corner, lists) for corner in corners]
+    if len(corners) == 3:
+        return corners
+    return [
+        corner for second, third in pairwise(corners[1:])
+        for corner in (corners[0], second, third)
+    ]
+
+
+def _from_the_start(corner: str, lists: dict[str, list[str]]) -> str:
+    words = []
+    for word, key in zip(corner.split("/"), LISTS, strict=False):
+        words.append(str(len(lists[key]) + 1 + int(word)) if word.startswith("-") else word)
+    return "/".join(words)
+
+
+def _array(rows: list[str], width: int) -> np.ndarray:
+    """(n, width) of what may have more columns, such as colours, or too few."""
+    if not rows:
+        return np.zeros((0, width))
+    columns = len(rows[0].split())
+    values = np.array(" ".join(rows).split(), np.float64)
+    if columns < width or values.size != len(rows) * columns:
+        padded = [[*row.split(), *["0"] * width][:width] for row in rows]
+        return np.array(padded, np.float64)
+    return values.reshape(len(rows), columns)[:, :width]
+
+
+def _indices(corners: list[str]) -> np.ndarray:
+    """(n, 3) from 0, of position, image coordinate and normal; -1 where a corner has none."""
+    text = " ".join(corners)
+    first = corners[0]
+    columns = first.count("/") + 1
+    if "//" not in text and text.count("/") == (columns - 1) * len(corners):
+        given = np.array(text.replace("/", " ").split(), np.int64).reshape(-1, columns)
+        indices = np.zeros((len(corners), 3), np.int64)
+        indices[:, :columns] = given
+        return indices - 1
+    words = [[*corner.split("/"), "", ""][:3] for corner in corners]
+    return np.array([[int(word or 0) for word in row] for row in words], np.int64) - 1
+
+
+def _part(
+    indices: np.ndarray, arrays: dict[str, np.ndarray], material: Material | None
+) -> MeshPart:
+    for key, column in zip(LISTS, indices.T):
+        if len(column) and column.max() >= len(arrays[key]):
+            raise FormatError(f"a face asks for {key} number {column.max() + 1}, there are "
+                              f"{len(arrays[key])}")
+    if (indices[:, 0] < 0).any():
+        raise FormatError("a face has a corner number below 1")
+    position, image, normal = indices.T
+    faces = np.arange(len(indices), dtype=np.uint32).reshape(-1, 3)
+    vertices = arrays["v"][position]
+    uv = None if (image < 0).any() else arrays["vt"][image].astype(np.float32)
+    if (normal < 0).any():
+        return flat_shaded(vertices, faces, uv, material)
+    normals = arrays["vn"][normal]
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return MeshPart(
+        vertices=vertices.astype(np.float32),
+        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
+        uv=uv,
+        faces=faces,
+        material=material,
+    )

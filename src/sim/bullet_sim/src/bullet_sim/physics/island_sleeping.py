@@ -1,0 +1,146 @@
+"""Lets bodies that lean on one another stand still, also where they never quite settle.
+
+Shapes that overlap push one another for ever, too fast for `rest` and too slowly to get anywhere.
+As Gazebo does with ODE: models without joints that touch are disabled once all of them have kept
+below 0.1 m/s and 0.1 rad/s for a second; whatever changes one of them, or pushes it, ends that.
+Unlike there, the means over that second count, and a body that touches none of its kind goes on:
+a ball that rolls slowly rolls.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from operator import mul
+from typing import Protocol
+
+from bullet_sim.physics.assembly import Tree
+from bullet_sim.physics.auto_disable import LOOK_PERIOD
+from bullet_sim.physics.quiet import pybullet
+
+SPEED = 0.1  # m/s, of the mean over LOOKS: Gazebo's threshold (ODEPhysics.cc)
+RATE = 0.1  # rad/s
+TREMBLING = 3.0  # times as fast it may be between two looks
+LOOKS = round(1.0 / LOOK_PERIOD)  # Gazebo's second
+WAKING = 2 * 0.05 ** 2  # (m/s)^2 + (rad/s)^2 with which the engine enables a body that is pushed
+DEAF = 1e6  # the same while it falls asleep: the engine solves one step yet, and that pushes
+MOTORS = (pybullet.setJointMotorControl2, pybullet.setJointMotorControlArray,
+          pybullet.setJointMotorControlMultiDof)
+PUSHES = (pybullet.applyExternalForce, pybullet.applyExternalTorque, pybullet.resetBaseVelocity)
+FIRST, SECOND = 1, 2  # columns of getContactPoints: the bodies that touch
+
+
+class Disablable(Protocol):
+    """A body as seen from here."""
+
+    number: int  # the engine's
+    tree: Tree
+
+    @property
+    def auto_disables(self) -> bool:
+        """Whether nothing but contacts and gravity acts on it."""
+        ...
+
+
+class AutoDisable:
+    """Asked after every step, told of every change.
+
+    `read` runs a pybullet function without ending the rest; `bodies` is the list of all there are.
+    """
+
+    def __init__(self, read: Callable, bodies: Sequence[Disablable]):
+        self._read = read
+        self._bodies = bodies
+        self._poses: dict[int, deque] = {}  # by number, of looks between which it was quiet
+        self._disabled: set[int] = set()
+        self._deaf: set[int] = set()  # of the disabled, those of the last look
+        self._waking: set[int] = set()  # enabled since the last step; the next leaves them out yet
+        self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be given again
+
+    def after_step(self, looking: bool) -> None:
+        """`looking`: at a look of `rest`, disable what has been quiet."""
+        for push, args in self._late:
+            self._read(push, *args)
+        self._late.clear()
+        self._waking.clear()
+        if not looking:
+            return
+        poses = {body.number: self._read(pybullet.getBasePositionAndOrientation, body.number)
+                 for body in self._bodies if body.auto_disables}
+        self._poses = {number: self._quiet(number, pose) for number, pose in poses.items()}
+        ready = {number for number, seen in self._poses.items()
+                 if len(seen) > LOOKS and _slower(seen[0], seen[-1], LOOKS * LOOK_PERIOD)}
+        self._disabled &= ready
+        for number in self._deaf & self._disabled:
+            self._read(pybullet.changeDynamics, number, -1, sleepThreshold=WAKING)
+        self._deaf.clear()
+        if ready - self._disabled:
+            self._disable(ready)
+
+    def _quiet(self, number: int, pose: tuple) -> deque:
+        """Its poses since it was last too quick for anything that trembles."""
+        seen = self._poses.get(number)
+        if seen is None or not _slower(seen[-1], pose, TREMBLING * LOOK_PERIOD):
+            return deque([pose], maxlen=LOOKS + 1)
+        seen.append(pose)
+        return seen
+
+    def changed(self, function: Callable, args: tuple) -> bool:
+        """Enable what a pybullet call concerns; whether that was anything."""
+        if function in MOTORS:
+            return False
+        push = function in PUSHES
+        concerned = self._disabled & {args[0]} if push else set(self._disabled)
+        for number in concerned:
+            self._change(number, pybullet.ACTIVATION_STATE_WAKE_UP)
+            self._change(number, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+            self._poses.pop(number, None)
+        self._disabled -= concerned
+        self._waking |= concerned
+        if push:
+            self._poses.pop(args[0], None)  # whoever pushes all the time is not to be held up
+            if args[0] in self._waking:
+                self._late.append((function, args))
+        elif function is pybullet.removeBody:
+            self._late = [late for late in self._late if late[1][0] != args[0]]
+        return bool(concerned)
+
+    def _disable(self, ready: set[int]) -> None:
+        still = {body.number for body in self._bodies if body.tree.held}
+        for heap in _heaps(self._touching(), still):
+            if len(heap) > 1 and heap <= ready and not heap <= self._disabled:
+                for number in heap:
+                    self._read(pybullet.resetBaseVelocity, number, (0, 0, 0), (0, 0, 0))
+                    self._change(number, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+                                 sleepThreshold=DEAF)
+                    self._change(number, pybullet.ACTIVATION_STATE_SLEEP)
+                self._disabled |= heap
+                self._deaf |= heap
+
+    def _touching(self) -> set[tuple[int, int]]:
+        return {(row[FIRST], row[SECOND]) for row in self._read(pybullet.getContactPoints)}
+
+    def _change(self, number: int, state: int, **values: float) -> None:
+        self._read(pybullet.changeDynamics, number, -1, activationState=state, **values)
+
+
+def _slower(before: tuple, after: tuple, seconds: float) -> bool:
+    """Whether it went from pose to pose, in so long, below both thresholds."""
+    moved = math.dist(before[0], after[0])
+    turned = 2 * math.acos(min(1.0, abs(sum(map(mul, before[1], after[1])))))
+    return moved < SPEED * seconds and turned < RATE * seconds
+
+
+def _heaps(pairs: Iterable[tuple[int, int]], still: set[int]) -> list[set[int]]:
+    """Sets of bodies that touch, also by way of others; what stands still for ever joins none.
+
+    What touches nothing but that is a set of its own; what touches nothing at all is in none.
+    """
+    heaps: dict[int, set[int]] = {}
+    for pair in pairs:
+        joined = set().union(*(heaps.get(number, {number}) for number in pair
+                               if number not in still))
+        for number in joined:
+            heaps[number] = joined
+    return list({id(heap): heap for heap in heaps.values()}.values())

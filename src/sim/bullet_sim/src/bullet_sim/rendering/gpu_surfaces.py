@@ -1,0 +1,158 @@
+"""Triangles and materials on the graphics card, uploaded once for all links that look alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary, WeakValueDictionary
+
+import cv2
+import moderngl
+import numpy as np
+
+from bullet_sim.description import Fog, Material
+from bullet_sim.meshes.part import MeshPart
+from bullet_sim.rendering.scene import LinkShape
+from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
+from bullet_sim.rendering.textures import load_image
+
+LIGHTS_BINDING, SURFACE_BINDING = 0, 1
+_FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
+
+Kind = tuple[bool, Fog | None]  # of drawing: whether lit per pixel, and in what fog
+
+
+@dataclass(eq=False)
+class Program:
+    """One kind of surface shader."""
+
+    program: moderngl.Program
+    projection_model: moderngl.Uniform
+    model: moderngl.Uniform
+
+
+@dataclass(eq=False)
+class Surface:
+    """One part of a link, ready to draw."""
+
+    vertices: moderngl.Buffer
+    indices: moderngl.Buffer
+    material: moderngl.Buffer
+    texture: moderngl.Texture | None
+    opaque: bool
+    highlight: float  # brightest specular channel, 0..1
+    arrays: dict[Kind, tuple[Program, moderngl.VertexArray]]
+
+
+class SurfaceStore:
+    """Uploads of link shapes, kept as long as some scene has the shape."""
+
+    def __init__(self, context: moderngl.Context):
+        self._context = context
+        self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
+        self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
+        self._unreadable: set[str] = set()  # images that were warned about
+        self._programs: dict[tuple[bool, bool, Fog | None], Program] = {}
+        self._images: Mapping[str, np.ndarray] = {}
+        self._shown: dict[str, np.ndarray] = {}  # of the images, which is on the card
+
+    def show(self, images: Mapping[str, np.ndarray]) -> None:
+        """What the textures that are no files look like from now on; see `SceneState.images`."""
+        self._images = images
+        for name, image in images.items():
+            texture = self._textures.get(name)
+            if texture is not None and self._shown.get(name) is not image:
+                texture.write(_rgba(image))
+                texture.build_mipmaps()
+                self._shown[name] = image
+        for name in self._shown.keys() - images.keys():
+            del self._shown[name]
+
+    def of(self, shape: LinkShape) -> list[Surface]:
+        """The shape's surfaces, uploaded when first asked for."""
+        surfaces = self._surfaces.get(shape)
+        if surfaces is None:
+            surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]
+        return surfaces
+
+    def array(self, surface: Surface, per_pixel: bool,
+              fog: Fog | None = None) -> tuple[Program, moderngl.VertexArray]:
+        """How to draw a surface, lit per pixel or per corner."""
+        found = surface.arrays.get((per_pixel, fog))
+        if found is None:
+            program = self._program(per_pixel, surface.texture is not None, fog)
+            layout = "3f 3f 2f" if surface.texture is not None else "3f 3f 2x4"
+            names = ["in_position", "in_normal", "in_uv"][:3 if surface.texture is not None else 2]
+            array = self._context.vertex_array(
+                program.program, [(surface.vertices, layout, *names)], surface.indices
+            )
+            found = surface.arrays[per_pixel, fog] = (program, array)
+        return found
+
+    def _program(self, per_pixel: bool, textured: bool, fog: Fog | None) -> Program:
+        kind = (per_pixel, textured, fog)
+        if kind not in self._programs:
+            program = self._context.program(**sources(per_pixel, textured, fog is not None))
+            if fog is not None:
+                program["fog_colour"] = fog.colour[:3]
+                program["fog_kind"] = _FOGS[fog.type]
+                program["fog_shape"] = fog.start, fog.end, fog.density
+            program["Lights"].binding = LIGHTS_BINDING
+            program["Surface"].binding = SURFACE_BINDING
+            self._programs[kind] = Program(program, program["projection_model"], program["model"])
+        return self._programs[kind]
+
+    def _upload(self, part: MeshPart) -> Surface:
+        material = part.material
+        uv = part.uv if part.uv is not None else np.zeros((len(part.vertices), 2), np.float32)
+        corners = np.concatenate([part.vertices, part.normals, uv], axis=1, dtype=np.float32)
+        texture = None
+        if material.texture is not None and part.uv is not None:
+            texture = self._texture(material.texture)
+        return Surface(
+            vertices=self._context.buffer(np.ascontiguousarray(corners)),
+            indices=self._context.buffer(np.ascontiguousarray(part.faces)),
+            material=self._context.buffer(_material_block(material)),
+            texture=texture,
+            opaque=material.diffuse[3] >= 1,
+            highlight=max(material.specular[:3]) if material.shininess > 0 else 0.0,
+            arrays={},
+        )
+
+    def _texture(self, path: str) -> moderngl.Texture | None:
+        """With mipmaps, so that thin lines far away fade instead of breaking up."""
+        texture = self._textures.get(path)
+        if texture is not None or path in self._unreadable:
+            return texture
+        if path in self._images:
+            self._shown[path] = self._images[path]
+            image = _rgba(self._images[path])
+        else:
+            image = load_image(path, self._context.info["GL_MAX_TEXTURE_SIZE"])
+        if image is None:
+            self._unreadable.add(path)
+            return None
+        height, width = image.shape[:2]
+        texture = self._textures[path] = self._context.texture((width, height), 4, image)
+        texture.build_mipmaps()
+        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        texture.repeat_x = texture.repeat_y = path not in self._images
+        return texture
+
+
+def _rgba(rgb: np.ndarray) -> np.ndarray:
+    """(h, w, 3) uint8, first row first, as OpenGL wants it: with alpha, last row first."""
+    return np.ascontiguousarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2RGBA)[::-1])
+
+
+def _material_block(material: Material) -> bytes:
+    """The shader's `Surface` block; a texture is scaled about the image's middle, as by OGRE."""
+    shrink = [1 / scale if scale else 1.0 for scale in material.texture_scale]
+    offset = [0.5 - 0.5 * factor for factor in shrink]
+    return np.array([
+        material.ambient,
+        material.diffuse,
+        (*material.specular[:3], material.shininess),
+        (*material.emissive[:3], float(material.lighting)),
+        (*shrink, *offset),
+    ], np.float32).tobytes()

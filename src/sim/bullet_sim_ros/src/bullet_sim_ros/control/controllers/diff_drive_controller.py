@@ -1,0 +1,88 @@
+"""diff_drive_controller: wheels on two sides, driven by a twist."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from geometry_msgs.msg import TwistStamped
+
+from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
+from bullet_sim_ros import convert
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
+from bullet_sim_ros.control.registry import controller
+from bullet_sim_ros.control.wheel_states import WheelStates
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.reconfigure_server import Value, offer_values
+
+MULTIPLIERS = (0.5, 1.5)
+RATES = (0.0, 2000.0)  # Hz
+
+
+@controller("diff_drive_controller/DiffDriveController")
+class DiffDriveController(MobileBaseController):
+    """The first wheel of each side gives separation and radius where no parameter does."""
+
+    def __init__(self, host: ControllerHost):
+        p = host.parameters
+        left, right = p.texts("left_wheel"), p.texts("right_wheel")
+        if len(left) != len(right):
+            raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "
+                              "they must be as many")
+        self._separation, self._radius = _lengths(host, left[0], right[0])
+        radius = p.number("wheel_radius_multiplier", 1.0)
+        multipliers = {
+            "left_wheel_radius_multiplier": p.number("left_wheel_radius_multiplier", radius),
+            "right_wheel_radius_multiplier": p.number("right_wheel_radius_multiplier", radius),
+            "wheel_separation_multiplier": p.number("wheel_separation_multiplier", 1.0)}
+        self._drive = DiffDrive([host.claim("velocity", name) for name in left],
+                                [host.claim("velocity", name) for name in right],
+                                self._geometry(multipliers), read_options(p))
+        super().__init__(host, self._drive)
+        self._limited = host.advertise("cmd_vel_out", TwistStamped, queue_size=100) if p.flag(
+            "publish_cmd", False) else None
+        self._wheels = WheelStates(host, self._drive) if p.flag(
+            "publish_wheel_joint_controller_state", False) else None
+        self._offer_changes(multipliers)
+
+    def update(self, time: float, period: float) -> None:
+        """Drive; publish also what upstream publishes at each update."""
+        super().update(time, period)
+        if self._limited and self._limited.get_num_connections():
+            msg = TwistStamped()
+            msg.header.stamp = convert.stamp(time)
+            msg.twist.linear.x, msg.twist.angular.z = self._drive.limited
+            self._limited.publish(msg)
+        if self._wheels:
+            self._wheels.update(time, period)
+
+    def _geometry(self, multipliers: Mapping[str, float]) -> DiffDriveGeometry:
+        return DiffDriveGeometry(self._separation * multipliers["wheel_separation_multiplier"],
+                                 self._radius * multipliers["left_wheel_radius_multiplier"],
+                                 self._radius * multipliers["right_wheel_radius_multiplier"])
+
+    def _offer_changes(self, multipliers: Mapping[str, float]) -> None:
+        """dynamic_reconfigure, with upstream's names and ranges."""
+        host = self.host
+        values = {name: Value(now, *MULTIPLIERS, name.replace("_", " "))
+                  for name, now in multipliers.items()}
+        values["publish_rate"] = Value(host.parameters.number("publish_rate", 50.0), *RATES,
+                                       "odometry and transforms a second")
+        values["enable_odom_tf"] = Value(self.enable_odom_tf, False, True, "publish the transform")
+        offer_values(host, host.namespace, values,
+                     lambda new: host.leave(lambda: self._change(new)))
+
+    def _change(self, values: Mapping[str, float | bool]) -> None:
+        self._drive.geometry = self._geometry(values)
+        self.enable_odom_tf = values["enable_odom_tf"]
+        self.set_publish_rate(values["publish_rate"])
+
+
+def _lengths(host: ControllerHost, left: str, right: str) -> tuple[float, float]:
+    """Separation and radius of the wheels, m: parameters, else the URDF."""
+    p, robot = host.parameters, host.robot
+    separation = p.number("wheel_separation") if p.has("wheel_separation") else math.dist(
+        robot.pose(left).position, robot.pose(right).position)
+    radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(left)
+    return separation, radius

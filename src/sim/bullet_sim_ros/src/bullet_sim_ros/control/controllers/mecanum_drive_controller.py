@@ -1,0 +1,65 @@
+"""mecanum_drive_controller: four wheels with rollers, forward, sideways and about."""
+
+from __future__ import annotations
+
+import logging
+
+from geometry_msgs.msg import Twist
+
+from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive, MecanumGeometry
+from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.mobile_base import MobileBaseController, read_limits, read_options
+from bullet_sim_ros.control.registry import controller
+
+log = logging.getLogger("bullet_sim.control")
+
+CORNERS = ("front_left", "back_left", "back_right", "front_right")
+
+
+@controller("mecanum_drive_controller/MecanumDriveController")
+class MecanumDriveController(MobileBaseController):
+    """cmd_vel's linear.y is the speed to the left."""
+
+    def __init__(self, host: ControllerHost):
+        p = host.parameters
+        wheels = [_joint(host, corner) for corner in CORNERS]
+        self._drive = MecanumDrive(
+            [host.claim("velocity", name) for name in wheels], _geometry(host, wheels),
+            read_options(p), read_limits(p, "linear/y"))
+        super().__init__(host, self._drive)
+        if not all(host.robot.joints_on(name) for name in wheels):
+            log.warning("%s: its wheels have no rollers (links on passive joints), so they drive "
+                        "forward and turn, but do not go sideways; a base without rollers is moved "
+                        "by libgazebo_ros_planar_move.so", host.describe())
+
+    def give(self, msg: Twist) -> None:
+        """Hand a good command to the drive; in the loop."""
+        self._drive.command(self.host.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
+
+
+def _joint(host: ControllerHost, corner: str) -> str:
+    """Of the wheel; some forks say rear, not back."""
+    p = host.parameters
+    other = f"{corner.replace('back', 'rear')}_wheel_joint"
+    return p.text(other) if p.has(other) else p.text(f"{corner}_wheel_joint")
+
+
+def _geometry(host: ControllerHost, wheels: list[str]) -> MecanumGeometry:
+    """Parameters, else the URDF, as upstream reads it."""
+    p, robot = host.parameters, host.robot
+
+    def span(parameter: str, axis: int, first: str, second: str) -> float:
+        if p.has(parameter):
+            return p.number(parameter)
+        ends = (robot.pose(name).position[axis] for name in (first, second))
+        return abs(next(ends) - next(ends))
+
+    length = span("wheel_separation_x", 0, wheels[0], wheels[1])
+    width = span("wheel_separation_y", 1, wheels[0], wheels[3])
+    if p.has("wheel_radius"):
+        radius = p.number("wheel_radius")
+    elif p.flag("use_realigned_roller_joints", False):
+        radius = robot.wheel_radius((robot.joints_on(wheels[0]) or wheels)[0])
+    else:
+        radius = robot.wheel_radius(wheels[0])
+    return MecanumGeometry((length + width) / 2, radius)

@@ -1,0 +1,204 @@
+"""What a plugin is given: its tags and place, calls by the loop, and topics that end with it."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+from concurrent.futures import Future
+
+import rospy
+from rosgraph.names import is_legal_name
+
+from bullet_sim.description import PluginDescription, SensorDescription, Visual
+from bullet_sim.link import Link
+from bullet_sim.model import Model
+from bullet_sim_ros import convert
+from bullet_sim_ros.errors import PluginError, told
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.scope import Place
+from bullet_sim_ros.plugin_host.services import Shared
+from bullet_sim_ros.scheduler import Duty, always
+
+log = logging.getLogger("bullet_sim.plugins")
+
+
+class Host(Place):
+    """One plugin's view of the simulation. Made and used in the loop's thread."""
+
+    def __init__(self, shared: Shared, model: Model | None, description: PluginDescription,
+                 sensor: SensorDescription | None = None, link: Link | None = None,
+                 visual: Visual | None = None):
+        super().__init__(shared.world, model, description, sensor, link, visual)
+        self.shared = shared
+        self.parameters = PluginParameters(model.name if model else "(world)", description)
+        self._closers: list[Callable[[], None]] = []
+        self._resets: list[Callable[[], None]] = []
+        self._drawn: Future | None = None
+        self._closed = False
+        self._expects_answers = False
+        self._duty: Duty | None = None  # the last that `every` was asked for
+
+    @property
+    def closed(self) -> bool:
+        """Whether the plugin has ended. For any thread."""
+        return self._closed
+
+    @property
+    def updates(self) -> int:
+        """How often the plugin has done what it does at a rate."""
+        return self._duty.count if self._duty else 0
+
+    # --- when the loop calls
+
+    def every(self, rate_hz: float, action: Callable[[], None],
+              wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
+        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step.
+
+        `whole_steps` is for plugins that count the period from the last time (see `Schedule`). As
+        upstream has it, a rate below zero is none, too.
+        """
+        agenda = self.shared.agenda
+        self._duty = duty = agenda.add(
+            max(rate_hz, 0.0), self._guarded(action), wanted, whole_steps)
+        self._closers.append(lambda: agenda.remove(duty))
+
+    def change_rate(self, rate_hz: float) -> None:
+        """Do what `every` was last asked for at another rate, from now on."""
+        if self._duty is not None and not self._closed:
+            self.shared.agenda.change_rate(self._duty, rate_hz)
+
+    def every_reading(self, rate_hz: float, action: Callable[[], None],
+                      wanted: Callable[[], bool] = always) -> None:
+        """Call `action` at the sensor's own rate, thinned to `rate_hz`; 0: at each reading.
+
+        As upstream has it, a reading is left out until so much time has gone by since the last one
+        that was taken, so 100 Hz thinned to 30 Hz is 25 Hz.
+        """
+        sensor_rate = self.sensor.update_rate
+        if sensor_rate <= 0 or rate_hz <= 0:
+            self.every(max(sensor_rate, rate_hz), action, wanted, whole_steps=sensor_rate <= 0)
+        else:
+            every = max(1, math.ceil(sensor_rate / rate_hz - 1e-9))
+            self.every(sensor_rate / every, action, wanted)
+
+    def each_step(self, action: Callable[[], None]) -> None:
+        """Call `action` after each single physics step."""
+        guarded = self._guarded(action)
+        world = self.world
+        world.each_step = [*world.each_step, guarded]
+
+        def forget() -> None:
+            world.each_step = [other for other in world.each_step if other is not guarded]
+
+        self._closers.append(forget)
+
+    def on_reset(self, action: Callable[[], None]) -> None:
+        """Call `action` after reset_simulation."""
+        self._resets.append(self._guarded(action))
+
+    def reset(self) -> None:
+        """Time is back at the start."""
+        for action in self._resets:
+            action()
+
+    def draw(self, job: Callable[[], None]) -> None:
+        """Have `job` done by the drawing thread; first waits for this plugin's job before it.
+
+        What that one failed with is raised here. In lockstep the world waits for the picture anyway
+        and the job is done at once.
+        """
+        if self.shared.lockstep.topics:
+            self.shared.drawing.settle()  # the renderer does one thing at a time
+            job()
+            return
+        if self._drawn is not None and not self._drawn.done():
+            with self.world.stages.measure("wait"):
+                self._drawn.exception()
+        if self._drawn is not None:
+            self._drawn.result()
+        self._drawn = self.shared.drawing.submit(job)
+
+    def expect_answer(self) -> None:
+        """A frame is about to go to somebody: in lockstep the world then waits for the answer."""
+        self._expects_answers = True
+        self.shared.lockstep.expect()
+
+    def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
+        def run() -> None:
+            if self._closed:
+                return
+            try:
+                action()
+            except Exception as error:  # a plugin's fault must not take the simulation with it
+                log.error("%s failed and is switched off: %s", self.describe(), told(error))
+                self.close()
+        return run
+
+    # --- ROS
+
+    def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
+        """A publisher that lives as long as the plugin."""
+        publisher = rospy.Publisher(_legal(topic), kind, **options)
+        self._closers.append(publisher.unregister)
+        return publisher
+
+    def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
+        """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        lockstep = self.shared.lockstep
+        resolved = rospy.resolve_name(_legal(topic))
+        answers = resolved in lockstep.topics
+
+        def leave(message) -> None:
+            function = take(message)
+            if function is not None:
+                self.shared.mailbox.leave(function)
+            if answers:
+                lockstep.hear(resolved, self)
+
+        if answers:
+            lockstep.join(resolved, self)
+            self._closers.append(lambda: lockstep.leave(resolved, self))
+        subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
+        self._closers.append(subscriber.unregister)
+        return subscriber
+
+    def refuses(self, what: str, *messages) -> bool:
+        """Whether numbers of these messages are not finite or far too great; if so, a warning."""
+        if convert.is_sane(*messages):
+            return False
+        log.warning("%s: a %s that is not finite, or beyond %g, is ignored", self.describe(), what,
+                    convert.LARGEST)
+        return True
+
+    def serve(self, name: str, kind: type, handler: Callable) -> None:
+        """A service; a name that is taken is a warning, as upstream has it."""
+        try:
+            service = rospy.Service(_legal(name), kind, handler)
+        except rospy.ServiceException as error:
+            log.warning("%s: service %s is not offered: %s", self.describe(), name, error)
+            return
+        self._closers.append(lambda: service.shutdown("the model was deleted"))
+
+    def on_close(self, action: Callable[[], None]) -> None:
+        """Call `action` when the plugin ends, before the topics that it has now are closed."""
+        self._closers.append(action)
+
+    def close(self) -> None:
+        """End all topics and services of the plugin."""
+        self._closed = True
+        if self._expects_answers:
+            self.shared.lockstep.cancel()
+        if self._drawn is not None:
+            self._drawn.exception()  # waits: its topics are still needed
+        while self._closers:
+            self._closers.pop()()
+        # What it calls leads back to it: the plugin's arrays would wait for the collector.
+        self._duty, self._drawn = None, None
+        self._resets.clear()
+
+
+def _legal(name: str) -> str:
+    if not is_legal_name(name):
+        raise PluginError(f"{name!r} is no legal topic name: letters, digits, _ and / only")
+    return name

@@ -1,0 +1,50 @@
+"""The tags of plugins that tell of each one that is missing, as upstream's helper class does."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
+
+log = logging.getLogger("bullet_sim.plugins")
+defaults = logging.getLogger("bullet_sim.plugins.defaults")
+
+
+class LoggedParameters:
+    """Reads as `PluginParameters` do; a missing tag is a warning that names the default."""
+
+    def __init__(self, parameters: PluginParameters, kind: str, namespace: str):
+        self._parameters = parameters
+        self.label = f"{kind}(ns = {namespace.rstrip('/')}/)"
+        if not parameters.has("robotNamespace"):
+            defaults.warning("%s missing <robotNamespace>, defaults is %s", kind, namespace)
+        log.info("Starting plugin %s", self.label)
+
+    def text(self, tag: str, default: str) -> str:
+        """Trimmed text."""
+        self._tell(tag, default)
+        return self._parameters.text(tag, default)
+
+    def number(self, tag: str, default: float) -> float:
+        """A float."""
+        self._tell(tag, f"{default:g}")
+        return self._parameters.number(tag, default)
+
+    def flag(self, tag: str, default: bool) -> bool:
+        """A truth value."""
+        self._tell(tag, str(default).lower())
+        return self._parameters.flag(tag, default)
+
+    def choice(self, tag: str, words: Sequence[str]) -> str:
+        """One of some words; the first is the default, also for anything else, with a warning."""
+        word = self.text(tag, words[0])
+        if word not in words:
+            log.warning("%s: <%s> is %r; there are %s; %s is used", self.label, tag, word,
+                        " and ".join(words), words[0])
+            return words[0]
+        return word
+
+    def _tell(self, tag: str, default: str) -> None:
+        if not self._parameters.has(tag):
+            defaults.warning("%s: missing <%s> default is %s", self.label, tag, default)

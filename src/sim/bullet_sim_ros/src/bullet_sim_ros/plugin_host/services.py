@@ -1,0 +1,39 @@
+"""What all plugins of one simulation use together: world, loop, drawing thread and /tf."""
+
+from __future__ import annotations
+
+import tf2_ros
+from geometry_msgs.msg import TransformStamped
+
+from bullet_sim.world import World
+from bullet_sim_ros.drawing import DrawingThread
+from bullet_sim_ros.lockstep import Lockstep
+from bullet_sim_ros.mailbox import Mailbox
+from bullet_sim_ros.scheduler import Agenda
+
+
+class Shared:
+    """What all plugins of one simulation use together."""
+
+    def __init__(self, world: World, mailbox: Mailbox, agenda: Agenda, drawing: DrawingThread,
+                 lockstep: Lockstep):
+        self.world = world
+        self.mailbox = mailbox
+        self.agenda = agenda
+        self.drawing = drawing
+        self.lockstep = lockstep
+        self.warned: set[tuple[str, str]] = set()  # unknown plugins: where they are, file name
+        self._broadcaster: tf2_ros.TransformBroadcaster | None = None
+
+    def announce_transforms(self) -> None:
+        """Make /tf known, so that who is there before time begins misses nothing."""
+        if self._broadcaster is None:
+            self._broadcaster = tf2_ros.TransformBroadcaster()
+
+    def send_transforms(self, transforms: list[TransformStamped]) -> None:
+        """Publish on /tf, after `announce_transforms`."""
+        self._broadcaster.sendTransform(transforms)
+
+    def transforms_wanted(self) -> bool:
+        """Whether anybody listens to /tf."""
+        return bool(self._broadcaster and self._broadcaster.pub_tf.get_num_connections())

@@ -1,0 +1,60 @@
+"""What is said about a plugin that is not there: once, with what will be missing by it."""
+
+from __future__ import annotations
+
+import difflib
+import logging
+from collections.abc import Iterable
+
+from bullet_sim_ros.plugin_host.context import Host
+
+log = logging.getLogger("bullet_sim.plugins.unknown")
+
+# Beginnings of file names, and what a world without them lacks. Gazebo's own plugins speak its own
+# transport, so a ROS node has never heard of most of them.
+CONSEQUENCES = {
+    "libDiffDrivePlugin": "actuator: the wheels will not be driven; on ROS topics "
+                          "libgazebo_ros_diff_drive.so does it",
+    "libSkidSteerDrivePlugin": "actuator: the wheels will not be driven; on ROS topics "
+                               "libgazebo_ros_skid_steer_drive.so does it",
+    "libVehiclePlugin": "actuator: the vehicle will not be driven",
+    "libLiftDragPlugin": "physics: no lift and no drag; what flies or sails by them will not",
+    "libBuoyancyPlugin": "physics: no buoyancy; what floats or swims by it will sink",
+    "librotors_gazebo": "actuator: rotors and what belongs to them; it will not fly",
+    "libuuv_": "actuator or physics under water; it will not swim",
+    "libusv_": "actuator or physics on water; it will not float",
+    "libActorPlugin": "animation: the actor will not go its own way",
+    "libKeysToJointsPlugin": "actuator: keys will not move the joints",
+    "libFlashLightPlugin": "looks: the light will not blink",
+    "libLedPlugin": "looks: the light will not blink",
+    "libCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+    "libDepthCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+    "libRayPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+    "libImuSensorPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+}
+
+
+def warn_of_unknown(host: Host, filename: str, known: Iterable[str]) -> None:
+    """One warning for each file name and model (or world)."""
+    place = "" if host.in_world else host.model.name
+    if (place, filename) in host.shared.warned:
+        return
+    host.shared.warned.add((place, filename))
+    close = difflib.get_close_matches(filename, known, 1, cutoff=0.85)
+    hint = f"; did you mean {close[0]}?" if close else ""
+    log.warning("%s is not known here and left out; %s%s", host.describe(),
+                consequence(host, filename), hint)
+
+
+def consequence(host: Host, filename: str) -> str:
+    """What will be missing: by the name, else by the place the plugin stands in."""
+    for beginning, text in CONSEQUENCES.items():
+        if filename.startswith(beginning):
+            return text
+    if host.in_visual:
+        return "looks: what it shows will be missing"
+    if host.has_sensor:
+        return "sensor: its topics will be missing"
+    if host.in_world:
+        return "world plugin: what it does to the world will be missing, models are not touched"
+    return "actuator or model plugin: what it moves will stand still, its topics will be missing"

@@ -1,0 +1,1 @@
+"""The plugins of hector_gazebo_plugins."""

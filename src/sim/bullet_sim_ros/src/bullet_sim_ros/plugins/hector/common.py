@@ -1,0 +1,132 @@
+"""What hector_gazebo's sensor plugins share: their link, rate, error tags and reconfiguration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from bullet_sim.link import Link
+from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
+from bullet_sim_ros import names
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.parameters import PluginParameters, read_numbers
+from bullet_sim_ros.reconfigure_server import Value, offer_values
+
+TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
+        "gaussian_noise": "gaussianNoise", "scale_error": "scaleError"}
+RANGES = {"gaussian_noise": (0.0, 10.0), "offset": (0.0, 10.0), "drift": (0.0, 10.0),
+          "drift_frequency": (0.0, 1.0), "scale_error": (0.0, 2.0)}
+TELLS = {"gaussian_noise": "Standard deviation of the white noise",
+         "offset": "Constant offset", "drift": "Standard deviation of the drift",
+         "drift_frequency": "Reciprocal of the drift's time constant, Hz",
+         "scale_error": "Factor on the true value"}
+
+
+def find_link(host: Host) -> Link:
+    """The link that `bodyName` names, else the model's first."""
+    name = host.parameters.text("bodyName")
+    links = host.model.description.links
+    if not name and not links:
+        raise PluginError("the model has no link")
+    return host.model.link(name or links[0].name)
+
+
+def update_rate(p: PluginParameters, default: float) -> float:
+    """Hz, by `updateRate`, or by `updatePeriod` in s, which wins; 0: every step."""
+    rate = p.number("updateRate", default)
+    if p.text("updatePeriod"):
+        period = p.number("updatePeriod", 0.0)
+        rate = 1.0 / period if period > 0 else 0.0
+    return rate
+
+
+class HectorError(ErrorModel):
+    """An error model as a plugin's tags have it, that dynamic_reconfigure can change."""
+
+    def __init__(self, host: Host, name: str, size: int, *prefixes: str):
+        """`prefixes` are those of the tags; the last one that is used counts."""
+        self._host = host
+        super().__init__(host.world, f"{host.model.name}::{host.description.name} {name}",
+                         read_errors(host.parameters, size, prefixes or ("",)))
+        host.on_reset(self.restart)
+
+    def offer(self, namespace: str) -> None:
+        """Let it be reconfigured; one value is for all components, as upstream has it."""
+        known: dict[str, float] = {}
+
+        def change(values: dict[str, float]) -> None:
+            if not known:  # the first call only tells what there is
+                known.update(values)
+            else:
+                self._host.shared.mailbox.leave(lambda: self._set(values))
+
+        means = {name: math.fsum(values) / len(values)
+                 for name, values in vars(self.parameters).items()}
+        offer_values(self._host, namespace, {
+            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, change)
+
+    def _set(self, values: dict[str, float]) -> None:
+        size = len(self.parameters.offset)
+        self.parameters = ErrorParameters(**{name: (values[name],) * size for name in TAGS})
+
+
+def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:
+    """The same with that white noise on each component."""
+    return replace(errors, gaussian_noise=(noise,) * len(errors.offset))
+
+
+def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> ErrorParameters:
+    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one."""
+    values = vars(ErrorParameters.none(size))
+    for prefix in prefixes:
+        for name, tag in TAGS.items():
+            tag = prefix + tag[0].upper() + tag[1:] if prefix else tag
+            values = {**values, name: _components(p, tag, values[name])}
+    return ErrorParameters(**values)
+
+
+def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tuple[float, ...]:
+    """As many numbers as there are components, or one for all of them."""
+    words = p.text(tag).split()
+    if not words:
+        return default
+    values = tuple(read_numbers(p.text(tag))[0])
+    if len(values) == 1:
+        values *= len(default)
+    if len(values) != len(default) or not all(map(math.isfinite, values)):
+        raise PluginError(f"<{tag}> is {p.text(tag)!r}, neither one number nor {len(default)}")
+    if not tag.lower().endswith("offset") and min(values) < 0:
+        raise PluginError(f"<{tag}> is {p.text(tag)!r}, and that cannot be negative")
+    return values
+
+
+class Stopwatch:
+    """Time between a plugin's updates, s; 0 at the first."""
+
+    def __init__(self, host: Host):
+        self._world = host.world
+        self.restart()
+        host.on_reset(self.restart)
+
+    def restart(self) -> None:
+        """The next update is the first."""
+        self._last: float | None = None
+
+    def lap(self) -> float:
+        """Since the last call."""
+        now = self._world.time
+        elapsed = now - self._last if self._last is not None else 0.0
+        self._last = now
+        return max(0.0, elapsed)
+
+
+def topic_of(host: Host, default: str, tag: str = "topicName") -> str:
+    """Full name of a topic, empty where the tag is empty."""
+    name = host.parameters.topic(default, tag)
+    return names.join(namespace_of(host), name) if name else ""
+
+
+def namespace_of(host: Host) -> str:
+    """Root without `robotNamespace`, and where it is empty."""
+    return host.parameters.namespace(missing="/", empty="/")

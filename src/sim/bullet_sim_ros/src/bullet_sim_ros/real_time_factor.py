@@ -1,0 +1,74 @@
+"""How fast simulated time runs, what holds it up, and telling people so."""
+
+from __future__ import annotations
+
+import time
+
+import rospy
+
+from bullet_sim.profiler import Stages
+
+WINDOW = 1.0  # s, wall, over which the real-time factor is taken
+REPORT_PERIOD = 10.0  # s, wall
+SLOW = 0.95  # of the wanted speed; below it there is a warning
+BUSY = 0.5  # of wall time; where all stages together took less, the simulator was kept waiting
+WAITING = "wait"  # for the picture before: what that costs is counted under drawing
+
+
+class Speed:
+    """Fed by the loop after every batch of steps."""
+
+    def __init__(self, stages: Stages, profile: bool):
+        self.real_time_factor = 0.0
+        self._stages = stages
+        self._profile = profile
+        self._began = time.monotonic()
+        self.restart(0.0)
+
+    def restart(self, simulated: float) -> None:
+        """Count from here: after a pause, a reset or a change of pace."""
+        now = time.monotonic()
+        self._window = self._report = (now, simulated)
+        self._totals = self._stages.totals()
+
+    def update(self, simulated: float, wanted: float) -> None:
+        """`wanted` is the real-time factor aimed at; 0: as fast as it goes."""
+        now = time.monotonic()
+        if now - self._window[0] >= WINDOW:
+            self.real_time_factor = _factor(self._window, (now, simulated))
+            self._window = (now, simulated)
+        if now - self._report[0] >= REPORT_PERIOD:
+            self._tell(_factor(self._report, (now, simulated)), wanted)
+            self._report, self._totals = (now, simulated), self._stages.totals()
+
+    def close(self) -> None:
+        """At the end."""
+        if self._profile:
+            self._tell_stages()
+
+    def _tell(self, factor: float, wanted: float) -> None:
+        if factor < SLOW * wanted:
+            name, share, all_shares = self._costliest()
+            others = "; most of the time other programs had the processor"
+            rospy.logwarn(
+                "simulated time runs at %.2f of real time, not %g; what costs most is %s: %.0f ms "
+                "of each second%s", factor, wanted, name, share * 1e3,
+                others if all_shares < BUSY else "")
+        if self._profile:
+            self._tell_stages()
+
+    def _tell_stages(self) -> None:
+        elapsed = time.monotonic() - self._began
+        rospy.loginfo("stages of the work in %.0f s\n%s", elapsed, self._stages.table(elapsed))
+
+    def _costliest(self) -> tuple[str, float, float]:
+        """Its name and share of wall time since the last report, and the share of all stages."""
+        spent = {name: total - self._totals.get(name, 0.0)
+                 for name, total in self._stages.totals().items()}
+        spent.pop(WAITING, None)
+        name = max(spent, key=spent.get)
+        return name, spent[name] / REPORT_PERIOD, sum(spent.values()) / REPORT_PERIOD
+
+
+def _factor(start: tuple[float, float], end: tuple[float, float]) -> float:
+    return (end[1] - start[1]) / (end[0] - start[0])
