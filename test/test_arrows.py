@@ -1,6 +1,7 @@
 """Imports follow the house's arrows: see arrows.yaml beside this file."""
 
 import ast
+import graphlib
 import re
 import sys
 from collections.abc import Iterator
@@ -99,6 +100,55 @@ def test_imports_follow_the_arrows() -> None:
     for path in python_files():
         broken += broken_arrows(str(path.relative_to(ROOT)), path.read_text(encoding="utf-8"))
     assert not broken, "\n" + "\n".join(broken)
+
+
+def modules() -> dict[str, Path]:
+    """Our modules by their dotted names."""
+    found = {}
+    for manifest in ROOT.glob("src/**/package.xml"):
+        folder = manifest.parent / "src"
+        for path in folder.rglob("*.py"):
+            words = path.relative_to(folder).with_suffix("").parts
+            found[".".join(words[:-1] if words[-1] == "__init__" else words)] = path
+    return found
+
+
+def imported_modules(name: str, source: str, known: dict[str, Path]) -> set[str]:
+    """Modules of ours that a source imports, also within functions or for type checkers only."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            inner = [f"{node.module}.{alias.name}" for alias in node.names]
+            found |= {module if module in known else node.module for module in inner}
+    return (found & known.keys()) - {name}
+
+
+def circle(graph: dict[str, set[str]]) -> list[str]:
+    """Modules of one circle, or none."""
+    try:
+        list(graphlib.TopologicalSorter(graph).static_order())
+    except graphlib.CycleError as error:
+        return error.args[1]
+    return []
+
+
+def test_no_modules_import_one_another_in_a_circle() -> None:
+    known = modules()
+    assert len(known) > 500
+    graph = {name: imported_modules(name, path.read_text(encoding="utf-8"), known)
+             for name, path in known.items()}
+    assert not circle(graph)
+
+
+def test_the_check_for_circles_itself() -> None:
+    known = dict.fromkeys(("a", "a.b", "a.c"), ROOT)
+    sources = {
+        "a": "", "a.b": "if TYPE_CHECKING:\n  from a import c",
+        "a.c": "def f():\n  import a.b"}
+    graph = {name: imported_modules(name, source, known) for name, source in sources.items()}
+    assert set(circle(graph)) == {"a.b", "a.c"}
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_what_the_ground_bears_is_the_weight_also_at_rest(world):
             assert 0.0 <= contact.depth < 1e-3
             assert contact.position[2] == pytest.approx(0.0, abs=1e-3)
             assert abs(contact.position[0] - 1.0) == pytest.approx(0.2, abs=0.01)
-    assert world._client.rest.reached
+    assert world._client.auto_disable.disabled
 
 
 def test_friction_is_part_of_the_force(world):
@@ -280,7 +280,7 @@ def test_without_gravity_a_link_floats_and_the_world_comes_to_rest(world):
     model = world.spawn(read(link(box(), more="<gravity>false</gravity>")), Pose((0, 0, 1.0)))
     run(world, 2.0)
     assert model.pose.position == pytest.approx((0, 0, 1.0), abs=1e-9)
-    assert world._client.rest.reached
+    assert world._client.auto_disable.disabled
     model.links["l"].apply_force((0.0, 0.0, MASS / world.timestep))
     run(world, 0.5)
     assert model.pose.position[2] == pytest.approx(1.5, abs=1e-3)
@@ -329,7 +329,7 @@ def test_a_motion_that_is_no_number_starts_the_model_again(world, caplog):
     other = world.spawn(read(link(box())), Pose((2, 0, 0.05)), "other")
     run(world, 0.2)
     for _ in range(2):
-        broken.bodies[0]._call(pybullet.applyExternalForce, -1, (math.nan, 0, 0), (0, 0, 0),
+        broken.bodies[0].change(pybullet.applyExternalForce, -1, (math.nan, 0, 0), (0, 0, 0),
                                pybullet.WORLD_FRAME)
         run(world, 1.0)
     assert broken.pose.position == pytest.approx((0, 0, 0.05), abs=1e-3)

@@ -6,7 +6,7 @@ import pytest
 
 from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim.errors import SimulationError
 
 DT = 0.1  # s
@@ -77,8 +77,8 @@ def test_the_shorter_way_round(start, to, turn):
 
 
 def due_ticks(rate_hz: float, ticks) -> list[int]:
-    pace = Pace(rate_hz)
-    return [tick for tick in ticks if pace.due(tick * 0.001)]
+    rate = Rate(rate_hz)
+    return [tick for tick in ticks if rate.due(tick * 0.001)]
 
 
 def test_a_pace_is_exact_in_the_long_run():
@@ -87,11 +87,11 @@ def test_a_pace_is_exact_in_the_long_run():
     assert due_ticks(0.0, range(3)) == [0, 1, 2]
     assert len(due_ticks(5000.0, range(100))) == 100
     with pytest.raises(SimulationError, match="-1"):
-        Pace(-1.0)
+        Rate(-1.0)
 
 
 def test_a_pace_begins_anew_when_time_is_reset_or_stood_still():
-    pace = Pace(10.0)
-    assert [pace.due(t) for t in (5.0, 5.05, 5.1)] == [True, False, True]
-    assert [pace.due(t) for t in (0.0, 0.05, 0.1)] == [True, False, True]
-    assert [pace.due(t) for t in (9.0, 9.05, 9.1)] == [True, False, True]
+    rate = Rate(10.0)
+    assert [rate.due(t) for t in (5.0, 5.05, 5.1)] == [True, False, True]
+    assert [rate.due(t) for t in (0.0, 0.05, 0.1)] == [True, False, True]
+    assert [rate.due(t) for t in (9.0, 9.05, 9.1)] == [True, False, True]

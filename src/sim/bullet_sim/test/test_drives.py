@@ -83,8 +83,9 @@ def test_links_stay_attached_as_they_were_whatever_their_centres_of_mass(world):
     weld.release()  # a second time does nothing
 
 
-def rebuild_heavier(link):
-    link.change(Inertial(2.0, Pose((0.01, 0.02, 0.0)), (0.01, 0, 0, 0.01, 0, 0.01)), gravity=True)
+def rebuild_heavier(model):
+    heavier = Inertial(2.0, Pose((0.01, 0.02, 0.0)), (0.01, 0, 0, 0.01, 0, 0.01))
+    model.change_link(model.links["l"], heavier, gravity=True)
 
 
 def test_a_weld_outlives_a_rebuild_of_either_body(world):
@@ -92,8 +93,8 @@ def test_a_weld_outlives_a_rebuild_of_either_body(world):
     second = world.spawn(cube("b", (0, 0.03, 0)), Pose((0.2, 0, 1.1)))
     before = first.pose.inverse() * second.pose
     weld = second.links["l"].attach(first.links["l"])
-    rebuild_heavier(first.links["l"])
-    rebuild_heavier(second.links["l"])
+    rebuild_heavier(first)
+    rebuild_heavier(second)
     first.links["l"].apply_force((50.0, 0.0, 0.0), (0.0, 3.0, 0.0))
     world.step(300)
     after = first.pose.inverse() * second.pose
@@ -108,7 +109,7 @@ def test_a_weld_outlives_a_rebuild_of_either_body(world):
 def test_what_is_held_in_the_world_can_be_moved_after_a_rebuild(world):
     model = world.spawn(cube("a", (0.02, 0, 0)), Pose((0, 0, 1)))
     hold = model.links["l"].attach()
-    rebuild_heavier(model.links["l"])
+    rebuild_heavier(model)
     for _ in range(100):
         hold.shift(Pose((0.0, 0.0, 0.001)))
         world.step()

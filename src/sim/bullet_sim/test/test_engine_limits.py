@@ -10,7 +10,7 @@ import pytest
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.physics.collision_filters import Filters
+from bullet_sim.physics.collision_filters import CollisionFilters
 from bullet_sim.physics.limits import KEPT, MOST_POSITIONS
 from bullet_sim.physics.quiet import EngineError, pybullet
 from bullet_sim.pose import Pose
@@ -45,7 +45,7 @@ def engine_bodies(world: World) -> int:
 
 def assert_empty(world: World) -> None:
     """Nothing is left of what was to be there."""
-    assert not world.models and not world._client.rest.bodies and not world.lights
+    assert not world.models and not world._client.auto_disable.bodies and not world.lights
     assert not world._client.planes._places
     assert engine_bodies(world) == 0
     world.step(100)
@@ -78,7 +78,7 @@ def test_a_static_model_may_have_any_number_of_links(world):
     assert model.links["l299"].pose.position == pytest.approx((299, 0, 2))
     below = np.array([(n, 0.0, 0.0) for n in range(300)])
     assert all(world.cast_rays(below + np.array((0.0, 0.0, 9.0)), below).fraction < 1.0)
-    model.links["l299"].move(Pose((299, 5, 2)), model.links["l299"].twist)
+    model.move_link(model.links["l299"], Pose((299, 5, 2)), model.links["l299"].twist)
     assert model.links["l0"].pose.position == pytest.approx((0, 5, 2))
     world.delete("m")
     assert_empty(world)
@@ -94,7 +94,7 @@ def test_what_a_failed_spawn_made_is_taken_out(world, monkeypatch, fails):
     elif fails == "show":
         monkeypatch.setattr(world, "_show", refuse)
     else:
-        monkeypatch.setattr(Filters, fails, refuse)
+        monkeypatch.setattr(CollisionFilters, fails, refuse)
     for text in (PLANE, f'<model name="m"><link name="a">{BOX}</link><link name="b">{BOX}</link>'
                  "</model>"):
         if fails == "_has_to_be_told" and text is PLANE:
@@ -105,7 +105,7 @@ def test_what_a_failed_spawn_made_is_taken_out(world, monkeypatch, fails):
 
 
 def test_pairs_that_a_failed_spawn_told_the_engine_of_are_untold(world, monkeypatch):
-    told, tell, asked = [], world._client.call, []
+    told, tell, asked = [], world._client.change, []
 
     def note(function, *args, **keywords):
         if function is pybullet.setCollisionFilterPair:
@@ -118,8 +118,8 @@ def test_pairs_that_a_failed_spawn_told_the_engine_of_are_untold(world, monkeypa
             raise EngineError("no")
         return True
 
-    monkeypatch.setattr(world._client, "call", note)
-    monkeypatch.setattr(Filters, "_has_to_be_told", refuse_the_second)
+    monkeypatch.setattr(world._client, "change", note)
+    monkeypatch.setattr(CollisionFilters, "_has_to_be_told", refuse_the_second)
     links = "".join(f'<link name="{name}">{BOX}</link>' for name in "abc")
     with pytest.raises(EngineError):
         world.spawn(read(f'<model name="m">{links}</model>'))

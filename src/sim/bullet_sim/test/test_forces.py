@@ -107,7 +107,7 @@ def test_other_masses_in_full_motion():
     link = model.links["body"]
     model.set_twist(Twist((1.0, 0, 0), (0, 0, 2.0)))
     before = link.pose
-    link.change(Inertial(4.0, Pose((0.5, 0, 0)), INERTIA), gravity=True)
+    model.change_link(link, Inertial(4.0, Pose((0.5, 0, 0)), INERTIA), gravity=True)
     assert link.pose.position == near(before.position)
     assert link.twist.linear == near((1.0, 0, 0)) and link.twist.angular == near((0, 0, 2.0))
     model.set_twist(Twist())
@@ -123,11 +123,12 @@ def test_other_masses_in_full_motion():
 
 def test_gravity_can_be_switched_off_and_on():
     world = space(BOX, gravity=(0, 0, -10.0))
-    link = world.link("box::body")
-    link.change(link.description.inertial, gravity=False)
+    model = world.model("box")
+    link = model.links["body"]
+    model.change_link(link, link.description.inertial, gravity=False)
     world.step(100)
     assert link.twist.linear[2] == near(0.0)
-    link.change(link.description.inertial, gravity=True)
+    model.change_link(link, link.description.inertial, gravity=True)
     world.step(100)
     assert link.twist.linear[2] == near(-1.0)
 
@@ -153,8 +154,10 @@ def test_motors_and_what_lasers_see_outlive_a_change():
     model = world.model("arm")
     group = model.joint_groups(["hinge"])[0]
     model.joint("hinge").drive_velocity(0.5, 10.0)
-    model.links["tip"].change(Inertial(2.0, inertia=INERTIA), gravity=False)
-    world.link("lamp::body").change(Inertial(2.0, inertia=INERTIA), gravity=False)
+    for name in ("arm::tip", "lamp::body"):
+        link = world.link(name)
+        world.model(link.model.name).change_link(
+            link, Inertial(2.0, inertia=INERTIA), gravity=False)
     world.step(50)
     assert group.states()[0][1] == pytest.approx(0.5, abs=1e-3)
     assert len(world._client.retro) == 1
@@ -165,7 +168,7 @@ def test_a_link_is_put_somewhere_with_its_joints():
     model = world.model("arm")
     joint, tip = model.joint("hinge"), model.links["tip"]
     joint.reset(0.5, 0.25)
-    tip.move(Pose((1.0, 2.0, 3.0)), Twist((0.1, 0, 0), (0, 0, 1.0)))
+    model.move_link(tip, Pose((1.0, 2.0, 3.0)), Twist((0.1, 0, 0), (0, 0, 1.0)))
     assert tip.pose.position == near((1.0, 2.0, 3.0)) and tip.pose.rpy() == near((0, 0, 0))
     assert tip.twist.linear == near((0.1, 0, 0)) and tip.twist.angular == near((0, 0, 1.0))
     assert (joint.position, joint.velocity) == near((0.5, 0.25))

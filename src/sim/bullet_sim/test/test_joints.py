@@ -6,6 +6,7 @@ import pytest
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
+from bullet_sim.joint import LoopJoint
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
@@ -285,13 +286,13 @@ def test_a_gearbox_without_a_body_to_refer_to_is_one_warning(world, caplog):
 
 # --- loops
 
-def four_bar(last: str = "revolute") -> str:
+def four_bar(last: str = "revolute", third: str = "revolute") -> str:
     """Two cranks of 0.5 m, 1 m apart, and a coupler between their upper ends."""
     return (link("left", com="0 0 0.25 0 0 0") + link("right", "1 0 0 0 0 0", com="0 0 0.25 0 0 0")
             + link("bar", "0 0 0.5 0 0 0", com="0.5 0 0 0 0 0")
             + joint("a", "revolute", "world", "left", axis("0 1 0"))
             + joint("b", "revolute", "left", "bar", axis("0 1 0"))
-            + joint("c", "revolute", "world", "right", axis("0 1 0"))
+            + joint("c", third, "world", "right", axis("0 1 0"))
             + joint("d", last, "right", "bar", "<pose>1 0 0 0 0 0</pose>" + axis("0 1 0")))
 
 
@@ -314,7 +315,7 @@ def test_a_four_bar_loop_stays_closed(world, caplog, last):
 
 def test_the_joint_that_closes_a_loop_can_be_read_and_driven(world):
     model = world.spawn(read(four_bar()))
-    closing = next(joint for joint in model.joints.values() if type(joint).__name__ == "LoopJoint")
+    closing = next(joint for joint in model.joints.values() if isinstance(joint, LoopJoint))
     assert set(model.joints) == set("abcd")
     for _ in range(300):
         model.joint("a").drive_velocity(1.0, 1000.0)
@@ -322,6 +323,18 @@ def test_the_joint_that_closes_a_loop_can_be_read_and_driven(world):
     sign = {"c": 1.0, "d": -1.0, "b": -1.0}[closing.name]
     assert closing.position == pytest.approx(sign * 0.3, abs=5e-3)
     assert closing.velocity == pytest.approx(sign * 1.0, abs=1e-2)
+
+
+def test_a_ball_that_closes_a_loop_is_reset_with_the_others(world):
+    model = world.spawn(read(four_bar(third="ball")))
+    (closing,) = [joint for joint in model.joints.values() if isinstance(joint, LoopJoint)]
+    assert closing.description.type == "ball"
+    for _ in range(300):
+        model.joint("a").drive_velocity(1.0, 1000.0)
+        world.step()
+    world.reset_models()
+    assert model.joint("a").position == pytest.approx(0.0, abs=1e-6)
+    assert model.links["bar"].pose.position == pytest.approx((0, 0, 0.5), abs=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["fixed", "prismatic"])
@@ -343,7 +356,7 @@ def test_a_loop_closed_by_a_fixed_or_sliding_joint(world, kind):
 def test_loops_and_springs_outlive_a_change_of_masses(world):
     model = world.spawn(read(four_bar()))
     bar = model.links["bar"]
-    bar.change(bar.description.inertial, gravity=False)
+    model.change_link(bar, bar.description.inertial, gravity=False)
     for _ in range(1000):
         model.joint("a").drive_velocity(1.0, 1000.0)
         world.step()

@@ -23,7 +23,7 @@ from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.sensors.odometry import WheelOdometry, true_odometry
-from bullet_sim.tick_rate import Schedule
+from bullet_sim.tick_rate import TickRate
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
@@ -124,7 +124,7 @@ def drive(world: World, forward: float, yaw_rate: float, seconds: float):
     left, right = model.joint("left_joint"), model.joint("right_joint")
     geometry = DiffDriveParameters(0.288, 0.066, 1.0, 10.0)
     train, counted = DiffDrive(left, right, geometry), WheelOdometry(0.288, 0.066)
-    schedule = Schedule(30.0, world.timestep)
+    tick_rate = TickRate(30.0, world.timestep)
     train.command(forward, yaw_rate)
     start, turned, last_yaw = None, 0.0, 0.0
     for tick in range(round((seconds + 1.0) / world.timestep)):
@@ -132,7 +132,7 @@ def drive(world: World, forward: float, yaw_rate: float, seconds: float):
             start = model.pose
             counted.restart(world.time)
             turned = 0.0
-        if schedule.due(world.tick):
+        if tick_rate.due(world.tick):
             train.update(1 / 30)
         world.step()
         counted.update(world.time, left.velocity, right.velocity)
@@ -334,14 +334,18 @@ def test_time_is_a_whole_number_of_steps():
 
 
 def test_schedule_keeps_its_long_run_rate():
-    schedule = Schedule(30.0, 0.001)
-    due = [tick for tick in range(1, 3001) if schedule.due(tick)]
+    tick_rate = TickRate(30.0, 0.001)
+    due = [tick for tick in range(1, 3001) if tick_rate.due(tick)]
     assert due[:3] == [34, 67, 100]
     assert len(due) == 90
-    every = Schedule(0.0, 0.001)
-    schedule.restart(1)
-    assert [tick for tick in range(2, 101) if schedule.due(tick)] == [35, 68]
-    assert (schedule.next_tick(2), schedule.next_tick(35), schedule.next_tick(36)) == (35, 68, 68)
-    schedule.restart(100, 0.01)  # steps ten times as long
-    assert [tick for tick in range(101, 111) if schedule.due(tick)] == [104, 107, 110]
+    every = TickRate(0.0, 0.001)
+    tick_rate.restart(1)
+    assert [tick for tick in range(2, 101) if tick_rate.due(tick)] == [35, 68]
+    assert (tick_rate.next_tick(2), tick_rate.next_tick(35), tick_rate.next_tick(36)) == (
+        35,
+        68,
+        68,
+    )
+    tick_rate.restart(100, 0.01)  # steps ten times as long
+    assert [tick for tick in range(101, 111) if tick_rate.due(tick)] == [104, 107, 110]
     assert all(every.due(tick) for tick in range(1, 10))

@@ -32,7 +32,7 @@ def tiny():
     opened.close()
 
 
-def broken(_stages):
+def broken(_profiler):
     raise OSError("libEGL.so.1 is missing")
 
 

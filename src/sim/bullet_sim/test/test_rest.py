@@ -150,7 +150,7 @@ def test_rest_changes_no_result(counted, monkeypatch):
     for leave_out in (True, False):
         world = World()
         if not leave_out:
-            monkeypatch.setattr("bullet_sim.physics.auto_disable.STILL_SPEED", 0.0)
+            monkeypatch.setattr("bullet_sim.physics.auto_disable.REST_SPEED", 0.0)
         world.spawn(ground())
         drive = Drive(world)
         world.step(30_000)
@@ -257,7 +257,7 @@ def test_a_robot_that_creeps_on_command_is_solved_and_arrives(counted, speed):
 
 def test_a_slope_holds_a_box_while_a_robot_drives_briskly(counted):
     """Then steps are solved less exactly; and exactly again when it stands."""
-    world, rest = counted.world, counted.world._client.rest
+    world, rest = counted.world, counted.world._client.auto_disable
     world.spawn(ground())
     slope = Pose.from_xyz_rpy((0.0, 3.0, 1.0), (0.0, 0.3, 0.0))
     plate = Collision("plate", Box((2.0, 2.0, 0.1)), surface=Surface(mu=1.0))
@@ -269,11 +269,11 @@ def test_a_slope_holds_a_box_while_a_robot_drives_briskly(counted):
     start = held.pose.position
     drive.command(0.2, 0.0)
     counted.run(5.0)
-    assert rest.brisk
+    assert rest.is_fast
     assert math.dist(held.pose.position, start) < 1e-3
     drive.command(0.0, 0.0)
     counted.settle()
-    assert not rest.brisk
+    assert not rest.is_fast
 
 
 def test_a_motor_against_a_stop_is_solved(counted):

@@ -9,7 +9,7 @@ from bullet_sim.description import Noise
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters, attitude_error
 from bullet_sim.sensors.gps import GeoReference
 from bullet_sim.sensors.noise import SensorNoise
-from bullet_sim.tick_rate import Schedule
+from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 
 
@@ -75,8 +75,8 @@ def test_noise_is_a_function_of_seed_name_and_tick(world):
     (30.0, False, [34, 67, 100]), (30.0, True, [34, 68, 102]), (50.0, True, [20, 40, 60]),
     (0.0, True, [1, 2, 3]), (5000.0, True, [1, 2, 3])])
 def test_rates_that_are_counted_from_the_last_time(rate_hz, whole_steps, due):
-    schedule = Schedule(rate_hz, 0.001, whole_steps=whole_steps)
+    tick_rate = TickRate(rate_hz, 0.001, whole_steps=whole_steps)
     ticks = [0]
     for _ in due:
-        ticks.append(schedule.next_tick(ticks[-1]))
+        ticks.append(tick_rate.next_tick(ticks[-1]))
     assert ticks[1:] == due

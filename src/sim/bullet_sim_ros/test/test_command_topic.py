@@ -12,7 +12,7 @@ from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 
 
-class Host:
+class PluginContext:
     """A controller's host without ROS: it keeps what the controller would do with a message."""
 
     def __init__(self, name="/r/c", **values):
@@ -34,7 +34,7 @@ def clock(monkeypatch):
 
 
 def test_a_flood_of_bad_commands_is_one_line_in_ten_seconds(clock, caplog):
-    one, all_joints = Host("/r/one"), Host("/r/all")
+    one, all_joints = PluginContext("/r/one"), PluginContext("/r/all")
     command_topic.subscribe_one(one, Commands())
     command_topic.subscribe_all(all_joints, Commands(), 2)
     with caplog.at_level(logging.WARNING, "bullet_sim.control"):
@@ -48,15 +48,15 @@ def test_a_flood_of_bad_commands_is_one_line_in_ten_seconds(clock, caplog):
 
 
 def test_a_good_command_among_bad_ones_is_taken(clock):
-    host, commands = Host(), Commands()
-    command_topic.subscribe_one(host, commands)
-    host.take(Float64(float("inf")))
-    host.take(Float64(1.5))()
+    context, commands = PluginContext(), Commands()
+    command_topic.subscribe_one(context, commands)
+    context.take(Float64(float("inf")))
+    context.take(Float64(1.5))()
     assert commands.at(0.0) == (1.5,)
 
 
 def test_a_negative_time_out_is_an_error_that_names_the_parameter():
-    assert command_topic.command_timeout(Host()) == 0.0
-    assert command_topic.command_timeout(Host(command_timeout=0.2)) == 0.2
+    assert command_topic.command_timeout(PluginContext()) == 0.0
+    assert command_topic.command_timeout(PluginContext(command_timeout=0.2)) == 0.2
     with pytest.raises(PluginError, match=r"/r/c/command_timeout is -0\.2, .*not negative"):
-        command_topic.command_timeout(Host(command_timeout=-0.2))
+        command_topic.command_timeout(PluginContext(command_timeout=-0.2))

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.parameters import ControllerParameters
@@ -21,10 +21,10 @@ LIMIT = 5.0  # s, wall
 class Recorder(registry.Controller):
     """Notes what it is asked to do."""
 
-    def __init__(self, host):
-        super().__init__(host)
-        for joint in CLAIMS[host.name]:
-            host.claim(joint)
+    def __init__(self, context):
+        super().__init__(context)
+        for joint in CLAIMS[context.name]:
+            context.claim(joint)
         self.calls = []
 
     def start(self, time):
@@ -32,9 +32,9 @@ class Recorder(registry.Controller):
 
     def update(self, time, period):
         self.calls.append(("update", time, period))
-        for handle in self.host.claims.values():
+        for handle in self.context.claims.values():
             handle.command = 7.0
-        if self.host.name == "failing":
+        if self.context.name == "failing":
             raise ValueError("out of order")
 
     def stop(self, time):
@@ -42,17 +42,17 @@ class Recorder(registry.Controller):
 
 
 class Refusing(registry.Controller):
-    def __init__(self, host):
+    def __init__(self, context):
         raise PluginError("joint 'x' is bent")
 
 
-class FakeHost:
+class FakeContext:
     def __init__(self, name):
         self.name, self.namespace, self.closed = name, f"/r/{name}", False
         kind = {"refusing": "test/Refusing", "unknown": "test/Recorde", "untyped": None}.get(
             name, "test/Recorder")
         self.parameters = ControllerParameters(self.namespace, {"type": kind} if kind else {})
-        self.claims, self.duties = {}, []
+        self.claims, self.tasks = {}, []
 
     def claim(self, joint):
         self.claims[joint] = CommandHandle(JointHandle(joint, "continuous"), "effort")
@@ -71,16 +71,16 @@ class Bench:
     """A manager whose loop turns in a thread of its own, as the simulation's does."""
 
     def __init__(self, *names):
-        self.hosts = {}
+        self.contexts = {}
         self.ended = False
-        self.manager = ControllerManager(self.open_host, lambda: self.ended)
+        self.manager = ControllerManager(self.open_context, lambda: self.ended)
         self.loop = None
         for name in names:
             self.manager.load(name)
 
-    def open_host(self, name):
-        self.hosts[name] = FakeHost(name)
-        return self.hosts[name]
+    def open_context(self, name):
+        self.contexts[name] = FakeContext(name)
+        return self.contexts[name]
 
     def __enter__(self):
         self._end = threading.Event()
@@ -122,12 +122,12 @@ def test_from_loaded_to_unloaded():
         calls = bench.calls("wheel")
         assert bench.states()["wheel"] == "stopped"
         assert [call[0] for call in (calls[0], calls[1], calls[-1])] == ["start", "update", "stop"]
-        assert bench.hosts["wheel"].claims["left"].command == 0.0
+        assert bench.contexts["wheel"].claims["left"].command == 0.0
         bench.switch(["wheel"])
         bench.switch(stop=["wheel"])
         bench.manager.unload("wheel")
         assert list(bench.states()) == ["reader"]
-        assert bench.hosts["wheel"].closed
+        assert bench.contexts["wheel"].closed
 
 
 @pytest.mark.parametrize(("name", "parts"), [
@@ -143,7 +143,7 @@ def test_what_cannot_be_loaded(name, parts):
     with pytest.raises(ManagerError) as error:
         bench.manager.load(name)
     assert all(part in str(error.value) for part in parts)
-    assert bench.hosts[name].closed
+    assert bench.contexts[name].closed
     assert bench.manager.list() == []
 
 
@@ -239,7 +239,7 @@ def test_a_faulty_controller_is_stopped_and_the_others_go_on(caplog):
     bench.manager.update(9.0, 0.001)
     assert bench.states() == {"failing": "aborted", "wheel": "running"}
     assert "Controller 'failing' failed and is stopped: ValueError: out of order" in caplog.text
-    assert bench.hosts["failing"].claims["right"].command == 0.0
+    assert bench.contexts["failing"].claims["right"].command == 0.0
     assert bench.calls("wheel")[-1] == ("update", 9.0, 0.001)
     assert len(bench.calls("failing")) == 2
 
@@ -266,19 +266,19 @@ def test_reloading_needs_force_while_there_are_controllers():
 def test_duties_are_done_while_loaded_and_closing_ends_all():
     bench = Bench()
     done = []
-    open_host = bench.manager._open_host
+    open_context = bench.manager._open_context
 
     def with_duty(name):
-        host = open_host(name)
-        host.duties.append((Pace(100.0), lambda: done.append(name)))
-        return host
+        context = open_context(name)
+        context.tasks.append((Rate(100.0), lambda: done.append(name)))
+        return context
 
-    bench.manager._open_host = with_duty
+    bench.manager._open_context = with_duty
     bench.manager.load("reader")
     for tick in range(21):
         bench.manager.update(tick * 0.001, 0.001)
     assert done == ["reader"] * 3
     bench.manager.close()
-    assert bench.hosts["reader"].closed
+    assert bench.contexts["reader"].closed
     with pytest.raises(ManagerError, match="was deleted"):
         bench.manager.load("arm")

@@ -14,10 +14,10 @@ class Waiting:
 
     def joined(self, name, topic="/cmd_vel"):
         """What a plugin does with a message."""
-        self.lockstep.join(topic, name)
+        self.lockstep.subscribe(topic, name)
 
         def take():
-            self.mailbox.leave(lambda: self.commands.append(name))
+            self.mailbox.post(lambda: self.commands.append(name))
             self.lockstep.hear(topic, name)
         return take
 
@@ -43,7 +43,7 @@ def test_the_world_waits_until_every_plugin_has_its_command():
 def test_of_a_plugin_that_is_gone_nothing_is_awaited():
     loop = Waiting()
     front, _ = loop.joined("front"), loop.joined("rear")
-    loop.lockstep.leave("/cmd_vel", "rear")
+    loop.lockstep.unsubscribe("/cmd_vel", "rear")
     front()
     assert loop.goes_on()
 

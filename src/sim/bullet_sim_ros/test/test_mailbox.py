@@ -44,15 +44,15 @@ def test_an_exception_reaches_the_caller():
 def test_what_was_left_runs_in_order():
     mailbox, seen = Mailbox(), []
     for number in range(3):
-        mailbox.leave(lambda number=number: seen.append(number))
+        mailbox.post(lambda number=number: seen.append(number))
     mailbox.run_pending()
     assert seen == [0, 1, 2]
 
 
 def test_what_was_left_and_fails_is_logged_and_the_rest_runs(caplog):
     mailbox, seen = Mailbox(), []
-    mailbox.leave(lambda: 1 / 0)
-    mailbox.leave(lambda: seen.append(1))
+    mailbox.post(lambda: 1 / 0)
+    mailbox.post(lambda: seen.append(1))
     mailbox.run_pending()
     assert seen == [1]
     assert "ZeroDivisionError: division by zero" in caplog.text

@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import pytest
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.world import World
 from bullet_sim_ros import real_time_factor as speed_module
 from bullet_sim_ros.pacer import CATCH_UP, SLACK, Pacer
-from bullet_sim_ros.real_time_factor import Speed
-from bullet_sim_ros.scheduler import Agenda
+from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
+from bullet_sim_ros.scheduler import Scheduler
 
 
 class Clock:
@@ -86,64 +86,64 @@ def world():
     made.close()
 
 
-def advance(world, agenda, until):
+def advance(world, scheduler, until):
     """As the loop does; the ticks at which it stopped."""
     stops = []
     while world.tick < until:
-        world.step(agenda.next_tick() - world.tick)
-        agenda.run()
+        world.step(scheduler.next_tick() - world.tick)
+        scheduler.run()
         stops.append(world.tick)
     return stops
 
 
 def test_each_duty_is_done_at_its_rate_in_the_order_of_adding(world):
-    agenda, done = Agenda(world), []
+    scheduler, done = Scheduler(world), []
     for name, rate_hz in (("clock", 100.0), ("camera", 30.0), ("odometry", 30.0)):
-        agenda.add(rate_hz, lambda name=name: done.append((world.tick, name)))
-    advance(world, agenda, 100)
+        scheduler.add(rate_hz, lambda name=name: done.append((world.tick, name)))
+    advance(world, scheduler, 100)
     assert [tick for tick, name in done if name == "clock"] == list(range(10, 101, 10))
     assert [tick for tick, name in done if name == "camera"] == [34, 67, 100]
     assert done[-3:] == [(100, "clock"), (100, "camera"), (100, "odometry")]
 
 
 def test_what_nobody_wants_neither_runs_nor_stops_the_loop(world):
-    agenda, wanted, done = Agenda(world), [False], []
-    agenda.add(0.0, lambda: done.append(world.tick), lambda: wanted[0])
-    assert advance(world, agenda, 20) == [10, 20]
+    scheduler, wanted, done = Scheduler(world), [False], []
+    scheduler.add(0.0, lambda: done.append(world.tick), lambda: wanted[0])
+    assert advance(world, scheduler, 20) == [10, 20]
     wanted[0] = True
-    assert advance(world, agenda, 25) == [21, 22, 23, 24, 25]
+    assert advance(world, scheduler, 25) == [21, 22, 23, 24, 25]
     assert done == [21, 22, 23, 24, 25]
 
 
 def test_a_duty_may_be_removed_while_another_runs(world):
-    agenda, done = Agenda(world), []
-    agenda.add(1000.0, lambda: agenda.remove(second))
-    second = agenda.add(1000.0, lambda: done.append(world.tick))
-    advance(world, agenda, 3)
+    scheduler, done = Scheduler(world), []
+    scheduler.add(1000.0, lambda: scheduler.remove(second))
+    second = scheduler.add(1000.0, lambda: done.append(world.tick))
+    advance(world, scheduler, 3)
     assert done == [1]  # it was under way when it was removed
 
 
 def test_rates_follow_a_new_step_length(world):
-    agenda, done = Agenda(world), []
-    agenda.add(100.0, lambda: done.append(world.time))
-    advance(world, agenda, 20)
+    scheduler, done = Scheduler(world), []
+    scheduler.add(100.0, lambda: done.append(world.time))
+    advance(world, scheduler, 20)
     world.configure_physics(max_step_size=0.002)
-    agenda.restart()
-    advance(world, agenda, 20)
+    scheduler.restart()
+    advance(world, scheduler, 20)
     assert done == pytest.approx([0.01, 0.02, 0.03, 0.04])
 
 
 def test_slow_time_is_one_warning_in_ten_seconds_that_names_the_costliest(monkeypatch, caplog):
     clock = Clock()
     monkeypatch.setattr(speed_module.time, "monotonic", clock)
-    stages = Stages()
-    speed = Speed(stages, profile=False)
+    profiler = Profiler()
+    speed = RealTimeFactorMonitor(profiler, profile=False)
     with caplog.at_level(logging.WARNING, logger="rosout"):
         for number in range(1, 2501):  # 25 s at half of real time
             clock.now += 0.01
-            stages.add("draw", 0.008)
-            stages.add("physics", 0.001)
-            stages.add("wait", 0.009)
+            profiler.add("draw", 0.008)
+            profiler.add("physics", 0.001)
+            profiler.add("wait", 0.009)
             speed.update(number * 0.005, 1.0)
     assert speed.real_time_factor == pytest.approx(0.5, abs=0.01)
     messages = [record.getMessage() for record in caplog.records]
@@ -156,7 +156,7 @@ def test_slow_time_is_one_warning_in_ten_seconds_that_names_the_costliest(monkey
 def test_time_that_keeps_up_is_no_warning(monkeypatch, caplog, each, wanted):
     clock = Clock()
     monkeypatch.setattr(speed_module.time, "monotonic", clock)
-    speed = Speed(Stages(), profile=False)
+    speed = RealTimeFactorMonitor(Profiler(), profile=False)
     with caplog.at_level(logging.WARNING, logger="rosout"):
         for number in range(1, 2501):
             clock.now += 0.01
@@ -167,13 +167,13 @@ def test_time_that_keeps_up_is_no_warning(monkeypatch, caplog, each, wanted):
 def test_stages_inside_others_count_once(monkeypatch):
     clock = Clock()
     monkeypatch.setattr("bullet_sim.profiler.time.perf_counter", clock)
-    stages = Stages()
-    with stages.measure("plugins"):
+    profiler = Profiler()
+    with profiler.measure("plugins"):
         clock.now += 1.0
         for _ in range(2):
-            with stages.measure("scene"):
+            with profiler.measure("scene"):
                 clock.now += 0.25
-    assert stages.totals() == {"scene": 0.5, "plugins": 1.0}
-    lines = stages.table(2.0).splitlines()
+    assert profiler.totals() == {"scene": 0.5, "plugins": 1.0}
+    lines = profiler.table(2.0).splitlines()
     assert lines[1].split() == ["plugins", "1", "1000.000", "1000.00", "50.0%"]
     assert lines[2].split() == ["scene", "2", "250.000", "250.00", "25.0%"]

@@ -16,8 +16,8 @@ from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import registry
 from bullet_sim_ros.plugin_host.parameters import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
-from bullet_sim_ros.plugin_host.services import Shared
-from bullet_sim_ros.scheduler import Agenda
+from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.services.models import with_namespace
 
 
@@ -65,8 +65,8 @@ def world():
 def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
-    agenda = Agenda(world)
-    return load_plugins(Shared(world, None, agenda, None, None), model), agenda
+    scheduler = Scheduler(world)
+    return load_plugins(SimServices(world, None, scheduler, None, None), model), scheduler
 
 
 def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):
@@ -86,14 +86,16 @@ def good(monkeypatch):
 
     @plugin("libgood.so")
     class Good:
-        def __init__(self, host):
-            self.broken = host.parameters.has("broken")
-            (host.each_step if host.parameters.has("stepwise") else self.fast(host))(self.update)
-            host.on_reset(self.update)
+        def __init__(self, context):
+            self.broken = context.parameters.has("broken")
+            (context.each_step if context.parameters.has("stepwise") else self.fast(context))(
+                self.update
+            )
+            context.on_reset(self.update)
 
         @staticmethod
-        def fast(host):
-            return lambda action: host.every(1000.0, action)
+        def fast(context):
+            return lambda action: context.every(1000.0, action)
 
         def update(self):
             if self.broken:
@@ -124,13 +126,13 @@ def test_a_plugin_that_cannot_load_is_one_error_and_the_others_load(
 
 @pytest.mark.parametrize("body", ["<broken/>", "<broken/><stepwise/>"])
 def test_a_plugin_that_fails_at_work_is_switched_off_with_one_error(world, caplog, good, body):
-    (broken, sound), agenda = load(world, described("libgood.so", body), described("libgood.so"))
+    (broken, sound), scheduler = load(world, described("libgood.so", body), described("libgood.so"))
     with caplog.at_level(logging.ERROR):
         for _ in range(5):
-            world.step(agenda.next_tick() - world.tick)
-            agenda.run()
-        for host in (broken, sound):
-            host.reset()
+            world.step(scheduler.next_tick() - world.tick)
+            scheduler.run()
+        for context in (broken, sound):
+            context.reset()
     assert [record.getMessage() for record in caplog.records] == [
         "model robot: plugin p (libgood.so) failed and is switched off: "
         "ZeroDivisionError: division by zero"]

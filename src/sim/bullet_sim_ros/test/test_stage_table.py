@@ -6,18 +6,18 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim_ros.array_image import ArrayImage
 
 
 def test_serialising_is_no_part_of_sending():
-    stages = Stages()
-    image = ArrayImage(np.zeros((2000, 2000, 3), np.uint8), stages, encoding="rgb8")
+    profiler = Profiler()
+    image = ArrayImage(np.zeros((2000, 2000, 3), np.uint8), profiler, encoding="rgb8")
     start = time.perf_counter()
-    with stages.measure("send"):
+    with profiler.measure("send"):
         image.serialize(BytesIO())
     elapsed = time.perf_counter() - start
-    totals = stages.totals()
+    totals = profiler.totals()
     assert set(totals) == {"send", "serialise"}
     assert sum(totals.values()) <= elapsed
     assert totals["send"] < totals["serialise"] == pytest.approx(elapsed, rel=0.5)

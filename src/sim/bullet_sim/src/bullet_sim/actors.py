@@ -14,7 +14,7 @@ from bullet_sim.pose import Pose, Quaternion, normalised
 PERIOD = 1 / 30  # s, simulated: as often as Gazebo moves them
 
 
-class Walker:
+class Actor:
     """One actor. What it walks into is not its concern: it is put where its script has it."""
 
     def __init__(self, model: Model, trajectory: Trajectory):

@@ -1,21 +1,18 @@
-"""Joints of a model: those the engine drives, those held fixed, and those that close a loop."""
+"""Joints of a model: driven by the engine, passive, and closing a loop."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from bullet_sim.description import JointDescription
+from bullet_sim.link import Link
 from bullet_sim.physics.axes import TRAVEL
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.reaction import joint_reaction
 from bullet_sim.physics.urdf_text import NO_LIMIT
 from bullet_sim.pose import Pose, Vector3, rotate
-
-if TYPE_CHECKING:
-    from bullet_sim.model import Model
 
 
 class Joint:
@@ -91,7 +88,7 @@ class Joint:
         return joint_reaction(self._body, self._body.carried_by(self.name))
 
 
-class HeldJoint:
+class PassiveJoint:
     """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
 
     second_axis: Joint | None = None
@@ -140,26 +137,24 @@ class HeldJoint:
         return joint_reaction(self._body, self._body.carried_by(self.name))
 
 
-class LoopJoint(HeldJoint):
+class LoopJoint(PassiveJoint):
     """A joint that closes a loop: read from where its links are, driven by pushing at both."""
 
-    def __init__(self, description: JointDescription, model: Model):
+    def __init__(self, description: JointDescription, parent: Link | None, child: Link | None,
+                 pose_world: Pose):
+        """`parent` or `child` is None where it is the world, of which `pose_world` is the model."""
         self.description = description
         self.name = description.name
-        self._model = model
-        child = self._described(description.child)
-        self._frame = child * description.pose  # of the joint, in the model
-        self._in_parent = self._described(description.parent).inverse() * self._frame
-
-    def _described(self, link: str) -> Pose:
-        return next((d.pose for d in self._model.description.links if d.name == link), Pose())
+        self._parent, self._child = parent, child
+        self._pose_world = pose_world
+        frame = _described(child) * description.pose  # of the joint, in the model
+        self._in_parent = _described(parent).inverse() * frame
 
     def _ends(self) -> tuple[Pose, Pose]:
         """The joint's frame in the world, as the parent has it and as the child has it."""
-        model, joint = self._model, self.description
-        parent, child = (model.links[end].pose if end in model.links else model.initial_pose
-                         for end in (joint.parent, joint.child))
-        return parent * self._in_parent, child * joint.pose
+        parent, child = (self._pose_world if link is None else link.pose
+                         for link in (self._parent, self._child))
+        return parent * self._in_parent, child * self.description.pose
 
     @property
     def position(self) -> float:
@@ -175,23 +170,26 @@ class LoopJoint(HeldJoint):
     @property
     def velocity(self) -> float:
         """Rate of `position`."""
-        joint, links = self.description, self._model.links
+        joint = self.description
         axis = rotate(self._ends()[0].orientation, joint.axis)
         part = "linear" if joint.type == "prismatic" else "angular"
-        rates = [_dot(getattr(links[end].twist, part), axis) if end in links else 0.0
-                 for end in (joint.parent, joint.child)]
-        return rates[1] - rates[0]
+        parent, child = (0.0 if link is None else _dot(getattr(link.twist, part), axis)
+                         for link in (self._parent, self._child))
+        return child - parent
+
+    def reset(self, position: float, velocity: float = 0.0) -> None:
+        """No effect: where the links are decides, and the loop's other joints put them there."""
 
     def drive_effort(self, effort: float) -> None:
         """Effort (N m or N) during the next step."""
-        joint, links = self.description, self._model.links
-        axis = rotate(self._ends()[0].orientation, joint.axis)
-        for end, sign in ((joint.child, effort), (joint.parent, -effort)):
-            if end in links:
+        axis = rotate(self._ends()[0].orientation, self.description.axis)
+        for link, sign in ((self._child, effort), (self._parent, -effort)):
+            if link is not None:
                 push = tuple(sign * part for part in axis)
-                still = (0.0, 0.0, 0.0)
-                links[end].apply_force(
-                    *((push, still) if joint.type == "prismatic" else (still, push)))
+                if self.description.type == "prismatic":
+                    link.apply_force(push)
+                else:
+                    link.apply_force((0.0, 0.0, 0.0), push)
 
     add_effort = drive_effort
 
@@ -200,10 +198,10 @@ class LoopJoint(HeldJoint):
         return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
-class OddGroup:
+class SingleJointGroup:
     """A joint that is not the engine's own, in the place of a JointGroup."""
 
-    def __init__(self, joint: HeldJoint):
+    def __init__(self, joint: PassiveJoint):
         self.names = [joint.name]
         self._joint = joint
 
@@ -215,6 +213,10 @@ class OddGroup:
         """Effort (N m or N) during the next step."""
         if any(efforts):
             self._joint.drive_effort(efforts[0])
+
+
+def _described(link: Link | None) -> Pose:
+    return Pose() if link is None else link.description.pose
 
 
 def _dot(a, b) -> float:

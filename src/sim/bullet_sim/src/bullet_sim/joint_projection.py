@@ -6,25 +6,22 @@ In Gazebo such a link stands anywhere for one step; then its joints pull it back
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-from bullet_sim.physics.body import Body
+from bullet_sim.link import Link
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import Twist, shifted_twist, twist_difference
 
-if TYPE_CHECKING:
-    from bullet_sim.link import Link
 
+def project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
+    """Name, position and rate (rad or m) of the joint that carries `link`, nearest to these.
 
-def put_in_joint(link: Link, body: Body, pose: Pose, twist: Twist) -> None:
-    """Give the joint that carries `link` the position and rate that come nearest to these.
-
-    `pose` and `twist` (of the link's origin) are in the world. What hangs on the link goes with it;
-    a link that is fixed to the world, or hangs on a ball, stays.
+    `pose` and `twist` (of the link's origin) are in the world. None of a link that is fixed to the
+    world or hangs on a ball joint.
     """
+    body = link.body
     carrier = body.moving_carrier(link.name)
     if carrier is None:
-        return
+        return None
     joint, axis = carrier.joint, carrier.joint.axis
     frame = body.engine_frame(body.index(carrier.name))
     wanted = pose * link.pose.inverse() * frame
@@ -42,7 +39,7 @@ def put_in_joint(link: Link, body: Body, pose: Pose, twist: Twist) -> None:
     position = body.joint_state(joint.name)[0] + step
     if joint.type != "continuous" and joint.lower <= joint.upper:
         position = max(joint.lower, min(joint.upper, position))
-    link.model.reset_axis(joint.name, position, _dot(rotate(frame.orientation, axis), motion))
+    return joint.name, position, _dot(rotate(frame.orientation, axis), motion)
 
 
 def _dot(a, b) -> float:

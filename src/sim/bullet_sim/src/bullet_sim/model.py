@@ -3,38 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from bullet_sim.description import JointDescription, ModelDescription
+from bullet_sim.description import Inertial, JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.joint import HeldJoint, Joint, LoopJoint, OddGroup
+from bullet_sim.joint import Joint, LoopJoint, PassiveJoint, SingleJointGroup
+from bullet_sim.joint_projection import project_to_joint
 from bullet_sim.link import Link, gravity_compensation
-from bullet_sim.physics.assembly import WORLD, Tree, assemble, loose_joints
+from bullet_sim.model_state import ModelState
+from bullet_sim.physics.assembly import Tree, assemble, loop_joints
 from bullet_sim.physics.axes import SECOND
 from bullet_sim.physics.body import Body
+from bullet_sim.physics.body_joints import JointGroup
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.collision_filters import Filters
-from bullet_sim.physics.joint_group import JointGroup
+from bullet_sim.physics.collision_filters import CollisionFilters
+from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.physics.levelling import levelled
 from bullet_sim.physics.limits import check_trees
-from bullet_sim.physics.loop_constraints import Closures
+from bullet_sim.physics.loop_constraints import LoopConstraints
 from bullet_sim.pose import Pose, Vector3
-from bullet_sim.twist import STILL, Twist, shifted_twist
+from bullet_sim.twist import STILL, Twist, twist_difference
 
 
-class Model:
+class Model(ModelState):
     """A spawned description. Everything is in world coordinates unless a name says otherwise."""
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
-        self.name = name
-        self.description = description
-        self.static = description.static
-        self.initial_pose = pose
-        self.was_mended = False  # whether its motion has been no number once
-        self.bodies: list[Body] = []
-        self._rest = client.rest
-        self._set_pose = pose  # of a model without links
-        self._states: dict[str, tuple[Pose, Twist]] | None = None
+        super().__init__(name, description, pose)
+        self.has_recovered = False  # whether its motion has been no number once
+        self._auto_disable = client.auto_disable
         trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
         check_trees(name, trees)
         try:
@@ -47,9 +45,9 @@ class Model:
         description = self.description
         for tree in trees:
             self.bodies.append(Body(client, tree, pose))
-        loose = loose_joints(description, trees)
-        Closures(client, description, self.bodies, loose)
-        Filters(client, description, self.bodies)
+        loops = loop_joints(description, trees)
+        LoopConstraints(client, description, self.bodies, loops)
+        CollisionFilters(client, description, self.bodies)
         owner = {link.described: body for body in self.bodies for link in body.tree.links}
         self.links = {
             link.name: Link(self, link, owner[link.name]) for link in description.links
@@ -58,7 +56,7 @@ class Model:
             joint: Joint(body.joint_description(joint), body, self.forget)
             for body in self.bodies for joint in body.joint_names()
         }
-        self._find_joints(loose)
+        self._find_joints(loops)
         self._steady = [body for body in self.bodies if body.acts_steadily]
         self.note_weightless()
         self._start_joints()
@@ -72,72 +70,55 @@ class Model:
         if away:
             self.set_pose(pose)
 
-    def _find_joints(self, loose: Sequence[JointDescription]) -> None:
+    def _find_joints(self, loops: Sequence[JointDescription]) -> None:
         described = {joint.name: joint for joint in self.description.joints}
-        self.joints: dict[str, Joint | HeldJoint] = {
+        self.joints: dict[str, Joint | PassiveJoint] = {
             name: joint for name, joint in self._axes.items() if name in described}
         for name, joint in self.joints.items():
             joint.second_axis = self._axes.get(name + SECOND)
-        self.fixed_joints: dict[str, HeldJoint] = {}
+        self.fixed_joints: dict[str, PassiveJoint] = {}
         for body in self.bodies:
             for link in body.tree.links:
                 if link.carrier is not None and link.carrier.name not in self.joints:
-                    held = HeldJoint(described[link.carrier.name], body)
+                    held = PassiveJoint(described[link.carrier.name], body)
                     known = self.fixed_joints if held.description.type == "fixed" else self.joints
                     known[held.name] = held
-        self.joints |= {joint.name: LoopJoint(joint, self) for joint in loose
-                        if joint.type not in ("fixed", "gearbox")}
+        self.joints |= {
+            joint.name: LoopJoint(joint, self.links.get(joint.parent), self.links.get(joint.child),
+                                  self.initial_pose)
+            for joint in loops if joint.type not in ("fixed", "gearbox")}
 
-    # --- state
+    # --- motion
 
-    def forget(self) -> None:
-        """What was read of the engine is out of date."""
-        self._states = None
+    def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
+        """Put one of its links there, with that velocity (world axes).
 
-    def link_states(self) -> dict[str, tuple[Pose, Twist]]:
-        """Pose and twist of each link, read from the engine once a step."""
-        if self._states is None:
-            self._states = {}
-            for body in self.bodies:
-                self._states.update(body.link_states())
-            self._states.pop(WORLD, None)
-        return self._states
+        What joints hold it to goes along; joints keep their positions and rates. Of what is fixed
+        to the world, the link's own joint alone moves, as far as it can.
+        """
+        body = link.body
+        if body.tree.fixed_base and not self.static:
+            state = project_to_joint(link, pose, twist)
+            if state is not None:
+                name, position, rate = state
+                self._axes[name].reset(position, rate)
+            return
+        self.move_body(body, pose * link.pose.inverse())
+        if not body.tree.fixed_base:
+            body.add_twist(twist_difference(twist, link.twist), pose.position)
+            self.forget()
 
-    @property
-    def pose(self) -> Pose:
-        """Model frame: it stays where the first link has it."""
-        if not self.links or self.static:
-            return self._set_pose
-        first = self.description.links[0]
-        return self.link_states()[first.name][0] * first.pose.inverse()
+    def change_link(self, link: Link, inertial: Inertial, gravity: bool) -> None:
+        """Other mass, centre of mass and inertia of a link, and whether gravity pulls at it.
 
-    @property
-    def twist(self) -> Twist:
-        """Velocity of the model frame's origin, world axes."""
-        if not self.links or self.static:
-            return STILL
-        first = self.description.links[0]
-        pose, twist = self.link_states()[first.name]
-        return shifted_twist(twist, pose.position, self.pose.position)
-
-    def set_pose(self, pose: Pose) -> None:
-        """Move the model as a whole; joints keep their positions."""
-        change = pose * self.pose.inverse()
-        for body in self.bodies:
-            body.set_base_frame(change * body.base_frame())
-        self._set_pose = pose
-        self.forget()
-
-    def move_body(self, body: Body, change: Pose) -> None:
-        """Move one of its bodies, all of a static one's, by a displacement given in the world."""
-        for moved in self.bodies if self.static else [body]:
-            moved.set_base_frame(change * moved.base_frame())
-        self._set_pose = change * self._set_pose
-        self.forget()
-
-    def reset_axis(self, name: str, position: float, rate: float) -> None:
-        """Put what turns or slides in a joint, the second axis of one that has two among them."""
-        self._axes[name].reset(position, rate)
+        SimulationError, and nothing changes, where no body is like that.
+        """
+        check_inertial(inertial)
+        if not self.static:
+            link.body.change_inertial(link.name, inertial)
+            self.forget()
+        link.description = replace(link.description, inertial=inertial, gravity=gravity)
+        self.note_weightless()
 
     def set_twist(self, twist: Twist) -> None:
         """Move as a rigid whole whose model frame has that twist; joints stop turning."""
@@ -145,20 +126,13 @@ class Model:
             joint.reset(joint.position)
         self.set_velocity(twist)
 
-    def set_velocity(self, twist: Twist) -> None:
-        """Move as a whole with that twist of the model frame; joints go on turning."""
-        for body in self.bodies:
-            if not body.tree.held:
-                body.set_twist(twist, self.pose.position)
-        self.forget()
-
     def reset(self) -> None:
         """Back to the pose it was spawned at, joints at zero, everything still."""
         for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
         for body in self.bodies:
             body.set_base_frame(self.initial_pose * body.base_pose_model)
-        self._set_pose = self.initial_pose
+        self._fixed_pose = self.initial_pose
         self.forget()
         self.set_twist(STILL)
 
@@ -175,7 +149,7 @@ class Model:
 
     def before_step(self, gravity: Vector3) -> None:
         """Forces that act every step; gravity in m/s^2."""
-        if not (self._steady or self._weightless) or self._rest.reached:
+        if not (self._steady or self._weightless) or self._auto_disable.disabled:
             return  # at rest no step takes place, and the engine would add them up
         for body in self._steady:
             body.apply_steady()
@@ -191,7 +165,7 @@ class Model:
             raise UnknownName(f"link of model {self.name}", name, self.links)
         return self.links[name]
 
-    def joint(self, name: str) -> Joint | HeldJoint:
+    def joint(self, name: str) -> Joint | PassiveJoint:
         """The joint of that name; fixed ones are there too, but not among `joints`."""
         if name not in self.joints:
             name = self._without_scope(name)
@@ -216,8 +190,8 @@ class Model:
         for name in names:
             self.joint(name)
         groups = [body.joint_group(names) for body in self.bodies]
-        groups += [OddGroup(self.joint(name)) for name in names
-                   if isinstance(self.joint(name), HeldJoint)]
+        groups += [SingleJointGroup(self.joint(name)) for name in names
+                   if isinstance(self.joint(name), PassiveJoint)]
         return [group for group in groups if group.names]
 
     def remove(self) -> None:

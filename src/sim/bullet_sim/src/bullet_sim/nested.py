@@ -13,7 +13,7 @@ from bullet_sim.twist import STILL, Twist, shifted_twist
 SCOPE = "::"
 
 
-class Part:
+class NestedModel:
     """A model without what is in models nested in it; with an empty `name`, the outermost."""
 
     def __init__(self, model: Model, name: str = ""):
@@ -75,14 +75,14 @@ class Part:
                      if name.startswith(self._scope)), None)
 
 
-def find_part(models: Iterable[Model], name: str) -> Part | None:
+def find_nested_model(models: Iterable[Model], name: str) -> NestedModel | None:
     """A model by its name, or a nested one as `outer::nested` or, unscoped, the first there is."""
     nested = None
     for model in models:
         if name == model.name:
-            return Part(model)
+            return NestedModel(model)
         for child in model.description.child_models:
             scoped = name == f"{model.name}{SCOPE}{child}"
             if nested is None and (scoped or name == child.rpartition(SCOPE)[2]):
-                nested = Part(model, child)
+                nested = NestedModel(model, child)
     return nested

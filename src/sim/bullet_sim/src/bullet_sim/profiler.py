@@ -18,18 +18,18 @@ class Stage:
     worst: float = 0.0
 
 
-class Stages:
+class Profiler:
     """Stages by name. Several threads may add at once, each to stages of its own."""
 
     def __init__(self):
-        self.stages: dict[str, Stage] = {}
+        self._stages: dict[str, Stage] = {}
         self._thread = threading.local()
 
     def add(self, name: str, seconds: float, count: int = 1) -> None:
         """Something was done `count` times in so many seconds of wall time."""
-        stage = self.stages.get(name)
+        stage = self._stages.get(name)
         if stage is None:
-            stage = self.stages[name] = Stage()
+            stage = self._stages[name] = Stage()
         stage.count += count
         stage.total += seconds
         stage.worst = max(stage.worst, seconds / count)
@@ -49,12 +49,12 @@ class Stages:
 
     def totals(self) -> dict[str, float]:
         """Seconds of wall time by stage, since the start."""
-        return {name: stage.total for name, stage in list(self.stages.items())}
+        return {name: stage.total for name, stage in list(self._stages.items())}
 
     def table(self, elapsed: float) -> str:
         """A row for each stage, the costliest first; `elapsed` is the wall time (s) it all took."""
         head = f"{'stage':<12}{'times':>9}{'ms each':>10}{'worst ms':>10}{'share':>8}"
-        rows = sorted(self.stages.items(), key=lambda item: -item[1].total)
+        rows = sorted(self._stages.items(), key=lambda item: -item[1].total)
         return "\n".join([head] + [
             f"{name:<12}{stage.count:>9}{stage.total / stage.count * 1e3:>10.3f}"
             f"{stage.worst * 1e3:>10.2f}{stage.total / elapsed:>8.1%}"

@@ -12,7 +12,7 @@ from bullet_sim.description import LightDescription
 from bullet_sim.errors import UnknownName
 from bullet_sim.link import Link
 from bullet_sim.model import Model
-from bullet_sim.nested import SCOPE, find_part
+from bullet_sim.nested import SCOPE, find_nested_model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.twist import Twist
 
@@ -38,7 +38,7 @@ def find_link(models: Mapping[str, Model], name: str) -> Link:
 
 def find_frame(models: Mapping[str, Model], name: str) -> tuple[Pose, Twist]:
     """Pose and twist of a model, a link, or the world by its usual names; else UnknownName."""
-    if part := find_part(models.values(), name):
+    if part := find_nested_model(models.values(), name):
         return part.pose, part.twist
     try:
         link = find_link(models, name)

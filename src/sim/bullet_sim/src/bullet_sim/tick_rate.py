@@ -7,7 +7,7 @@ import math
 from bullet_sim.errors import SimulationError
 
 
-class Schedule:
+class TickRate:
     """Due `rate_hz` times a simulated second; 0 means every step.
 
     A period that is no whole number of steps alternates between two lengths, so that the long-run

@@ -11,20 +11,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from bullet_sim.actors import Walker
+from bullet_sim.actors import Actor
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.forces import Forces
 from bullet_sim.link import Link
 from bullet_sim.model import Model
+from bullet_sim.nan_recovery import lost_models, recover_from_nan
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
 from bullet_sim.physics.limits import check_kept, check_physics, possible_physics
-from bullet_sim.physics.nan_recovery import lost_models, mend
 from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
 from bullet_sim.snapshot import Snapshot, take_snapshot
@@ -49,11 +49,11 @@ class World:
         self.lights: dict[str, LightDescription] = {}
         self.scene = Scene(self.description.scene)
         self.forces = Forces()
-        self.stages = Stages()
+        self.profiler = Profiler()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
         self.each_removal: list[Callable[[str], None]] = []  # with the name of a model that went
         self._moving: list[Model] = []
-        self._walkers: dict[str, Walker] = {}
+        self._actors: dict[str, Actor] = {}
         self._told: set[str] = set()  # errors of the engine that nothing could be done about
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
@@ -82,7 +82,7 @@ class World:
         """So many steps forward; while paused, time stands still."""
         if self.paused or count < 1:
             return
-        if self._client.rest.reached and not (self.each_step or self.forces or self._walkers):
+        if self.is_at_rest and not (self.each_step or self.forces or self._actors):
             self.tick += count
             return
         start = time.perf_counter()
@@ -91,8 +91,13 @@ class World:
                 self._step_once()
             except EngineError as error:
                 self.tick = tick
-                self.outlive(error)
-        self.stages.add("physics", time.perf_counter() - start, count)
+                self.delete_lost_models(error)
+        self.profiler.add("physics", time.perf_counter() - start, count)
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the next step would change nothing but the time."""
+        return self._client.auto_disable.disabled
 
     def _step_once(self) -> None:
         moving, gravity = self._moving, self.description.gravity
@@ -102,16 +107,16 @@ class World:
             model.before_step(gravity)
         self._client.step()
         self.tick += 1
-        if self._client.rest.broken:
-            mend(self._client, self.models.values())
+        if self._client.auto_disable.found_nan:
+            recover_from_nan(self._client, self.models.values())
         for model in moving:
             model.forget()
-        for walker in self._walkers.values():
-            walker.walk(self.time)
+        for actor in self._actors.values():
+            actor.walk(self.time)
         for function in self.each_step:
             function()
 
-    def outlive(self, error: EngineError) -> None:
+    def delete_lost_models(self, error: EngineError) -> None:
         """After an error of the engine: models that it has lost are taken out; the rest goes on."""
         for name in lost_models(self.models.values(), error, self._told):
             self.delete(name)
@@ -136,7 +141,7 @@ class World:
         self._note_moving()
         try:
             if description.trajectory:
-                self._walkers[name] = Walker(model, description.trajectory)
+                self._actors[name] = Actor(model, description.trajectory)
             self._show(model)
         except Exception:
             self.delete(name)
@@ -158,7 +163,7 @@ class World:
         """Take a model out."""
         model = self.model(name)
         del self.models[name]
-        self._walkers.pop(name, None)
+        self._actors.pop(name, None)
         self._note_moving()
         self.scene.remove_model(name)
         for light in carried_lights(model):

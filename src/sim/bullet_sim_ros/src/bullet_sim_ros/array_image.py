@@ -8,7 +8,7 @@ from io import BytesIO
 import numpy as np
 from sensor_msgs.msg import Image
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 
 
 class ArrayImage(Image):
@@ -18,10 +18,10 @@ class ArrayImage(Image):
     of 1920x1080, with Python's lock held. On the wire both are the same.
     """
 
-    def __init__(self, pixels: np.ndarray, stages: Stages | None = None, **fields):
+    def __init__(self, pixels: np.ndarray, profiler: Profiler | None = None, **fields):
         """`pixels`: (h, w) or (h, w, channels), C-contiguous; `fields` are those of Image."""
         self._pixels = pixels
-        self._stages = stages or Stages()
+        self._profiler = profiler or Profiler()
         super().__init__(height=pixels.shape[0], width=pixels.shape[1],
                          step=pixels.nbytes // pixels.shape[0], is_bigendian=0, **fields)
 
@@ -36,7 +36,7 @@ class ArrayImage(Image):
 
     def serialize(self, buff: BytesIO) -> None:
         """Write the message as ROS sends it."""
-        with self._stages.measure("serialise"):
+        with self._profiler.measure("serialise"):
             self.header.serialize(buff)
             encoding = self.encoding.encode()
             buff.write(struct.pack(

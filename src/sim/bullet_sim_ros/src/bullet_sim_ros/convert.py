@@ -15,7 +15,7 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2,
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, normalised
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
@@ -132,9 +132,9 @@ def imu_to_msg(reading: ImuReading, frame: str, variance: float) -> Imu:
 
 
 def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8",
-                 stages: Stages | None = None) -> ArrayImage:
+                 profiler: Profiler | None = None) -> ArrayImage:
     """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture in any encoding of cameras."""
-    return _image(encode(rgb, encoding), time, frame, encoding, stages)
+    return _image(encode(rgb, encoding), time, frame, encoding, profiler)
 
 
 def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:
@@ -146,8 +146,8 @@ def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) 
 
 
 def _image(array: np.ndarray, time: float, frame: str, encoding: str,
-           stages: Stages | None = None) -> ArrayImage:
-    msg = ArrayImage(np.ascontiguousarray(array), stages, encoding=encoding)
+           profiler: Profiler | None = None) -> ArrayImage:
+    msg = ArrayImage(np.ascontiguousarray(array), profiler, encoding=encoding)
     msg.header.stamp, msg.header.frame_id = stamp(time), frame
     return msg
 

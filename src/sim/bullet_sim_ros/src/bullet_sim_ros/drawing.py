@@ -11,7 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 import rospy
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.renderer import Renderer, open_renderer
 
 PATIENCE = 1.0  # s, wall
@@ -20,10 +20,10 @@ PATIENCE = 1.0  # s, wall
 class DrawingThread:
     """Opens the renderer at once, while the world is still being loaded; then does jobs in turn."""
 
-    def __init__(self, stages: Stages):
+    def __init__(self, profiler: Profiler):
         self._executor = ThreadPoolExecutor(1, "drawing")
         self._last: Future | None = None
-        self._renderer = self._executor.submit(open_renderer, stages=stages)
+        self._renderer = self._executor.submit(open_renderer, profiler=profiler)
         self._told = False
 
     def renderer(self) -> Renderer:

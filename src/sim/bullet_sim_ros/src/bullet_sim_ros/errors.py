@@ -9,7 +9,7 @@ class PluginError(SimulationError):
     """A plugin that cannot work as written; the message names the tag."""
 
 
-def told(error: Exception) -> str:
+def format_error(error: Exception) -> str:
     """One line for the terminal; the kind of error where it is none of ours."""
     text = " ".join(str(error).split())
     return text if isinstance(error, SimulationError) else f"{type(error).__name__}: {text}"

@@ -42,15 +42,15 @@ class Lockstep:
         """A frame was taken for somebody: wait for the answer before the next step."""
         self._expected = set(self.topics)
 
-    def join(self, topic: str, plugin: object) -> None:
+    def subscribe(self, topic: str, plugin: object) -> None:
         """A plugin is about to subscribe; it will call `hear` after each message of the topic."""
         self._plugins[topic].append(plugin)
         if topic in self._subscribers:  # of another message type, and there is one per topic
             self._subscribers.pop(topic).unregister()
             # An answer on its way may reach neither: it must not be waited for.
-            self._mailbox.leave(lambda: self._expected.discard(topic))
+            self._mailbox.post(lambda: self._expected.discard(topic))
 
-    def leave(self, topic: str, plugin: object) -> None:
+    def unsubscribe(self, topic: str, plugin: object) -> None:
         """That plugin is gone."""
         self._plugins[topic].remove(plugin)
         self.listen()
@@ -62,7 +62,7 @@ class Lockstep:
         subscribed, so with the last one all have left their commands.
         """
         if plugin is None or self._plugins[topic][-1:] == [plugin]:
-            self._mailbox.leave(lambda: self._expected.discard(topic))
+            self._mailbox.post(lambda: self._expected.discard(topic))
 
     def cancel(self) -> None:
         """Wait no longer."""

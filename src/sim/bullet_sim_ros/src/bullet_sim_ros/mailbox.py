@@ -38,7 +38,7 @@ class Mailbox:
                 if self._closed.is_set():
                     raise Closed("the simulator is shutting down") from None
 
-    def leave(self, function: Callable[[], Any]) -> None:
+    def post(self, function: Callable[[], Any]) -> None:
         """From any thread: have `function` run in the loop, without waiting; errors are logged."""
         self._calls.put((function, None))
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
 import rospy
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.simulation import Simulation
 
 PERIOD = 0.2  # s, wall, between messages
 WINDOW = 1.0  # s, wall, over which rates are taken
@@ -27,8 +24,8 @@ class MetricsTopic:
         self._publisher = rospy.Publisher(names.PERFORMANCE_METRICS, PerformanceMetrics,
                                           queue_size=10)
         self._due = 0.0  # s, wall
-        self._rates: dict[Host, _Rates] = {}
-        simulation.agenda.add(0.0, self._publish, self._wanted)
+        self._rates: dict[PluginContext, _Rates] = {}
+        simulation.scheduler.add(0.0, self._publish, self._wanted)
 
     def _wanted(self) -> bool:
         return time.monotonic() >= self._due and self._publisher.get_num_connections() > 0
@@ -38,13 +35,13 @@ class MetricsTopic:
         simulation = self._simulation
         msg = PerformanceMetrics(real_time_factor=simulation.speed.real_time_factor)
         msg.header.stamp = convert.stamp(simulation.world.time)
-        hosts = simulation.sensors()
-        self._rates = {host: self._rates.get(host) or _Rates() for host in hosts}
-        for host, rates in self._rates.items():
-            rates.update(time.monotonic(), simulation.world.time, host.updates)
-            fps = rates.real_hz if host.sensor.cameras else NO_FRAMES
+        contexts = simulation.sensors()
+        self._rates = {context: self._rates.get(context) or _Rates() for context in contexts}
+        for context, rates in self._rates.items():
+            rates.update(time.monotonic(), simulation.world.time, context.updates)
+            fps = rates.real_hz if context.sensor.cameras else NO_FRAMES
             msg.sensors.append(SensorPerformanceMetric(
-                host.sensor.name, rates.simulated_hz, rates.real_hz, fps))
+                context.sensor.name, rates.simulated_hz, rates.real_hz, fps))
         self._publisher.publish(msg)
 
 

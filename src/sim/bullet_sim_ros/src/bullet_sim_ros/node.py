@@ -16,17 +16,17 @@ import rospy
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats import load_world
 from bullet_sim.physics.limits import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
+from bullet_sim_ros.network import open_network
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
-from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.simulation import Simulation
 
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
@@ -106,14 +106,6 @@ def check_engine(name: str) -> None:
                      "asked for", name, ", ".join(ENGINES))
 
 
-def open_network(simulation: Simulation, resources: Resources, wanted: bool) -> None:
-    """The services of /gazebo, unless the parameter `~enable_ros_network` says no."""
-    if wanted:
-        offer_services(simulation, resources)
-    else:
-        rospy.loginfo("ROS gazebo topics/services are disabled")
-
-
 def main() -> int:
     """Run until shutdown; 1 if the world cannot be opened."""
     options = parse(rospy.myargv(sys.argv)[1:])
@@ -142,7 +134,7 @@ def main() -> int:
     simulation = Simulation(world, parameters)
     for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
         signal.signal(number, lambda _number, _frame: simulation.stop())
-    open_network(simulation, resources, parameters.enable_ros_network)
+    open_network(simulation, resources, parameters)
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
     try:

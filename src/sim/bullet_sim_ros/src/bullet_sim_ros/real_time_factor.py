@@ -6,7 +6,7 @@ import time
 
 import rospy
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 
 WINDOW = 1.0  # s, wall, over which the real-time factor is taken
 REPORT_PERIOD = 10.0  # s, wall
@@ -15,12 +15,12 @@ BUSY = 0.5  # of wall time; where all stages together took less, the simulator w
 WAITING = "wait"  # for the picture before: what that costs is counted under drawing
 
 
-class Speed:
+class RealTimeFactorMonitor:
     """Fed by the loop after every batch of steps."""
 
-    def __init__(self, stages: Stages, profile: bool):
+    def __init__(self, profiler: Profiler, profile: bool):
         self.real_time_factor = 0.0
-        self._stages = stages
+        self._profiler = profiler
         self._profile = profile
         self._began = time.monotonic()
         self.restart(0.0)
@@ -29,7 +29,7 @@ class Speed:
         """Count from here: after a pause, a reset or a change of pace."""
         now = time.monotonic()
         self._window = self._report = (now, simulated)
-        self._totals = self._stages.totals()
+        self._totals = self._profiler.totals()
 
     def update(self, simulated: float, wanted: float) -> None:
         """`wanted` is the real-time factor aimed at; 0: as fast as it goes."""
@@ -39,7 +39,7 @@ class Speed:
             self._window = (now, simulated)
         if now - self._report[0] >= REPORT_PERIOD:
             self._tell(_factor(self._report, (now, simulated)), wanted)
-            self._report, self._totals = (now, simulated), self._stages.totals()
+            self._report, self._totals = (now, simulated), self._profiler.totals()
 
     def close(self) -> None:
         """At the end."""
@@ -59,12 +59,12 @@ class Speed:
 
     def _tell_stages(self) -> None:
         elapsed = time.monotonic() - self._began
-        rospy.loginfo("stages of the work in %.0f s\n%s", elapsed, self._stages.table(elapsed))
+        rospy.loginfo("stages of the work in %.0f s\n%s", elapsed, self._profiler.table(elapsed))
 
     def _costliest(self) -> tuple[str, float, float]:
         """Its name and share of wall time since the last report, and the share of all stages."""
         spent = {name: total - self._totals.get(name, 0.0)
-                 for name, total in self._stages.totals().items()}
+                 for name, total in self._profiler.totals().items()}
         spent.pop(WAITING, None)
         name = max(spent, key=spent.get)
         return name, spent[name] / REPORT_PERIOD, sum(spent.values()) / REPORT_PERIOD

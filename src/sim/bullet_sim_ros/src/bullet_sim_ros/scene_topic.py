@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import rospy
 from std_msgs.msg import String
 
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.scene_text import scene_to_text
+from bullet_sim.world import World
 from bullet_sim_ros import names
-
-if TYPE_CHECKING:
-    from bullet_sim.world import World
 
 
 class SceneTopic:

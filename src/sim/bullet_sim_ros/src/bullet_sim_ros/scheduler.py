@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bullet_sim.tick_rate import Schedule
+from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 
 # s, wall: at the wanted pace nothing is looked at less often, so that new listeners and commands
@@ -18,24 +18,24 @@ def always() -> bool:
     return True
 
 
-class Duty:
+class PeriodicTask:
     """One thing to be done again and again, while it is wanted."""
 
-    def __init__(self, schedule: Schedule, tick: int, action: Callable[[], None],
+    def __init__(self, tick_rate: TickRate, tick: int, action: Callable[[], None],
                  wanted: Callable[[], bool]):
-        self.schedule = schedule
+        self.tick_rate = tick_rate
         self.action = action
         self.wanted = wanted
-        self.next_tick = schedule.next_tick(tick)
+        self.next_tick = tick_rate.next_tick(tick)
         self.count = 0  # how often it has been done
 
 
-class Agenda:
+class Scheduler:
     """All duties, done in the order in which they were added."""
 
     def __init__(self, world: World):
         self._world = world
-        self._duties: list[Duty] = []
+        self._tasks: list[PeriodicTask] = []
         self._longest = LONGEST
 
     def set_pace(self, factor: float) -> None:
@@ -43,48 +43,48 @@ class Agenda:
         self._longest = min(factor * LONGEST, UNPACED) if factor > 0 else UNPACED
 
     def add(self, rate_hz: float, action: Callable[[], None],
-            wanted: Callable[[], bool] = always, whole_steps: bool = False) -> Duty:
+            wanted: Callable[[], bool] = always, whole_steps: bool = False) -> PeriodicTask:
         """Do something `rate_hz` times a simulated second from now on; 0: every step.
 
-        `whole_steps` as a `Schedule` has it.
+        `whole_steps` as a `TickRate` has it.
         """
         tick = self._world.tick
-        schedule = Schedule(rate_hz, self._world.timestep, tick, whole_steps)
-        self._duties.append(Duty(schedule, tick, action, wanted))
-        return self._duties[-1]
+        tick_rate = TickRate(rate_hz, self._world.timestep, tick, whole_steps)
+        self._tasks.append(PeriodicTask(tick_rate, tick, action, wanted))
+        return self._tasks[-1]
 
-    def change_rate(self, duty: Duty, rate_hz: float) -> None:
+    def change_rate(self, task: PeriodicTask, rate_hz: float) -> None:
         """Do it at another rate, counted from now on."""
         tick = self._world.tick
-        duty.schedule = Schedule(rate_hz, self._world.timestep, tick)
-        duty.next_tick = duty.schedule.next_tick(tick)
+        task.tick_rate = TickRate(rate_hz, self._world.timestep, tick)
+        task.next_tick = task.tick_rate.next_tick(tick)
 
-    def remove(self, duty: Duty) -> None:
+    def remove(self, task: PeriodicTask) -> None:
         """Not any more."""
-        self._duties = [other for other in self._duties if other is not duty]
+        self._tasks = [other for other in self._tasks if other is not task]
 
     def restart(self) -> None:
         """Count every rate from this tick, in steps of the present length."""
         tick, timestep = self._world.tick, self._world.timestep
-        for duty in self._duties:
-            duty.schedule.restart(tick, timestep)
-            duty.next_tick = duty.schedule.next_tick(tick)
+        for task in self._tasks:
+            task.tick_rate.restart(tick, timestep)
+            task.next_tick = task.tick_rate.next_tick(tick)
 
     def next_tick(self) -> int:
         """When to look again: the first tick at which something is due that is wanted now."""
         now = self._world.tick
         first = now + max(1, round(self._longest / self._world.timestep))
-        for duty in self._duties:
-            if duty.next_tick <= now:
-                duty.next_tick = duty.schedule.next_tick(now)
-            if duty.next_tick < first and duty.wanted():
-                first = duty.next_tick
+        for task in self._tasks:
+            if task.next_tick <= now:
+                task.next_tick = task.tick_rate.next_tick(now)
+            if task.next_tick < first and task.wanted():
+                first = task.next_tick
         return first
 
     def run(self) -> None:
         """Do what is due at this tick."""
         now = self._world.tick
-        for duty in self._duties:
-            if duty.next_tick == now and duty.wanted():
-                duty.count += 1
-                duty.action()
+        for task in self._tasks:
+            if task.next_tick == now and task.wanted():
+                task.count += 1
+                task.action()

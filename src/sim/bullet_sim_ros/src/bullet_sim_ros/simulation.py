@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import rospy
 from rosgraph_msgs.msg import Clock
 
@@ -14,16 +16,13 @@ from bullet_sim_ros import convert, names
 from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
-from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
-from bullet_sim_ros.plugin_host.services import Shared
-from bullet_sim_ros.real_time_factor import Speed
-from bullet_sim_ros.scene_topic import SceneTopic
-from bullet_sim_ros.scheduler import Agenda
-from bullet_sim_ros.state_topics import StateTopics
+from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
+from bullet_sim_ros.scheduler import Scheduler
 
 IDLE = 0.05  # s, wall: how long to wait for a call before looking whether all is to end
 
@@ -34,26 +33,24 @@ class Simulation:
     def __init__(self, world: World, parameters: NodeParameters):
         self.world = world
         self.mailbox = Mailbox()
-        self.agenda = Agenda(world)
+        self.scheduler = Scheduler(world)
         self.pacer = Pacer()
-        self.speed = Speed(world.stages, parameters.profile)
+        self.speed = RealTimeFactorMonitor(world.profiler, parameters.profile)
         self._told_to_stop = False
-        self._drawing = DrawingThread(world.stages)
+        self._drawing = DrawingThread(world.profiler)
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
-        self._shared = Shared(world, self.mailbox, self.agenda, self._drawing, self._lockstep)
-        self._plugins: dict[str, list[Host]] = {}
+        self._services = SimServices(
+            world, self.mailbox, self.scheduler, self._drawing, self._lockstep
+        )
+        self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
-        self.agenda.add(parameters.pub_clock_frequency, self._publish_clock)
+        self.scheduler.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
-        self._scene: SceneTopic | None = None
-        if parameters.enable_ros_network:
-            StateTopics(self, parameters)
-            self._scene = SceneTopic(world)
-            self._metrics = MetricsTopic(self)
+        self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
         for model in world.models.values():
             self._load_plugins(model)
-        self._world_plugins = load_world_plugins(self._shared)
+        self._world_plugins = load_world_plugins(self._services)
         self._lockstep.listen()
 
     # --- the loop
@@ -65,12 +62,12 @@ class Simulation:
         while left and not self._stopped():
             self._wait()
             try:
-                if self._scene:
-                    self._scene.update()
+                for function in self.each_turn:
+                    function()
                 if not self.world.paused and not self._stopped():
                     left -= self._advance(left)
             except EngineError as error:  # of a topic that tells where things are
-                self.world.outlive(error)
+                self.world.delete_lost_models(error)
 
     def stop(self) -> None:
         """From a signal handler: end the loop soon."""
@@ -94,11 +91,11 @@ class Simulation:
     def _advance(self, most: float) -> int:
         """Step up to what is due next, and do it; returns how many steps that took."""
         world = self.world
-        steps = int(min(self.agenda.next_tick() - world.tick, most))
+        steps = int(min(self.scheduler.next_tick() - world.tick, most))
         world.step(steps)
-        with world.stages.measure("plugins"):
-            self.agenda.run()
-        with world.stages.measure("lockstep"):
+        with world.profiler.measure("plugins"):
+            self.scheduler.run()
+        with world.profiler.measure("lockstep"):
             self._lockstep.wait(self._stopped)
         self.speed.update(world.time, self.pacer.factor)
         return steps
@@ -124,13 +121,13 @@ class Simulation:
         """Real-time factor as the world's physics says: step times real_time_update_rate."""
         physics = self.world.description.physics
         self.pacer.factor = physics.max_step_size * physics.real_time_update_rate
-        self.agenda.set_pace(self.pacer.factor)
+        self.scheduler.set_pace(self.pacer.factor)
         self._restart_pace()
 
     def configure_physics(self, **changes) -> None:
         """Change the world's physics; rates and pace follow the new step."""
         self.world.configure_physics(**changes)
-        self.agenda.restart()
+        self.scheduler.restart()
         self.set_pace()
 
     def _restart_pace(self) -> None:
@@ -160,16 +157,21 @@ class Simulation:
         self._drawing.settle()  # no picture of the time before comes after it
         self._lockstep.cancel()
         self.world.reset_simulation()
-        self.agenda.restart()
-        for hosts in (*self._plugins.values(), self._world_plugins):
-            for host in hosts:
-                host.reset()
+        self.scheduler.restart()
+        for contexts in (*self._plugins.values(), self._world_plugins):
+            for context in contexts:
+                context.reset()
         self._publish_clock()
         self._restart_pace()
 
-    def sensors(self) -> list[Host]:
+    def sensors(self) -> list[PluginContext]:
         """The plugins that work for a sensor."""
-        return [host for hosts in self._plugins.values() for host in hosts if host.has_sensor]
+        return [
+            context
+            for contexts in self._plugins.values()
+            for context in contexts
+            if context.has_sensor
+        ]
 
     def close(self) -> None:
         """Answer whoever still waits; let go of renderer and engine."""
@@ -179,8 +181,8 @@ class Simulation:
         self.world.close()
 
     def _close_plugins(self, model: str) -> None:
-        for host in self._plugins.pop(model, ()):
-            host.close()
+        for context in self._plugins.pop(model, ()):
+            context.close()
 
     def _load_plugins(self, model: Model) -> None:
-        self._plugins[model.name] = load_plugins(self._shared, model)
+        self._plugins[model.name] = load_plugins(self._services, model)

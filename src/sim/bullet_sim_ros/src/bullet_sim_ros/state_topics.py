@@ -3,35 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import rospy
 from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.nested import Part
+from bullet_sim.nested import NestedModel
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.services.links import set_link_state
 from bullet_sim_ros.services.states import set_model_state
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 
 class StateTopics:
     """Built only while somebody subscribes."""
 
-    def __init__(self, simulation: Simulation, parameters: NodeParameters):
+    def __init__(self, simulation: Simulation, rate_hz: float):
         self._simulation = simulation
         self._models = rospy.Publisher(names.MODEL_STATES, ModelStates, queue_size=10)
         self._links = rospy.Publisher(names.LINK_STATES, LinkStates, queue_size=10)
         self._obey(names.SET_MODEL_STATE, ModelState, set_model_state)
         self._obey(names.SET_LINK_STATE, LinkState, set_link_state)
-        rate_hz = parameters.pub_state_frequency
-        simulation.agenda.add(rate_hz, self._publish_models, self._models.get_num_connections)
-        simulation.agenda.add(rate_hz, self._publish_links, self._links.get_num_connections)
+        simulation.scheduler.add(rate_hz, self._publish_models, self._models.get_num_connections)
+        simulation.scheduler.add(rate_hz, self._publish_links, self._links.get_num_connections)
 
     def _publish_models(self) -> None:
         models = self._simulation.world.models.values()
@@ -39,7 +35,7 @@ class StateTopics:
 
     def _publish_links(self) -> None:
         models = self._simulation.world.models.values()
-        links = (link for model in models for link in Part(model).links())
+        links = (link for model in models for link in NestedModel(model).links())
         self._links.publish(_states(
             LinkStates(), ((link.scoped_name, link.pose, link.twist) for link in links)))
 
@@ -51,7 +47,7 @@ class StateTopics:
             except SimulationError as error:
                 rospy.logerr("topic %s: %s", rospy.resolve_name(topic), error)
 
-        rospy.Subscriber(topic, kind, lambda msg: self._simulation.mailbox.leave(lambda: take(msg)),
+        rospy.Subscriber(topic, kind, lambda msg: self._simulation.mailbox.post(lambda: take(msg)),
                          queue_size=10)
 
 

@@ -18,10 +18,10 @@ from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World
 from bullet_sim_ros.check.stand_ins import Graph, without_master
+from bullet_sim_ros.network import open_network
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import register_plugins
-from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.services.models import with_namespace
 from bullet_sim_ros.simulation import Simulation
 
@@ -44,7 +44,7 @@ class Bench:
         path.write_text(world_text, encoding="utf-8")
         self.world = World(load_world(path, self.resources), seed=1)
         self.simulation = Simulation(self.world, parameters)
-        offer_services(self.simulation, self.resources)
+        open_network(self.simulation, self.resources, parameters)
 
     # --- what a user does
 

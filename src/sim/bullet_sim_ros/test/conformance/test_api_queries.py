@@ -210,7 +210,7 @@ def test_a_model_inside_another(bench):
         assert (answer.geom_names, answer.joint_names) == (["edge"], ["screw"])
         assert xyz(bench.call("/gazebo/get_model_state", model_name=name)
                    .pose.position) == near(1, 0, 5)
-    arm.links["tool::blade"].move(Pose((3, 0, 9)), Motion((0, 0, 1), (0, 0, 0)))
+    arm.move_link(arm.links["tool::blade"], Pose((3, 0, 9)), Motion((0, 0, 1), (0, 0, 0)))
     answer = bench.call("/gazebo/get_model_state", model_name="arm::tool",
                         relative_entity_name="arm::tool")
     assert xyz(answer.pose.position) == near(0, 0, 0)

@@ -107,7 +107,7 @@ def test_a_spawn_whose_plugins_cannot_be_looked_at_leaves_nothing(bench, monkeyp
                         model_xml=f'<sdf version="1.6">{arm()}</sdf>')
     assert (answer.success, answer.status_message) == (False, "ValueError: no such thing")
     assert "arm" not in bench.world.models
-    assert len(bench.world._client.rest.bodies) == 1  # the ground
+    assert len(bench.world._client.auto_disable.bodies) == 1  # the ground
 
 
 def test_topics_of_a_model_that_the_engine_lost_are_closed(bench):

@@ -29,7 +29,7 @@ def test_state_topics_while_somebody_listens_and_time_runs(make_bench):
     assert links[0].pose[2].position.z == pytest.approx(6)
     assert links[0].twist[2].angular.z == pytest.approx(2, rel=0.01)
     bench.call("/gazebo/pause_physics")
-    bench.simulation.mailbox.leave(bench.simulation.stop)
+    bench.simulation.mailbox.post(bench.simulation.stop)
     bench.simulation.run()
     assert (len(models), len(links)) == (5, 5)
 

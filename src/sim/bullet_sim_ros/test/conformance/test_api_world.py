@@ -86,7 +86,7 @@ def test_pause_stops_everything_but_services(bench):
     bench.run(0.1)
     bench.call("/gazebo/pause_physics")
     count = len(clock), len(truth)
-    bench.simulation.mailbox.leave(bench.simulation.stop)
+    bench.simulation.mailbox.post(bench.simulation.stop)
     bench.simulation.run()
     clock.pop()  # that with which every run begins
     assert (len(clock), len(truth)) == count

@@ -9,7 +9,7 @@ from bullet_sim.errors import SimulationError
 ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by rounding
 
 
-class Pace:
+class Rate:
     """Due `rate_hz` times a simulated second, exact in the long run; 0 means at every update."""
 
     def __init__(self, rate_hz: float):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.link import Link
-from bullet_sim.physics.auto_disable import STILL_RATE, STILL_SPEED
+from bullet_sim.physics.auto_disable import REST_RATE, REST_SPEED
 from bullet_sim.pose import rotate
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import twist_in
@@ -59,8 +59,8 @@ class ForceDrive:
         forward, leftward, _ = own.linear
         self._odometry.move(time, forward * elapsed, leftward * elapsed, own.angular[2] * elapsed)
         turning = model.twist.angular[2]
-        if not any(self._wanted) and abs(turning) < STILL_RATE and max(
-                map(abs, own.linear)) < STILL_SPEED:
+        if not any(self._wanted) and abs(turning) < REST_RATE and max(
+                map(abs, own.linear)) < REST_SPEED:
             return  # so that a world in which nothing moves can come to rest
         g = self._gains
         push = (g.forward * (self._wanted[0] - forward), g.leftward * (self._wanted[1] - leftward),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bullet_sim.model import Model
-from bullet_sim.physics.auto_disable import STILL_RATE, STILL_SPEED
+from bullet_sim.physics.auto_disable import REST_RATE, REST_SPEED
 from bullet_sim.pose import quaternion_from_rpy, rotate
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import Twist
@@ -40,8 +40,8 @@ class PlanarDrive:
 
     def _still(self) -> bool:
         twist = self._model.twist
-        return (max(map(abs, twist.linear)) < STILL_SPEED
-                and max(map(abs, twist.angular)) < STILL_RATE)
+        return (max(map(abs, twist.linear)) < REST_SPEED
+                and max(map(abs, twist.angular)) < REST_RATE)
 
 
 class PlanarOdometry:

@@ -9,7 +9,7 @@ from bullet_sim.pose import Pose, Quaternion, Vector3, conjugate, multiply
 from bullet_sim.world import World
 
 
-class Hand:
+class SpringDamper:
     """Law and default gains of gazebo_ros_hand_of_god; `update` at every step.
 
     The forces are those of an implicit step, so that a light link is not shaken to pieces; for

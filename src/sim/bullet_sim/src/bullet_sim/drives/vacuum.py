@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bullet_sim.link import Link
+from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
@@ -32,10 +33,10 @@ class Vacuum:
             if model is self._cup.model or model.static:
                 continue
             for link in model.links.values():
-                held = self._pull(link) or held
+                held = self._pull(model, link) or held
         return held
 
-    def _pull(self, link: Link) -> bool:
+    def _pull(self, model: Model, link: Link) -> bool:
         limits, cup = self._parameters, self._cup.pose
         gap = [c - p for c, p in zip(cup.position, link.pose.position, strict=True)]
         distance = math.hypot(*gap)
@@ -44,7 +45,7 @@ class Vacuum:
         pose = link.pose
         if distance <= limits.min_distance:
             pose = Pose(cup.position, pose.orientation)
-        link.move(pose, self._cup.twist)
+        model.move_link(link, pose, self._cup.twist)
         if distance > 0.0:
             force = min(1.0 / distance, limits.max_force)  # N: upstream's law
             link.apply_force(tuple(force * g / distance for g in gap))

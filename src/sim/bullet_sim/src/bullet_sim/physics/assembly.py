@@ -16,7 +16,7 @@ from bullet_sim.description import (
     ModelDescription,
     Plane,
 )
-from bullet_sim.physics.axes import MOVING, stages
+from bullet_sim.physics.axes import MOVING, single_axis_joints
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
@@ -57,7 +57,7 @@ class Tree:
     self_collide: bool = False
 
     @property
-    def held(self) -> bool:
+    def fixed_base(self) -> bool:
         """Whether the base stands still for ever."""
         return self.fixed and not self.kinematic
 
@@ -132,7 +132,7 @@ def _opposite(axis: Vector3) -> Vector3:
     return (-x, -y, -z)
 
 
-def loose_joints(model: ModelDescription, trees: list[Tree]) -> list[JointDescription]:
+def loop_joints(model: ModelDescription, trees: list[Tree]) -> list[JointDescription]:
     """Joints that carry no link: they close loops, or couple others (gearbox)."""
     carriers = {link.carrier.name for tree in trees for link in tree.links if link.carrier}
     return [] if model.static else [
@@ -159,7 +159,7 @@ def _jointed_tree(model: ModelDescription, members: list[Member]) -> Tree:
         parent = joint.parent if joint is not None and joint.parent in frames else None
         pose = frames[parent].inverse() * frames[link.name] if parent else frames[link.name]
         turned = joint is not None and joint.child != written[joint.name].child
-        *between, last = stages(joint, turned) if moves else [None]
+        *between, last = single_axis_joints(joint, turned) if moves else [None]
         for stage in between:
             name = f"{link.name}__{stage.name}"
             tree.links.append(

@@ -12,12 +12,12 @@ import math
 from collections import deque
 from typing import Protocol
 
-STILL_SPEED = 2e-4  # m/s; contacts alone leave a standing robot creeping at 1.5e-5 (measured)
-STILL_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
-BRISK_SPEED = 0.05  # m/s; slower things are driven exactly
-BRISK_RATE = 0.5  # rad/s
-LOOK_PERIOD = 0.05  # s, simulated
-LOOKS = 10  # in a row that have to find everything still
+REST_SPEED = 2e-4  # m/s; contacts alone leave a standing robot creeping at 1.5e-5 (measured)
+REST_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
+FAST_SPEED = 0.05  # m/s; slower things are driven exactly
+FAST_RATE = 0.5  # rad/s
+SAMPLE_PERIOD = 0.05  # s, simulated
+SAMPLES = 10  # in a row that have to find everything still
 GROWTH = 1.5  # over these looks: more than that is the beginning of a fall
 NOTHING = 1e-3  # of what counts as still; below it growth is only that of rounding errors
 
@@ -38,66 +38,66 @@ class Restable(Protocol):
         ...
 
 
-class Rest:
+class AutoDisable:
     """Asked before every step. What is changed from outside, by anybody, ends the rest."""
 
     def __init__(self):
         self.bodies: list[Restable] = []
-        self.reached = False  # whether the next step would change nothing
-        self.brisk = False  # whether anything was brisk when last looked at
-        self.broken = False  # whether a speed was no number when last looked at
+        self.disabled = False  # whether the next step would change nothing
+        self.is_fast = False  # whether anything was brisk when last looked at
+        self.found_nan = False  # whether a speed was no number when last looked at
         self._steps = 0
-        self._motions: deque[float] = deque(maxlen=LOOKS)
-        self.set_step(LOOK_PERIOD)
+        self._motions: deque[float] = deque(maxlen=SAMPLES)
+        self.set_step(SAMPLE_PERIOD)
 
     def set_step(self, timestep: float) -> None:
         """Length of a step, s: how long something has to be still does not depend on it."""
-        self.look_every = max(1, round(LOOK_PERIOD / timestep))  # steps
-        self.disturb()
+        self.sample_steps = max(1, round(SAMPLE_PERIOD / timestep))  # steps
+        self.wake()
 
-    def disturb(self) -> None:
+    def wake(self) -> None:
         """Something was changed: a motor, a pose, gravity, what there is."""
-        self.reached = False
+        self.disabled = False
         self._motions.clear()
 
     @property
-    def near(self) -> bool:
-        """Whether only one more look has to find everything still; `look_every` steps long."""
-        return len(self._motions) >= LOOKS - 1 and not self.reached
+    def nearly_disabled(self) -> bool:
+        """Whether only one more look has to find everything still; `sample_steps` steps long."""
+        return len(self._motions) >= SAMPLES - 1 and not self.disabled
 
     @property
-    def looks(self) -> bool:
+    def is_sampling(self) -> bool:
         """Whether this step is one that ends in a look."""
-        return self._steps % self.look_every == 0
+        return self._steps % self.sample_steps == 0
 
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be asked before each."""
-        if self.reached:
+        if self.disabled:
             return False
         self._steps += 1
-        if self.looks:
-            self._look()
+        if self.is_sampling:
+            self._sample()
         return True
 
-    def _look(self) -> None:
-        motion, self.brisk = 0.0, False
+    def _sample(self) -> None:
+        motion, self.is_fast = 0.0, False
         for body in self.bodies:
             speed, rate = body.speeds()
-            self.broken = self.broken or speed != speed
-            self.brisk = self.brisk or speed > BRISK_SPEED or rate > BRISK_RATE
+            self.found_nan = self.found_nan or speed != speed
+            self.is_fast = self.is_fast or speed > FAST_SPEED or rate > FAST_RATE
             motion = max(motion, _motion(speed, rate, body.wants_to_move()))
-            if self.brisk:
+            if self.is_fast:
                 break
         if motion >= 1:
             self._motions.clear()
             return
         self._motions.append(motion)
-        self.reached = (len(self._motions) == LOOKS
-                        and motion <= max(NOTHING, GROWTH * self._motions[0]))
+        self.disabled = (len(self._motions) == SAMPLES
+                         and motion <= max(NOTHING, GROWTH * self._motions[0]))
 
 
 def _motion(speed: float, rate: float, wants_to_move: bool) -> float:
     """How fast it is, in parts of what counts as still; infinite if it is not, or not a number."""
-    if speed < STILL_SPEED and rate < STILL_RATE and not wants_to_move:
-        return max(speed / STILL_SPEED, rate / STILL_RATE)
+    if speed < REST_SPEED and rate < REST_RATE and not wants_to_move:
+        return max(speed / REST_SPEED, rate / REST_RATE)
     return math.inf

@@ -14,7 +14,7 @@ TRAVEL = "::travel"  # after a screw's name: how far it has gone, m
 UNLIMITED = JointDescription("", "", "", "")
 
 
-def stages(joint: JointDescription, turned: bool) -> list[JointDescription]:
+def single_axis_joints(joint: JointDescription, turned: bool) -> list[JointDescription]:
     """The engine's joints from parent to child; the one with the joint's own name is axis one.
 
     A tiny link comes between two of them. `turned`: parent and child have changed places.

@@ -9,17 +9,20 @@ from typing import Protocol
 
 from bullet_sim.description import Inertial
 from bullet_sim.physics.assembly import PhysicsLink, Tree
-from bullet_sim.physics.body_joints import JointSide
-from bullet_sim.physics.body_links import BASE, LinkSide
+from bullet_sim.physics.body_joints import BodyJoints
+from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contact_parameters import (
-    coming_out,
     contact_values,
     corrected_part,
+    correcting_velocity_values,
     hardness,
 )
+from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.quiet import EngineError, pybullet
+from bullet_sim.physics.springs import Springs
+from bullet_sim.physics.velocity_decay import VelocityDecay
 from bullet_sim.pose import Pose
 
 NOWHERE = -1  # the number of what the engine does not have
@@ -40,7 +43,7 @@ class Attachment(Protocol):
         ...
 
 
-class Body(LinkSide, JointSide):
+class Body(BodyLinks, BodyJoints):
     """A loaded tree, whose links and joints go by name."""
 
     def __init__(self, client: PhysicsClient, tree: Tree, pose_world_model: Pose):
@@ -56,16 +59,11 @@ class Body(LinkSide, JointSide):
         self.may_auto_disable = True  # as far as its model says
         self.number = NOWHERE
         try:
-            self.put_in(pose_world_model * self.base_pose_model)
+            self.load(pose_world_model * self.base_pose_model)
         except Exception:
-            self._unload()  # half of it may be there
+            self._destroy()  # half of it may be there
             raise
-        client.rest.bodies.append(self)
-
-    @property
-    def client(self) -> PhysicsClient:
-        """The engine that it is in."""
-        return self._client
+        client.auto_disable.bodies.append(self)
 
     @property
     def is_loaded(self) -> bool:
@@ -74,12 +72,13 @@ class Body(LinkSide, JointSide):
 
     # --- set-up
 
-    def _load(self, frame: Pose) -> None:
+    def _create(self, frame: Pose) -> None:
         self.number = self._client.load(self.tree, frame)
         inertial = self.dynamics(BASE)
         self._pose_base_com = Pose(inertial[3], inertial[4])
         self._set_up_contacts()
         self._set_up_joints()
+        self._steady = [each for each in (Springs(self), VelocityDecay(self)) if each]
         for link in self.tree.links:
             if link.collisions and link.collisions[0].laser_retro:
                 seen = self.number, self._index[link.name]
@@ -96,31 +95,31 @@ class Body(LinkSide, JointSide):
         joints = {name: self.joint_state(name) for name in self._joint_index}
         balls = {name: self._ball_state(name) for name in self._ball_index}
         motors = self._motors
-        self.take_out()
+        self.unload()
         self.tree = replace(self.tree, links=[
             links.get(link.name, link) for link in self.tree.links])
         self._physics_link = {link.name: link for link in self.tree.links}
-        self.put_in(frame, attach=False)
+        self.load(frame, attach=False)
         for name, (position, rate) in joints.items():
             self.reset_joint(name, position, rate)
             if name in motors:
                 self.drive_velocity(name, *motors[name])
         for name, (turn, rate) in balls.items():
             self.reset_ball(name, turn, rate)
-        if not self.tree.held:
+        if not self.tree.fixed_base:
             self.set_twist(twist, at.position)
         for attachment in self.attached:
             attachment.attach()
 
-    def take_out(self) -> None:
-        """Out of the engine for a moment, with what hangs on it."""
+    def unload(self) -> None:
+        """Take it out of the engine, with its attachments; `load` puts it back."""
         for attachment in self.attached:
             attachment.detach()
-        self._unload()
+        self._destroy()
 
-    def put_in(self, frame: Pose, attach: bool = True) -> None:
-        """Into the engine (again), still, the base's frame standing at `frame` in the world."""
-        self._load(frame)
+    def load(self, frame: Pose, attach: bool = True) -> None:
+        """Put it into the engine, still, with the base's frame at `frame` in the world."""
+        self._create(frame)
         self._client.planes.put(self.number, self.tree, frame)
         self._motors = {}
         for name in self._joint_index:
@@ -142,7 +141,7 @@ class Body(LinkSide, JointSide):
 
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; Gazebo does so only where a model asks for it.
-        self._call(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
+        self.change(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         mass = self._mass()
         for link in self.tree.links:
             values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
@@ -151,9 +150,9 @@ class Body(LinkSide, JointSide):
             if link.collisions:
                 com = self.com_in_link(self._index[link.name])
                 values |= contact_values(link.collisions[0], self.tree.fixed, com, mass)
-            self._call(pybullet.changeDynamics, self._index[link.name], **values)
+            self.change(pybullet.changeDynamics, self._index[link.name], **values)
 
-    def come_out(self, part: float | None, timestep: float) -> None:
+    def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
         """Have contacts correct no more of their depth in each step (s); None: as usual."""
         mass = self._mass()
         for link in self.tree.links:
@@ -161,33 +160,46 @@ class Body(LinkSide, JointSide):
                 continue
             values = hardness(link.collisions[0].surface, self.tree.fixed, mass)
             if values and part is not None and part < corrected_part(values, timestep):
-                values = coming_out(part, timestep)
+                values = correcting_velocity_values(part, timestep)
             if values:
-                self._read(pybullet.changeDynamics, self._index[link.name], **values)
+                self.change_without_waking(
+                    pybullet.changeDynamics, self._index[link.name], **values)
 
     def _mass(self) -> float:
         return sum(link.inertial.mass for link in self.tree.links)
+
+    # --- what acts in every step
+
+    def apply_steady(self) -> None:
+        """Have the next step feel springs and the decay of speeds."""
+        for each in self._steady:
+            each.apply()
+
+    @property
+    def acts_steadily(self) -> bool:
+        """Whether `apply_steady` does anything."""
+        return bool(self._steady)
 
     # --- leaving
 
     def remove(self) -> None:
         """Take the body out of the world, also where the engine cannot find it any more."""
-        self._client.rest.bodies.remove(self)
+        self._client.auto_disable.bodies.remove(self)
         for attachment in list(self.attached):
             with contextlib.suppress(EngineError):
                 attachment.detach()
             for body in attachment.bodies:
                 body.attached.remove(attachment)
-        self._unload()
+        self._destroy()
 
-    def _unload(self) -> None:
+    def _destroy(self) -> None:
         if self.number == NOWHERE:
             return
         self._client.planes.remove(self.number)
         for seen in [seen for seen in self._client.retro if seen[0] == self.number]:
             del self._client.retro[seen]
         with contextlib.suppress(EngineError):
-            self._call(pybullet.removeBody)
+            self.change(pybullet.removeBody)
         self.number = NOWHERE
 
     # --- rest
@@ -201,11 +213,11 @@ class Body(LinkSide, JointSide):
 
     def speeds(self) -> tuple[float, float]:
         """Greatest speed, m/s, and rate of turn, rad/s, of base and joints; NaN if any is."""
-        linear, angular = self._read(pybullet.getBaseVelocity)
+        linear, angular = self.read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
         total = sum(linear) + sum(angular)
         for joint, index in self._joint_index.items():
-            moved = abs(self._read(pybullet.getJointState, index)[1])
+            moved = abs(self.read(pybullet.getJointState, index)[1])
             total += moved
             if self.joint_description(joint).type == "prismatic":
                 speed = max(speed, moved)

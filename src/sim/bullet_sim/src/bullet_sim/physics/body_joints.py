@@ -9,17 +9,14 @@ from statistics import fmean
 from bullet_sim.description import JointDescription
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.engine_handle import EngineHandle
-from bullet_sim.physics.joint_group import JointGroup
 from bullet_sim.physics.quiet import pybullet
-from bullet_sim.physics.springs import Springs
-from bullet_sim.physics.velocity_decay import Decay
 from bullet_sim.pose import Quaternion, Vector3
 
-Bearing = tuple[float, Sequence[float]]  # effort of a motor; force and torque, (6,)
+JointWrench = tuple[float, Sequence[float]]  # effort of a motor; force and torque, (6,)
 STRONGEST = 1e6  # N m or N; the engine makes NaN of much more
 
 
-class JointSide(EngineHandle):
+class BodyJoints(EngineHandle):
     """What a Body does with its joints."""
 
     def _find_joints(self) -> None:
@@ -31,15 +28,14 @@ class JointSide(EngineHandle):
         self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
 
     def _set_up_joints(self) -> None:
-        self._feedback: dict[int, deque[Bearing]] = {}  # joints that are measured; before a rest
+        self._feedback: dict[int, deque[JointWrench]] = {}  # of measured joints
         for index in self._ball_index.values():
-            self._call(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
-                       targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
-                       force=(0.0, 0.0, 0.0))  # the engine's default is a brake
+            self.change(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
+                        targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
+                        force=(0.0, 0.0, 0.0))  # the engine's default is a brake
         for link in self.tree.links[1:]:
             if link.carrier is not None and link.carrier.provide_feedback:
                 self.enable_feedback(self._index[link.name])
-        self._steady = [each for each in (Springs(self._client, self), Decay(self)) if each]
 
     def carried_by(self, joint: str) -> PhysicsLink:
         """The described link that a joint of the description carries."""
@@ -54,7 +50,7 @@ class JointSide(EngineHandle):
         found = {each.name: each for each in self.tree.links}
         each = found.get(link)
         while each is not None and (each.joint is None or (
-                each.joint.type != "ball" and self.is_held(each.joint.name))):
+                each.joint.type != "ball" and self.is_locked(each.joint.name))):
             each = found.get(each.parent)
         return None if each is None or each.joint.type == "ball" else each
 
@@ -70,16 +66,16 @@ class JointSide(EngineHandle):
         """Have the engine keep what the joint of that number bears."""
         if index not in self._feedback:
             self._feedback[index] = deque()
-            self._call(pybullet.enableJointForceTorqueSensor, index, 1)
+            self.change(pybullet.enableJointForceTorqueSensor, index, 1)
 
-    def joint_effort(self, index: int) -> Bearing:
+    def joint_effort(self, index: int) -> JointWrench:
         """What a joint's motor did in the last step, and the six numbers of what it bore.
 
         In a world at rest, the means of what they were: contacts go on trembling, and the last step
         would be told for ever.
         """
         rows = self._feedback.get(index)
-        if not rows or not self._client.rest.reached:
+        if not rows or not self._client.auto_disable.disabled:
             return self._last_effort(index)
         efforts, bore = zip(*rows, strict=True)
         return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
@@ -88,33 +84,33 @@ class JointSide(EngineHandle):
         """Note what joints bore in the last step; as many steps as there are between two looks."""
         for index, rows in self._feedback.items():
             rows.append(self._last_effort(index))
-            while len(rows) > self._client.rest.look_every:
+            while len(rows) > self._client.auto_disable.sample_steps:
                 rows.popleft()
 
-    def _last_effort(self, index: int) -> Bearing:
+    def _last_effort(self, index: int) -> JointWrench:
         if index in self._ball_index.values():
-            return 0.0, self._read(pybullet.getJointStateMultiDof, index)[2]
-        row = self._read(pybullet.getJointState, index)
+            return 0.0, self.read(pybullet.getJointStateMultiDof, index)[2]
+        row = self.read(pybullet.getJointState, index)
         return row[3], row[2]
 
     def _ball_state(self, joint: str) -> tuple[Quaternion, Vector3]:
-        return self._read(pybullet.getJointStateMultiDof, self._ball_index[joint])[:2]
+        return self.read(pybullet.getJointStateMultiDof, self._ball_index[joint])[:2]
 
     def reset_ball(self, joint: str, turn: Quaternion = (0.0, 0.0, 0.0, 1.0),
                    rate: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Turn a ball joint at once; `rate` in rad/s about the child's axes."""
-        self._call(pybullet.resetJointStateMultiDof, self._ball_index[joint], turn, rate)
+        self.change(pybullet.resetJointStateMultiDof, self._ball_index[joint], turn, rate)
 
     def joint_state(self, joint: str) -> tuple[float, float]:
         """Position and rate: rad and rad/s, or m and m/s."""
-        row = self._read(pybullet.getJointState, self._joint_index[joint])
+        row = self.read(pybullet.getJointState, self._joint_index[joint])
         return row[0], row[1]
 
     def reset_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
         """Put a joint somewhere at once."""
         if not self._is_number("joint position", position, velocity):
             return
-        self._call(pybullet.resetJointState, self._joint_index[joint], position, velocity)
+        self.change(pybullet.resetJointState, self._joint_index[joint], position, velocity)
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a rate with at most `effort` (N m or N), until told otherwise.
@@ -127,21 +123,21 @@ class JointSide(EngineHandle):
         if not self._is_number("joint drive", velocity, effort):
             return
         self._motors[joint] = (velocity, effort)
-        self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
-                   pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
+        self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
+                    pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
 
     def drive_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step."""
         self._motors.pop(joint, None)
         if self._is_number("joint effort", effort):
-            self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
-                       pybullet.TORQUE_CONTROL, force=effort)
+            self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
+                        pybullet.TORQUE_CONTROL, force=effort)
 
     def add_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step, beside what motors and others do."""
         if self._is_number("joint effort", effort):
-            self._call(pybullet.setJointMotorControl2, self._joint_index[joint],
-                       pybullet.TORQUE_CONTROL, force=effort)
+            self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
+                        pybullet.TORQUE_CONTROL, force=effort)
 
     def motor(self, joint: str) -> tuple[float, float]:
         """Rate that is held, and the effort at most for it; zeros after a plain effort."""
@@ -160,7 +156,7 @@ class JointSide(EngineHandle):
         """Ball joints, which have no single angle."""
         return list(self._ball_index)
 
-    def is_held(self, joint: str) -> bool:
+    def is_locked(self, joint: str) -> bool:
         """Whether the engine holds it, as both its stops are at 0."""
         joint = self.joint_description(joint)
         return joint.type != "continuous" and joint.lower == joint.upper == 0.0
@@ -169,21 +165,30 @@ class JointSide(EngineHandle):
         """Joints with one axis that can move, as the engine has them."""
         return list(self._joint_index)
 
-    def apply_steady(self) -> None:
-        """Have the next step feel what acts in every one: springs, and decay of speeds."""
-        for each in self._steady:
-            each.apply()
-
-    @property
-    def acts_steadily(self) -> bool:
-        """Whether `apply_steady` does anything."""
-        return bool(self._steady)
-
     def joint_group(self, joints: Iterable[str]) -> JointGroup:
         """Those of the joints that are this body's."""
-        mine = {joint: self._joint_index[joint] for joint in joints if joint in self._joint_index}
-        return JointGroup(self._client, self, mine)
+        indices = self._joint_index
+        return JointGroup(self, {name: indices[name] for name in joints if name in indices})
 
     def wants_to_move(self) -> bool:
         """Whether a motor is to hold a rate other than zero."""
         return any(velocity and effort for velocity, effort in self._motors.values())
+
+
+class JointGroup:
+    """Several joints of one body: one engine call costs a fifth of six. Positions in rad or m."""
+
+    def __init__(self, body: EngineHandle, joints: dict[str, int]):
+        self.names = list(joints)
+        self._body = body
+        self._indices = list(joints.values())
+
+    def states(self) -> Sequence[tuple]:
+        """A row for each joint: position, rate, (not used), what its motor did in the last step."""
+        return self._body.read(pybullet.getJointStates, self._indices)
+
+    def drive_efforts(self, efforts: Sequence[float]) -> None:
+        """Efforts (N m or N) during the next step, beside what motors and friction do."""
+        if any(efforts):  # the engine forgets them after each step: zeros need not be said
+            self._body.change(pybullet.setJointMotorControlArray, self._indices,
+                              pybullet.TORQUE_CONTROL, forces=efforts)

@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 from bullet_sim.physics.assembly import PhysicsLink
-from bullet_sim.physics.engine_handle import EngineHandle
+from bullet_sim.physics.engine_handle import BASE, EngineHandle
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose, Vector3, normalised
 from bullet_sim.twist import Twist, cross
 
-BASE = -1  # PyBullet's number of a body's base link
-NOWHERE = (0.0, 0.0, 1e5)  # m
+FAR_AWAY = (0.0, 0.0, 1e5)  # m
 
 
-class LinkSide(EngineHandle):
+class BodyLinks(EngineHandle):
     """What a Body does with its links. Link frames are those of the description, in the world."""
 
     _physics_link: dict[str, PhysicsLink]
     _link_indices: list[int]  # all but the base
     _pose_base_com: Pose  # centre of mass and principal axes in the base link's frame
-
-    def dynamics(self, index: int) -> tuple:
-        """PyBullet's row of a link: mass, friction, principal inertia, centre of mass ..."""
-        return self._read(pybullet.getDynamicsInfo, index)
-
-    def index(self, link: str) -> int:
-        """The engine's number of a physics link; BASE for the first."""
-        return self._index[link]
 
     def com_in_link(self, index: int) -> Pose:
         """Centre of mass and principal axes in the engine's link frame."""
@@ -36,12 +27,12 @@ class LinkSide(EngineHandle):
         """Pose and twist of every described link frame."""
         states = {}
         base = self.tree.links[0]
-        linear, angular = self._read(pybullet.getBaseVelocity)
+        linear, angular = self.read(pybullet.getBaseVelocity)
         states[base.described] = _described(
             base, self.base_frame(), self._com_position(BASE), linear, angular
         )
-        rows = self._read(pybullet.getLinkStates, self._link_indices, computeLinkVelocity=1,
-                          computeForwardKinematics=1) if self._link_indices else ()
+        rows = self.read(pybullet.getLinkStates, self._link_indices, computeLinkVelocity=1,
+                         computeForwardKinematics=1) if self._link_indices else ()
         for link, row in zip(self.tree.links[1:], rows, strict=True):
             if link.name == link.described:
                 states[link.name] = _described(link, Pose(row[4], row[5]), row[0], row[6], row[7])
@@ -49,14 +40,14 @@ class LinkSide(EngineHandle):
 
     def base_frame(self) -> Pose:
         """The base link's frame in the world, as the engine has it."""
-        pose_com = Pose(*self._read(pybullet.getBasePositionAndOrientation))
+        pose_com = Pose(*self.read(pybullet.getBasePositionAndOrientation))
         return pose_com * self._pose_base_com.inverse()
 
     def engine_frame(self, index: int) -> Pose:
         """Frame of the engine's link of that number in the world."""
         if index == BASE:
             return self.base_frame()
-        row = self._read(pybullet.getLinkState, index, computeForwardKinematics=1)
+        row = self.read(pybullet.getLinkState, index, computeForwardKinematics=1)
         return Pose(row[4], row[5])
 
     def centre(self, link: str) -> tuple[int, Pose]:
@@ -72,10 +63,12 @@ class LinkSide(EngineHandle):
         frame = Pose(frame.position, normalised(frame.orientation))
         com = frame * self._pose_base_com
         if not self.tree.fixed:
-            # By way of nowhere: contacts of the old place, with its depths, would come along.
-            self._read(pybullet.resetBasePositionAndOrientation, NOWHERE, com.orientation)
-            self._client.read(pybullet.performCollisionDetection)
-        self._call(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
+            # By way of a place far away: the old place's contacts, with their depths, would
+            # count at the new one.
+            self.change_without_waking(
+                pybullet.resetBasePositionAndOrientation, FAR_AWAY, com.orientation)
+            self._client.change_without_waking(pybullet.performCollisionDetection)
+        self.change(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
         self._client.planes.put(self.number, self.tree, frame)
 
     def set_twist(self, twist: Twist, origin: Vector3) -> None:
@@ -86,13 +79,13 @@ class LinkSide(EngineHandle):
         arm = [c - o for c, o in zip(com, origin, strict=True)]
         spin = cross(twist.angular, arm)
         linear = [v + s for v, s in zip(twist.linear, spin, strict=True)]
-        self._call(pybullet.resetBaseVelocity, linear, twist.angular)
+        self.change(pybullet.resetBaseVelocity, linear, twist.angular)
 
     def apply_steady_force(self, link: str, force: Vector3) -> None:
         """As `apply_force`, of what acts in every step: it does not end the world's rest."""
         index = self._index[link]
-        self._read(pybullet.applyExternalForce, index, force, self._com_position(index),
-                   pybullet.WORLD_FRAME)
+        self.change_without_waking(pybullet.applyExternalForce, index, force,
+                                   self._com_position(index), pybullet.WORLD_FRAME)
 
     def apply_force(self, link: str, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
@@ -100,31 +93,31 @@ class LinkSide(EngineHandle):
             return
         index = self._index[link]
         where = self._com_position(index)
-        self._call(pybullet.applyExternalForce, index, force, where, pybullet.WORLD_FRAME)
+        self.change(pybullet.applyExternalForce, index, force, where, pybullet.WORLD_FRAME)
         if any(torque):
-            self._call(pybullet.applyExternalTorque, index, torque, pybullet.WORLD_FRAME)
+            self.change(pybullet.applyExternalTorque, index, torque, pybullet.WORLD_FRAME)
 
     def add_twist(self, twist: Twist, origin: Vector3) -> None:
         """Change the base's motion by that of a rigid whole, `origin` (world) being its centre."""
-        linear, angular = self._read(pybullet.getBaseVelocity)
+        linear, angular = self.read(pybullet.getBaseVelocity)
         arm = [c - o for c, o in zip(self._com_position(BASE), origin, strict=True)]
         spin = cross(twist.angular, arm)
-        self._call(pybullet.resetBaseVelocity,
-                   [v + a + s for v, a, s in zip(linear, twist.linear, spin, strict=True)],
-                   [w + a for w, a in zip(angular, twist.angular, strict=True)])
+        self.change(pybullet.resetBaseVelocity,
+                    [v + a + s for v, a, s in zip(linear, twist.linear, spin, strict=True)],
+                    [w + a for w, a in zip(angular, twist.angular, strict=True)])
 
     def com_motion(self, index: int) -> tuple[Pose, Vector3, Vector3]:
         """Centre of mass and principal axes in the world, their velocity and rate of turn."""
         if index == BASE:
-            pose = Pose(*self._read(pybullet.getBasePositionAndOrientation))
-            return pose, *self._read(pybullet.getBaseVelocity)
-        row = self._read(pybullet.getLinkState, index, computeLinkVelocity=1)
+            pose = Pose(*self.read(pybullet.getBasePositionAndOrientation))
+            return pose, *self.read(pybullet.getBaseVelocity)
+        row = self.read(pybullet.getLinkState, index, computeLinkVelocity=1)
         return Pose(row[0], row[1]), row[6], row[7]
 
     def _com_position(self, index: int) -> Vector3:
         if index == BASE:
-            return self._read(pybullet.getBasePositionAndOrientation)[0]
-        return self._read(pybullet.getLinkState, index)[0]
+            return self.read(pybullet.getBasePositionAndOrientation)[0]
+        return self.read(pybullet.getLinkState, index)[0]
 
 
 def _described(link: PhysicsLink, physics_frame: Pose, com: Vector3, linear: Vector3,

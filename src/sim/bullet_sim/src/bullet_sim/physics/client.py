@@ -8,9 +8,9 @@ from pathlib import Path
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.physics.assembly import Tree
-from bullet_sim.physics.auto_disable import Rest
-from bullet_sim.physics.correcting_velocity import Embedded
-from bullet_sim.physics.island_sleeping import AutoDisable
+from bullet_sim.physics.auto_disable import AutoDisable
+from bullet_sim.physics.correcting_velocity import CorrectingVelocityLimit
+from bullet_sim.physics.island_sleeping import IslandSleeping
 from bullet_sim.physics.planes import Planes
 from bullet_sim.physics.quiet import STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
@@ -27,30 +27,31 @@ LOAD_FLAGS = (
 # turn after 8 s. 150, which the courses' worlds ask for themselves, holds 0.15 m/s within 0.05 %.
 FEWEST_ITERATIONS = 150
 # The solver stops once no row of an iteration changes by more than the root of this, m^2/s^2 (or
-# rad^2/s^2). EXACT is the engine's own. BRISK, 3 mm/s, is for worlds in which something drives:
+# rad^2/s^2). EXACT is the engine's own. FAST, 3 mm/s, is for worlds in which something drives:
 # steps of the waffle cost half, its drives of 10 s end within 0.2 mm and 0.2 degrees of the exact
 # ones, and what stands meanwhile creeps by 0.13 mm/s on a slope.
-EXACT, BRISK = 1e-7, 1e-5
+EXACT, FAST = 1e-7, 1e-5
 STATIC_FILTER = (2, -3)  # Bullet's group and mask of what never moves: all but its like
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
 RAYS_AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 
 
 class PhysicsClient:
-    """Owner of one engine instance. Everything else reaches PyBullet through `call` and `read`."""
+    """Owner of one engine instance: everything else reaches PyBullet through its methods."""
 
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
-        self.rest = Rest()
+        self.auto_disable = AutoDisable()
         self.planes = Planes(self._let_collide)
-        self._embedded = Embedded(self.read, self.rest.bodies)
-        self._auto_disable = AutoDisable(self.read, self.rest.bodies)
+        bodies, run = self.auto_disable.bodies, self.change_without_waking
+        self._correcting_velocity = CorrectingVelocityLimit(run, bodies)
+        self._island_sleeping = IslandSleeping(run, bodies)
         self.retro: dict[tuple[int, int], float] = {}  # laser_retro of engine links, where not 0
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
 
     def configure(self, physics: PhysicsDescription, gravity: Vector3) -> None:
         """Step (s), solver iterations and gravity (m/s^2)."""
-        self.call(
+        self.change(
             pybullet.setPhysicsEngineParameter,
             fixedTimeStep=physics.max_step_size,
             numSubSteps=0,
@@ -62,35 +63,43 @@ class PhysicsClient:
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
         )
-        self.call(pybullet.setGravity, *gravity)
+        self.change(pybullet.setGravity, *gravity)
         self._tolerance = EXACT
         self.timestep = physics.max_step_size  # s
         self.surface_layer = physics.contact_surface_layer  # m
-        self.rest.set_step(physics.max_step_size)
+        self.auto_disable.set_step(physics.max_step_size)
 
-    def call(self, function, *args, **kwargs):
-        """Run a pybullet function that changes something."""
-        self.rest.disturb()
-        if self._auto_disable.changed(function, args) or function in PLACING:
-            self._embedded.watch()
+    def change(self, function, *args, **kwargs):
+        """Run a pybullet function that changes something; a world at rest is stepped again."""
+        self.auto_disable.wake()
+        if self._island_sleeping.changed(function, args) or function in PLACING:
+            self._correcting_velocity.watch()
+        return function(*args, physicsClientId=self._id, **kwargs)
+
+    def change_without_waking(self, function, *args, **kwargs):
+        """Run a pybullet function that changes something, in a world that may stay at rest.
+
+        For what acts in every step, such as springs, and for what is undone at once.
+        """
         return function(*args, physicsClientId=self._id, **kwargs)
 
     def read(self, function, *args, **kwargs):
-        """Run a pybullet function that only reads."""
+        """Run a pybullet function that changes nothing."""
         return function(*args, physicsClientId=self._id, **kwargs)
 
     def step(self) -> None:
         """Advance the engine by one fixed step, unless it would change nothing."""
-        if self.rest.step_needed():
-            tolerance = BRISK if self.rest.brisk else EXACT
+        if self.auto_disable.step_needed():
+            tolerance = FAST if self.auto_disable.is_fast else EXACT
             if tolerance != self._tolerance:
                 self._tolerance = tolerance
-                self.read(pybullet.setPhysicsEngineParameter, solverResidualThreshold=tolerance)
-            self._embedded.before_step(self.timestep)
+                self.change_without_waking(pybullet.setPhysicsEngineParameter,
+                                           solverResidualThreshold=tolerance)
+            self._correcting_velocity.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
-            self._auto_disable.after_step(self.rest.looks)
-            if self.rest.near:
-                for body in self.rest.bodies:
+            self._island_sleeping.after_step(self.auto_disable.is_sampling)
+            if self.auto_disable.nearly_disabled:
+                for body in self.auto_disable.bodies:
                     body.keep_feedback()
 
     def cast_rays(self, starts: list, ends: list) -> list:
@@ -114,7 +123,7 @@ class PhysicsClient:
             path.write_text(urdf_text(tree.links, MeshFiles(Path(folder))), encoding="utf-8")
             try:
                 with quiet(STDOUT):
-                    return self.call(
+                    return self.change(
                         pybullet.loadURDF, str(path), pose.position, pose.orientation,
                         useFixedBase=tree.fixed, flags=flags,
                     )
@@ -124,7 +133,7 @@ class PhysicsClient:
 
     def _let_collide(self, body: int, on: bool) -> None:
         group, mask = STATIC_FILTER if on else (0, 0)
-        self.call(pybullet.setCollisionFilterGroupMask, body, -1, group, mask)
+        self.change(pybullet.setCollisionFilterGroupMask, body, -1, group, mask)
 
     def close(self) -> None:
         """Disconnect; the client is not to be used afterwards."""

@@ -19,7 +19,7 @@ MOVING, STILL = 1, 2  # the engine's own groups
 Part = tuple[Body, int, str]  # body, engine's number of a link with collisions, described link
 
 
-class Filters:
+class CollisionFilters:
     """Of one model; made anew whenever one of its bodies is."""
 
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body]):
@@ -50,13 +50,13 @@ class Filters:
         for one, other in itertools.combinations(parts, 2) if not self._static else ():
             if self._has_to_be_told(one, other):
                 pair = one[0].number, other[0].number, one[1], other[1]
-                self._client.call(pybullet.setCollisionFilterPair, *pair, 0)
+                self._client.change(pybullet.setCollisionFilterPair, *pair, 0)
                 self._pairs.append(pair)
 
     def detach(self) -> None:
         """Undo it: the engine gives numbers of bodies again, and would filter the next ones."""
         for pair in self._pairs:
-            self._client.call(pybullet.setCollisionFilterPair, *pair, 1)
+            self._client.change(pybullet.setCollisionFilterPair, *pair, 1)
         self._pairs = []
 
     def _mask(self, body: Body, index: int) -> None:
@@ -67,7 +67,7 @@ class Filters:
         self._masked = True
         group = bits << SHIFT
         others = 0 if bits == 0 else group | MOVING | (0 if body.tree.fixed else STILL)
-        self._client.call(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
+        self._client.change(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
 
     def _has_to_be_told(self, one: Part, other: Part) -> bool:
         """Whether the engine would let them meet although they must not."""

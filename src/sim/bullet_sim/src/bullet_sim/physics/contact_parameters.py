@@ -76,7 +76,7 @@ def corrected_part(values: dict[str, float], timestep: float) -> float:
     return pushed / (pushed + values["contactDamping"])
 
 
-def coming_out(part: float, timestep: float) -> dict[str, float]:
+def correcting_velocity_values(part: float, timestep: float) -> dict[str, float]:
     """Stiffness and damping of a contact that corrects `part` of its depth in each step (s)."""
     return {"contactStiffness": UNYIELDING,
             "contactDamping": UNYIELDING * timestep * (1.0 / part - 1.0)}

@@ -23,19 +23,19 @@ DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
 class Placed(Protocol):
     """A body as seen from here."""
 
-    def come_out(self, part: float | None, timestep: float) -> None:
+    def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
         """Have contacts correct no more of their depth in each step (s); None: as usual."""
         ...
 
 
-class Embedded:
+class CorrectingVelocityLimit:
     """Looks at the depths before each step, from when a body was placed until none is deep.
 
-    `call` runs a pybullet function in the engine; `bodies` is the list of all that are there.
+    `run` runs a pybullet function in the engine; `bodies` is the list of all that are there.
     """
 
-    def __init__(self, call: Callable, bodies: Sequence[Placed]):
-        self._call = call
+    def __init__(self, run: Callable, bodies: Sequence[Placed]):
+        self._run = run
         self._bodies = bodies
         self._part = ALL
         self._left = 0.0  # s, for which to look on
@@ -54,23 +54,23 @@ class Embedded:
             # Contacts keep what their bodies were like when they were found: find them when these
             # hardly push.
             self._placed = False
-            self._come_out(FASTEST * timestep / DEEPEST, timestep)
+            self._limit(FASTEST * timestep / DEEPEST, timestep)
         self._left = max(0.0, self._left - timestep)
         deepest = self._deepest() if self._left else 0.0
         part = min(ALL, FASTEST * timestep / deepest) if deepest > 0.0 else ALL
         if part == ALL:
             self._left = 0.0
         if part != self._part:
-            self._come_out(part, timestep)
+            self._limit(part, timestep)
 
-    def _come_out(self, part: float, timestep: float) -> None:
+    def _limit(self, part: float, timestep: float) -> None:
         self._part = part
-        self._call(pybullet.setPhysicsEngineParameter, contactERP=min(CORRECTED, part))
+        self._run(pybullet.setPhysicsEngineParameter, contactERP=min(CORRECTED, part))
         for body in self._bodies:
-            body.come_out(None if part == ALL else part, timestep)
+            body.limit_correcting_velocity(None if part == ALL else part, timestep)
 
     def _deepest(self) -> float:
         """Greatest depth of all contacts, m; 0 or less where nothing overlaps."""
-        self._call(pybullet.performCollisionDetection)
-        return max((-row[DISTANCE] for row in self._call(pybullet.getContactPoints)),
+        self._run(pybullet.performCollisionDetection)
+        return max((-row[DISTANCE] for row in self._run(pybullet.getContactPoints)),
                    default=0.0)

@@ -7,12 +7,15 @@ import math
 
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.quiet import pybullet
 
 log = logging.getLogger(__name__)
 
+BASE = -1  # PyBullet's number of a body's base link
+
 
 class EngineHandle:
-    """What both sides of a Body, links and joints, reach the engine by; the Body fills it in."""
+    """What the parts of a Body reach the engine by; the Body fills it in."""
 
     tree: Tree
     number: int  # the engine's
@@ -20,11 +23,30 @@ class EngineHandle:
     _index: dict[str, int]  # physics link -> the engine's number of it and of its joint
     _refused: set[str]  # what has been said to be no number
 
-    def _call(self, function, *args, **kwargs):
-        return self._client.call(function, self.number, *args, **kwargs)
+    @property
+    def client(self) -> PhysicsClient:
+        """The engine that it is in."""
+        return self._client
 
-    def _read(self, function, *args, **kwargs):
+    def change(self, function, *args, **kwargs):
+        """Run a pybullet function that changes this body; the world is stepped again."""
+        return self._client.change(function, self.number, *args, **kwargs)
+
+    def change_without_waking(self, function, *args, **kwargs):
+        """The same of what acts in every step: a world at rest stays there."""
+        return self._client.change_without_waking(function, self.number, *args, **kwargs)
+
+    def read(self, function, *args, **kwargs):
+        """Run a pybullet function that reads this body's state."""
         return self._client.read(function, self.number, *args, **kwargs)
+
+    def index(self, link: str) -> int:
+        """The engine's number of a physics link; BASE for the first."""
+        return self._index[link]
+
+    def dynamics(self, index: int) -> tuple:
+        """PyBullet's row of a link: mass, friction, principal inertia, centre of mass ..."""
+        return self.read(pybullet.getDynamicsInfo, index)
 
     def _is_number(self, what: str, *values: float) -> bool:
         """Whether the engine may see them: one NaN, and nothing has ground to stand on."""

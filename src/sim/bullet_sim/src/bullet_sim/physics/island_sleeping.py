@@ -16,15 +16,17 @@ from operator import mul
 from typing import Protocol
 
 from bullet_sim.physics.assembly import Tree
-from bullet_sim.physics.auto_disable import LOOK_PERIOD
+from bullet_sim.physics.auto_disable import SAMPLE_PERIOD
 from bullet_sim.physics.quiet import pybullet
 
-SPEED = 0.1  # m/s, of the mean over LOOKS: Gazebo's threshold (ODEPhysics.cc)
+SPEED = 0.1  # m/s, of the mean over SAMPLES: Gazebo's threshold (ODEPhysics.cc)
 RATE = 0.1  # rad/s
 TREMBLING = 3.0  # times as fast it may be between two looks
-LOOKS = round(1.0 / LOOK_PERIOD)  # Gazebo's second
-WAKING = 2 * 0.05 ** 2  # (m/s)^2 + (rad/s)^2 with which the engine enables a body that is pushed
-DEAF = 1e6  # the same while it falls asleep: the engine solves one step yet, and that pushes
+SAMPLES = round(1.0 / SAMPLE_PERIOD)  # Gazebo's second
+# (m/s)^2 + (rad/s)^2 above which the engine wakes a body that is pushed
+SLEEP_THRESHOLD = 2 * 0.05 ** 2
+# The same while it falls asleep: the engine solves one more step, which pushes.
+FALLING_ASLEEP_THRESHOLD = 1e6
 MOTORS = (pybullet.setJointMotorControl2, pybullet.setJointMotorControlArray,
           pybullet.setJointMotorControlMultiDof)
 PUSHES = (pybullet.applyExternalForce, pybullet.applyExternalTorque, pybullet.resetBaseVelocity)
@@ -43,46 +45,46 @@ class Disablable(Protocol):
         ...
 
 
-class AutoDisable:
+class IslandSleeping:
     """Asked after every step, told of every change.
 
-    `read` runs a pybullet function without ending the rest; `bodies` is the list of all there are.
+    `run` runs a pybullet function without waking anything; `bodies` is the list of all there are.
     """
 
-    def __init__(self, read: Callable, bodies: Sequence[Disablable]):
-        self._read = read
+    def __init__(self, run: Callable, bodies: Sequence[Disablable]):
+        self._run = run
         self._bodies = bodies
         self._poses: dict[int, deque] = {}  # by number, of looks between which it was quiet
         self._disabled: set[int] = set()
-        self._deaf: set[int] = set()  # of the disabled, those of the last look
+        self._falling_asleep: set[int] = set()  # of the disabled, those of the last look
         self._waking: set[int] = set()  # enabled since the last step; the next leaves them out yet
         self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be given again
 
-    def after_step(self, looking: bool) -> None:
-        """`looking`: at a look of `rest`, disable what has been quiet."""
+    def after_step(self, sampling: bool) -> None:
+        """`sampling`: at a look of `rest`, disable what has been quiet."""
         for push, args in self._late:
-            self._read(push, *args)
+            self._run(push, *args)
         self._late.clear()
         self._waking.clear()
-        if not looking:
+        if not sampling:
             return
-        poses = {body.number: self._read(pybullet.getBasePositionAndOrientation, body.number)
+        poses = {body.number: self._run(pybullet.getBasePositionAndOrientation, body.number)
                  for body in self._bodies if body.auto_disables}
         self._poses = {number: self._quiet(number, pose) for number, pose in poses.items()}
         ready = {number for number, seen in self._poses.items()
-                 if len(seen) > LOOKS and _slower(seen[0], seen[-1], LOOKS * LOOK_PERIOD)}
+                 if len(seen) > SAMPLES and _slower(seen[0], seen[-1], SAMPLES * SAMPLE_PERIOD)}
         self._disabled &= ready
-        for number in self._deaf & self._disabled:
-            self._read(pybullet.changeDynamics, number, -1, sleepThreshold=WAKING)
-        self._deaf.clear()
+        for number in self._falling_asleep & self._disabled:
+            self._run(pybullet.changeDynamics, number, -1, sleepThreshold=SLEEP_THRESHOLD)
+        self._falling_asleep.clear()
         if ready - self._disabled:
             self._disable(ready)
 
     def _quiet(self, number: int, pose: tuple) -> deque:
         """Its poses since it was last too quick for anything that trembles."""
         seen = self._poses.get(number)
-        if seen is None or not _slower(seen[-1], pose, TREMBLING * LOOK_PERIOD):
-            return deque([pose], maxlen=LOOKS + 1)
+        if seen is None or not _slower(seen[-1], pose, TREMBLING * SAMPLE_PERIOD):
+            return deque([pose], maxlen=SAMPLES + 1)
         seen.append(pose)
         return seen
 
@@ -93,8 +95,8 @@ class AutoDisable:
         push = function in PUSHES
         concerned = self._disabled & {args[0]} if push else set(self._disabled)
         for number in concerned:
-            self._change(number, pybullet.ACTIVATION_STATE_WAKE_UP)
-            self._change(number, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+            self._activate(number, pybullet.ACTIVATION_STATE_WAKE_UP)
+            self._activate(number, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
             self._poses.pop(number, None)
         self._disabled -= concerned
         self._waking |= concerned
@@ -107,22 +109,22 @@ class AutoDisable:
         return bool(concerned)
 
     def _disable(self, ready: set[int]) -> None:
-        still = {body.number for body in self._bodies if body.tree.held}
-        for heap in _heaps(self._touching(), still):
-            if len(heap) > 1 and heap <= ready and not heap <= self._disabled:
-                for number in heap:
-                    self._read(pybullet.resetBaseVelocity, number, (0, 0, 0), (0, 0, 0))
-                    self._change(number, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
-                                 sleepThreshold=DEAF)
-                    self._change(number, pybullet.ACTIVATION_STATE_SLEEP)
-                self._disabled |= heap
-                self._deaf |= heap
+        still = {body.number for body in self._bodies if body.tree.fixed_base}
+        for island in _islands(self._touching(), still):
+            if len(island) > 1 and island <= ready and not island <= self._disabled:
+                for number in island:
+                    self._run(pybullet.resetBaseVelocity, number, (0, 0, 0), (0, 0, 0))
+                    self._activate(number, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+                                   sleepThreshold=FALLING_ASLEEP_THRESHOLD)
+                    self._activate(number, pybullet.ACTIVATION_STATE_SLEEP)
+                self._disabled |= island
+                self._falling_asleep |= island
 
     def _touching(self) -> set[tuple[int, int]]:
-        return {(row[FIRST], row[SECOND]) for row in self._read(pybullet.getContactPoints)}
+        return {(row[FIRST], row[SECOND]) for row in self._run(pybullet.getContactPoints)}
 
-    def _change(self, number: int, state: int, **values: float) -> None:
-        self._read(pybullet.changeDynamics, number, -1, activationState=state, **values)
+    def _activate(self, number: int, state: int, **values: float) -> None:
+        self._run(pybullet.changeDynamics, number, -1, activationState=state, **values)
 
 
 def _slower(before: tuple, after: tuple, seconds: float) -> bool:
@@ -132,15 +134,15 @@ def _slower(before: tuple, after: tuple, seconds: float) -> bool:
     return moved < SPEED * seconds and turned < RATE * seconds
 
 
-def _heaps(pairs: Iterable[tuple[int, int]], still: set[int]) -> list[set[int]]:
+def _islands(pairs: Iterable[tuple[int, int]], still: set[int]) -> list[set[int]]:
     """Sets of bodies that touch, also by way of others; what stands still for ever joins none.
 
     What touches nothing but that is a set of its own; what touches nothing at all is in none.
     """
-    heaps: dict[int, set[int]] = {}
+    islands: dict[int, set[int]] = {}
     for pair in pairs:
-        joined = set().union(*(heaps.get(number, {number}) for number in pair
+        joined = set().union(*(islands.get(number, {number}) for number in pair
                                if number not in still))
         for number in joined:
-            heaps[number] = joined
-    return list({id(heap): heap for heap in heaps.values()}.values())
+            islands[number] = joined
+    return list({id(island): island for island in islands.values()}.values())

@@ -9,8 +9,8 @@ from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
 from bullet_sim.physics.body import Body
-from bullet_sim.physics.body_links import BASE
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose, Vector3, rotate
 
@@ -24,7 +24,7 @@ NO_PIVOT = (0.0, 0.0, 0.0)
 Rows = Iterator[tuple[tuple, dict]]
 
 
-class Closures:
+class LoopConstraints:
     """All constraints of one model; made anew whenever one of its bodies is."""
 
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body],
@@ -57,12 +57,12 @@ class Closures:
     def detach(self) -> None:
         """Take them out."""
         for constraint in self._constraints:
-            self._client.call(pybullet.removeConstraint, constraint)
+            self._client.change(pybullet.removeConstraint, constraint)
         self._constraints = []
 
     def _make(self, ends: tuple, change: dict) -> None:
-        made = self._client.call(pybullet.createConstraint, *ends)
-        self._client.call(pybullet.changeConstraint, made, maxForce=STRONGEST, **change)
+        made = self._client.change(pybullet.createConstraint, *ends)
+        self._client.change(pybullet.changeConstraint, made, maxForce=STRONGEST, **change)
         self._constraints.append(made)
 
     def _place(self, name: str) -> tuple[Body, PhysicsLink]:

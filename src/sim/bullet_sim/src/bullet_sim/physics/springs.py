@@ -8,15 +8,11 @@ coefficient is cut to what brings the joint there within a step or two, which lo
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.quiet import pybullet
-
-if TYPE_CHECKING:
-    from bullet_sim.physics.body import Body
 
 MOST_DAMPING = 0.5  # of inertia / step: half the speed goes in a step
 MOST_STIFFNESS = 0.1  # of inertia / step^2: a swing takes at least 20 steps
@@ -25,18 +21,17 @@ MOST_STIFFNESS = 0.1  # of inertia / step^2: a swing takes at least 20 steps
 class Springs:
     """Of one body; `apply` before each step. Reads inertias once, with joints where they are."""
 
-    def __init__(self, client: PhysicsClient, body: Body):
-        self._client = client
+    def __init__(self, body: BodyJoints):
         self._body = body
         described = [(body.joint_index(name), body.joint_description(name))
                      for name in body.joint_names()]
         needed = [joint for _, joint in described if joint.damping or joint.spring_stiffness]
-        inertia = _inertias(client, body, len(described)) if needed else []
+        inertia = _inertias(body, len(described)) if needed else []
         self._springs: list[tuple[int, float, float]] = []  # joint, stiffness, rest position
-        step = client.timestep
+        step = body.client.timestep
         for (index, joint), held in zip(described, inertia, strict=False):
             if joint.damping > MOST_DAMPING * held / step:
-                client.call(pybullet.changeDynamics, body.number, index,
+                body.change(pybullet.changeDynamics, index,
                             jointDamping=MOST_DAMPING * held / step)
             if joint.spring_stiffness:
                 stiffness = min(joint.spring_stiffness, MOST_STIFFNESS * held / step ** 2)
@@ -47,22 +42,21 @@ class Springs:
 
     def apply(self) -> None:
         """Efforts of the next step; they do not end the world's rest."""
-        number, indices = self._body.number, [index for index, _, _ in self._springs]
-        states = self._client.read(pybullet.getJointStates, number, indices)
-        self._client.read(
-            pybullet.setJointMotorControlArray, number, indices, pybullet.TORQUE_CONTROL,
+        indices = [index for index, _, _ in self._springs]
+        states = self._body.read(pybullet.getJointStates, indices)
+        self._body.change_without_waking(
+            pybullet.setJointMotorControlArray, indices, pybullet.TORQUE_CONTROL,
             forces=[stiffness * (rest - state[0]) for (_, stiffness, rest), state
                     in zip(self._springs, states, strict=True)])
 
 
-def _inertias(client: PhysicsClient, body: Body, joints: int) -> list[float]:
+def _inertias(body: BodyJoints, joints: int) -> list[float]:
     """What each joint has to move when all others are free: kg m^2, or kg."""
     if body.ball_names():  # the engine has no mass matrix for these: the child's own mass counts
         return [_own_inertia(body, name) for name in body.joint_names()]
     positions = [body.joint_state(name)[0] for name in body.joint_names()]
-    moving = [index for index, name in enumerate(body.joint_names()) if not body.is_held(name)]
-    rows = client.read(pybullet.calculateMassMatrix, body.number,
-                       [positions[index] for index in moving])
+    moving = [index for index, name in enumerate(body.joint_names()) if not body.is_locked(name)]
+    rows = body.read(pybullet.calculateMassMatrix, [positions[index] for index in moving])
     free = np.linalg.pinv(np.array(rows))[-len(moving):, -len(moving):] if moving else ()
     inertias = [math.inf] * joints
     for place, index in enumerate(moving):
@@ -70,6 +64,6 @@ def _inertias(client: PhysicsClient, body: Body, joints: int) -> list[float]:
     return inertias
 
 
-def _own_inertia(body: Body, joint: str) -> float:
+def _own_inertia(body: BodyJoints, joint: str) -> float:
     mass, _, diagonal = body.dynamics(body.joint_index(joint))[:3]
     return mass if body.joint_description(joint).type == "prismatic" else min(diagonal)

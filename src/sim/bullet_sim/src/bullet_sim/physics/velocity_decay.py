@@ -6,21 +6,18 @@ The engine's own damping is one for all links of a body and grows with the squar
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
+from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Vector3, conjugate, rotate
-
-if TYPE_CHECKING:
-    from bullet_sim.physics.body import Body
 
 SLOWEST = 0.01  # m/s and rad/s below which ODE lets things be
 
 
-class Decay:
+class VelocityDecay:
     """Of one body; `apply` before each step."""
 
-    def __init__(self, body: Body):
+    def __init__(self, body: BodyLinks):
         self._body = body
         self._links = [
             (link.name, min(link.linear_damping, 1.0), min(link.angular_damping, 1.0))
@@ -47,6 +44,4 @@ class Decay:
                 self._push(pybullet.applyExternalTorque, index, rotate(com.orientation, torque))
 
     def _push(self, function, index: int, vector: Vector3, *where: Vector3) -> None:
-        # As a read: what acts in every step does not end the world's rest.
-        self._body.client.read(function, self._body.number, index, vector, *where,
-                               pybullet.WORLD_FRAME)
+        self._body.change_without_waking(function, index, vector, *where, pybullet.WORLD_FRAME)

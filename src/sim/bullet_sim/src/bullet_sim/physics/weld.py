@@ -37,17 +37,17 @@ class Weld:
         holder = ((WORLD_BODY, -1) if self._other is None else
                   (self._other.number, self._other.index(self._other_link)))
         client = self._body.client
-        self._constraint = client.call(
+        self._constraint = client.change(
             pybullet.createConstraint, self._body.number, index, *holder, pybullet.JOINT_FIXED,
             (0, 0, 0), (0, 0, 0), held.position, (0, 0, 0, 1), held.orientation)
-        client.call(pybullet.changeConstraint, self._constraint, maxForce=STRONGEST)
+        client.change(pybullet.changeConstraint, self._constraint, maxForce=STRONGEST)
 
     def detach(self) -> None:
         """Take the constraint out; `attach` puts it in again."""
         if self._constraint is None:
             return
         constraint, self._constraint = self._constraint, None
-        self._body.client.call(pybullet.removeConstraint, constraint)
+        self._body.client.change(pybullet.removeConstraint, constraint)
 
     def _held(self) -> Pose:
         """Where the link's centre of mass is held: seen from the holder's, or in the world."""
@@ -63,7 +63,7 @@ class Weld:
         if self._constraint is None:
             return
         held = self._held()
-        self._body.client.call(
+        self._body.client.change(
             pybullet.changeConstraint, self._constraint, jointChildPivot=held.position,
             jointChildFrameOrientation=held.orientation, maxForce=STRONGEST)
 

@@ -17,7 +17,7 @@ import cv2
 import moderngl
 import numpy as np
 
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.rendering import lights
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.gpu_surfaces import (
@@ -68,8 +68,8 @@ class _Prepared:
 class EglRenderer:
     """See `renderer.Renderer`."""
 
-    def __init__(self, stages: Stages | None = None) -> None:
-        self._stages = stages or Stages()
+    def __init__(self, profiler: Profiler | None = None) -> None:
+        self._profiler = profiler or Profiler()
         self._context = _open_context()
         with self._context:  # leaving it lets go of the context, so that any thread may draw
             self._context.gc_mode = "context_gc"
@@ -86,7 +86,7 @@ class EglRenderer:
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if asked for, of one pass."""
-        measure = self._stages.measure
+        measure = self._profiler.measure
         with self._context:
             target = self._target(view.width, view.height)
             with measure("draw"):

@@ -12,7 +12,7 @@ from typing import Protocol
 from bullet_sim.description import Box, LightDescription, Plane, Visual
 from bullet_sim.errors import SimulationError
 from bullet_sim.pose import Pose
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.frame import CameraView, Frame
 from bullet_sim.rendering.scene import Scene, SceneState
 
@@ -43,21 +43,21 @@ class Renderer(Protocol):
         ...
 
 
-def open_renderer(preference: str | None = None, stages: Stages | None = None) -> Renderer:
+def open_renderer(preference: str | None = None, profiler: Profiler | None = None) -> Renderer:
     """EGL where it works, else TinyRenderer with a warning.
 
     `preference`, "egl" or "tiny", or without it BULLET_SIM_RENDERER insists on one; if that one
     does not work, it is a SimulationError. What drawing costs is added to `stages`.
     """
-    stages = stages or Stages()
+    profiler = profiler or Profiler()
     chosen = preference or os.environ.get(VARIABLE) or None
     if chosen is not None:
-        return _open_chosen(chosen, stages)
+        return _open_chosen(chosen, profiler)
     try:
-        return _open_egl(stages)
+        return _open_egl(profiler)
     except Exception as error:  # no library, no driver, no device: each says it in its own way
         reason = " ".join(str(error).split()) or type(error).__name__
-    renderer = _open_tiny(stages)
+    renderer = _open_tiny(profiler)
     rate_hz = 1 / _seconds_per_frame()
     log.warning(
         "no EGL renderer (%s); drawing with %s instead: about %.3g frames/s at 320x240, "
@@ -67,31 +67,31 @@ def open_renderer(preference: str | None = None, stages: Stages | None = None) -
     return renderer
 
 
-def _open_chosen(chosen: str, stages: Stages) -> Renderer:
+def _open_chosen(chosen: str, profiler: Profiler) -> Renderer:
     opener = _OPENERS.get(chosen)
     if opener is None:
         known = ", ".join(_OPENERS)
         raise SimulationError(f"{VARIABLE}={chosen}: no such renderer; there are: {known}")
     try:
-        return opener(stages)
+        return opener(profiler)
     except Exception as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise SimulationError(f"renderer {chosen} does not start: {reason}") from error
 
 
-def _open_egl(stages: Stages) -> Renderer:
+def _open_egl(profiler: Profiler) -> Renderer:
     from bullet_sim.rendering.egl import EglRenderer
 
-    return EglRenderer(stages)
+    return EglRenderer(profiler)
 
 
-def _open_tiny(stages: Stages) -> Renderer:
+def _open_tiny(profiler: Profiler) -> Renderer:
     from bullet_sim.rendering.tiny import TinyRenderer
 
-    return TinyRenderer(stages)
+    return TinyRenderer(profiler)
 
 
-_OPENERS: dict[str, Callable[[Stages], Renderer]] = {"egl": _open_egl, "tiny": _open_tiny}
+_OPENERS: dict[str, Callable[[Profiler], Renderer]] = {"egl": _open_egl, "tiny": _open_tiny}
 
 
 def _seconds_per_frame() -> float:
@@ -104,7 +104,7 @@ def _seconds_per_frame() -> float:
     )
     scene.add_link(("trial", "link"), visuals, Pose())
     view = CameraView(320, 240, math.pi / 3, 0.05, 50.0, Pose((-1.0, 0.0, 0.3)))
-    renderer, took = _open_tiny(Stages()), []
+    renderer, took = _open_tiny(Profiler()), []
     for _ in range(3):
         start = time.perf_counter()
         renderer.draw(scene, view)

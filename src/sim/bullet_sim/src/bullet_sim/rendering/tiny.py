@@ -18,7 +18,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.meshes.images import check_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose, rotate
-from bullet_sim.profiler import Stages
+from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.projection import metres_from_depth, projection_matrix, view_matrix
 from bullet_sim.rendering.scene import LinkKey, LinkShape, SceneState
@@ -38,8 +38,8 @@ class TinyRenderer:
     name = "PyBullet's TinyRenderer"
     largest_px = LARGEST_PX  # with much more it ends the whole process
 
-    def __init__(self, stages: Stages | None = None) -> None:
-        self._stages = stages or Stages()
+    def __init__(self, profiler: Profiler | None = None) -> None:
+        self._profiler = profiler or Profiler()
         self._client = pybullet.connect(pybullet.DIRECT)
         self._version = -1
         self._bodies: dict[_Placed, list[int]] = {}
@@ -49,7 +49,7 @@ class TinyRenderer:
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if asked for."""
-        with self._stages.measure("draw"):
+        with self._profiler.measure("draw"):
             self._mirror(scene)
             width, height, pixels, raw, _ = pybullet.getCameraImage(
                 view.width,
@@ -62,7 +62,7 @@ class TinyRenderer:
                 physicsClientId=self._client,
                 **_light(scene),
             )
-        with self._stages.measure("convert"):
+        with self._profiler.measure("convert"):
             rgb = np.ascontiguousarray(np.reshape(pixels, (height, width, 4))[..., :3], np.uint8)
             metres = metres_from_depth(
                 np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far

@@ -25,7 +25,7 @@ WIDE_ANGLE = "wideanglecamera"  # the type of sensors that look through their <l
 
 
 @dataclass(frozen=True)
-class Exposure:
+class CaptureState:
     """All that a picture is made from, as it was at one moment. Nothing in it changes."""
 
     time: float  # s, simulated
@@ -77,49 +77,49 @@ class Camera:
 
     def sample(self, depth: bool = False) -> CameraReading:
         """Draw what the camera sees."""
-        return self.develop(self.expose(), depth)
+        return self.render(self.capture(), depth)
 
-    def expose(self) -> Exposure:
+    def capture(self) -> CaptureState:
         """What the camera sees, not yet drawn. For the thread that owns the world."""
         world = self._world
-        with world.stages.measure("scene"):
-            return Exposure(world.time, world.tick, world.update_scene().frozen(), self.view())
+        with world.profiler.measure("scene"):
+            return CaptureState(world.time, world.tick, world.update_scene().frozen(), self.view())
 
-    def develop(self, exposure: Exposure, depth: bool = False) -> CameraReading:
+    def render(self, state: CaptureState, depth: bool = False) -> CameraReading:
         """Draw an exposure. Any thread may do it, one at a time, while the world goes on.
 
         A wide-angle camera has no depth.
         """
         if self.wide_angle:
-            rgb, metres = self._through_lens(exposure), None
+            rgb, metres = self._through_lens(state), None
         else:
-            frame = self._renderer.draw(exposure.scene, exposure.view, depth)
-            rgb, metres = self._bent(frame.rgb, exposure), frame.depth
-        return CameraReading(exposure.time, self._with_noise(rgb, exposure), metres)
+            frame = self._renderer.draw(state.scene, state.view, depth)
+            rgb, metres = self._bent(frame.rgb, state), frame.depth
+        return CameraReading(state.time, self._with_noise(rgb, state), metres)
 
-    def _through_lens(self, exposure: Exposure) -> np.ndarray:
+    def _through_lens(self, state: CaptureState) -> np.ndarray:
         if self._lens is None:
             self._lens = WideLens(self.description)
-        return self._lens.draw(exposure.view.pose,
-                               lambda view: self._renderer.draw(exposure.scene, view).rgb)
+        return self._lens.draw(state.view.pose,
+                               lambda view: self._renderer.draw(state.scene, view).rgb)
 
-    def _bent(self, rgb: np.ndarray, exposure: Exposure) -> np.ndarray:
+    def _bent(self, rgb: np.ndarray, state: CaptureState) -> np.ndarray:
         if not any(self.description.distortion):
             return rgb
-        with self._world.stages.measure("distortion"):
+        with self._world.profiler.measure("distortion"):
             if self._distortion is None:
-                self._distortion = Distortion(self.description, exposure.view.focal_length_px,
+                self._distortion = Distortion(self.description, state.view.focal_length_px,
                                               self._border_crop)
             return self._distortion.apply(rgb)
 
-    def _with_noise(self, rgb: np.ndarray, exposure: Exposure) -> np.ndarray:
+    def _with_noise(self, rgb: np.ndarray, state: CaptureState) -> np.ndarray:
         noise = self.description.noise
         if noise.type != "gaussian" or (noise.stddev == 0 and noise.mean == 0):
             return rgb
-        with self._world.stages.measure("noise"):
+        with self._world.profiler.measure("noise"):
             if self._noise is None:
                 self._noise = ImageNoise(noise, rgb.shape, self._world.random(self._name, 0))
-            return self._noise.add(rgb, self._world.random(self._name, exposure.tick))
+            return self._noise.add(rgb, self._world.random(self._name, state.tick))
 
 
 def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> CameraDescription:

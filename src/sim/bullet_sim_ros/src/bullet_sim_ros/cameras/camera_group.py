@@ -3,48 +3,47 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from std_msgs.msg import Empty
 
-from bullet_sim_ros.cameras.camera_publisher import Eye
+from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.cameras.topics import offer_rate
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
 
 
-class Eyes:
+class CameraGroup:
     """Who listens to images of one of the cameras has all drawn, as upstream counts subscribers.
 
     For camera_info alone nothing is drawn (upstream draws).
     """
 
-    def __init__(self, host: Host, eyes: list[Eye]):
-        self._host = host
-        self._eyes = eyes
+    def __init__(self, context: PluginContext, cameras: list[CameraPublisher]):
+        self._context = context
+        self._cameras = cameras
         self._told = False
 
-    def look_at_rate(self) -> None:
+    def capture_at_rate(self) -> None:
         """At the sensor's rate, thinned to the plugin's, while somebody listens."""
-        host, thinned_hz = self._host, self._eyes[0].settings.rate_hz
-        host.every(pictures_rate(host.sensor.update_rate, thinned_hz), self._take, self._wanted)
-        for eye in self._eyes:
-            offer_rate(host, eye.settings, lambda rate_hz: host.change_rate(
+        context, thinned_hz = self._context, self._cameras[0].settings.rate_hz
+        context.every(
+            pictures_rate(context.sensor.update_rate, thinned_hz), self._take, self._wanted
+        )
+        for camera in self._cameras:
+            offer_rate(context, camera.settings, lambda rate_hz: context.change_rate(
                 pictures_rate(rate_hz, thinned_hz)))
 
-    def look_when_told(self) -> None:
+    def capture_on_trigger(self) -> None:
         """At the step after a message on a trigger topic, if somebody listens then.
 
         Several messages before the picture are one. Rates have no effect.
         """
-        for eye in self._eyes:
-            topic = eye.settings.topic("triggerTopicName", "image_trigger")
-            self._host.subscribe(topic, Empty, lambda _message: self._tell, queue_size=1)
-            offer_rate(self._host, eye.settings, lambda _rate_hz: None)
-        self._host.every(0.0, self._look_once, lambda: self._told)
+        for camera in self._cameras:
+            topic = camera.settings.topic("triggerTopicName", "image_trigger")
+            self._context.subscribe(topic, Empty, lambda _message: self._tell, queue_size=1)
+            offer_rate(self._context, camera.settings, lambda _rate_hz: None)
+        self._context.every(0.0, self._look_once, lambda: self._told)
 
     def _tell(self) -> None:
         self._told = True
@@ -55,19 +54,19 @@ class Eyes:
             self._take()
 
     def _wanted(self) -> bool:
-        return any(eye.topics.wanted() for eye in self._eyes)
+        return any(camera.topics.wanted() for camera in self._cameras)
 
     def _take(self) -> None:
-        pictures = any(eye.topics.pictures_wanted() for eye in self._eyes)
+        pictures = any(camera.topics.pictures_wanted() for camera in self._cameras)
         if pictures:
-            self._host.expect_answer()
-        exposures = [eye.expose() for eye in self._eyes]
+            self._context.expect_answer()
+        states = [camera.capture() for camera in self._cameras]
 
         def send() -> None:
-            for eye, exposure in zip(self._eyes, exposures, strict=True):
-                eye.send(exposure, pictures)
+            for camera, state in zip(self._cameras, states, strict=True):
+                camera.send(state, pictures)
 
-        self._host.draw(send)
+        self._context.draw(send)
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:

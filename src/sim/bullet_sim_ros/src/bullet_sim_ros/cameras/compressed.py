@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import cv2
 import numpy as np
 import rospy
@@ -11,10 +9,8 @@ from sensor_msgs.msg import CompressedImage
 
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import encode
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_values
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
 
 FORMATS = ("jpeg", "png")
 JPEG_QUALITY, PNG_LEVEL = 80, 9  # the plugin's defaults; 1..100 and 1..9
@@ -23,9 +19,9 @@ JPEG_QUALITY, PNG_LEVEL = 80, 9  # the plugin's defaults; 1..100 and 1..9
 class CompressedTopic:
     """`IMAGE/compressed`, with the parameters and the dynamic_reconfigure server below it."""
 
-    def __init__(self, host: Host, image_topic: str, latch: bool):
+    def __init__(self, context: PluginContext, image_topic: str, latch: bool):
         self._topic = names.join(image_topic, "compressed")
-        self._publisher = host.advertise(self._topic, CompressedImage, queue_size=2, latch=latch)
+        self._publisher = context.advertise(self._topic, CompressedImage, queue_size=2, latch=latch)
         self._settings: dict = {}
         values = {
             "format": Value(self._parameter("format", FORMATS[0]), "", "", "jpeg or png"),
@@ -33,7 +29,7 @@ class CompressedTopic:
                                   "JPEG quality, percent"),
             "png_level": Value(self._parameter("png_level", PNG_LEVEL), 1, 9, "PNG effort"),
         }
-        offer_values(host, self._topic, values, self._change)
+        offer_values(context, self._topic, values, self._change)
 
     def wanted(self) -> bool:
         """Whether anybody listens."""

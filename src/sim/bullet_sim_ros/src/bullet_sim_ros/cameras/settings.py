@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import logging
 import math
-from typing import TYPE_CHECKING
 
 from sensor_msgs.msg import CameraInfo
 
 from bullet_sim.description import CameraDescription
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -29,13 +26,13 @@ class CameraSettings:
     other one; without it `<hackBaseline>` counts. `<CxPrime>` is read by nobody, as upstream.
     """
 
-    def __init__(self, host: Host, description: CameraDescription, suffix: str = "",
+    def __init__(self, context: PluginContext, description: CameraDescription, suffix: str = "",
                  baseline: float | None = None):
-        p = host.parameters
-        self._host = host
+        p = context.parameters
+        self._context = context
         self._description = description
         self.camera_name = p.text("cameraName") + suffix
-        self.namespace = names.join(p.namespace(missing="/", empty=host.model.name),
+        self.namespace = names.join(p.namespace(missing="/", empty=context.model.name),
                                     self.camera_name)
         self.frame = names.frame(params.tf_prefix(self.namespace), p.text("frameName"))
         self.image_topic = self.topic("imageTopicName", "image_raw")
@@ -50,7 +47,7 @@ class CameraSettings:
 
     def topic(self, tag: str, default: str) -> str:
         """The topic that a tag names, in the camera's namespace."""
-        return names.join(self.namespace, self._host.parameters.text(tag, default))
+        return names.join(self.namespace, self._context.parameters.text(tag, default))
 
     def info(self) -> CameraInfo:
         """The calibration, without a stamp."""
@@ -60,23 +57,23 @@ class CameraSettings:
         format = self._description.format
         if format not in ENCODINGS:
             log.error("%s: Unsupported Gazebo ImageFormat %s; there are %s; %s is used",
-                      self._host.describe(), format, ", ".join(ENCODINGS), UNKNOWN_FORMAT)
+                      self._context.describe(), format, ", ".join(ENCODINGS), UNKNOWN_FORMAT)
         return ENCODINGS.get(format, UNKNOWN_FORMAT)
 
     def _focal_length_px(self) -> float:
         """As written, 0 for the picture's own."""
-        written = self._host.parameters.number("focalLength", 0.0)
+        written = self._context.parameters.number("focalLength", 0.0)
         camera = self._description
         drawn = camera.width / (2 * math.tan(camera.horizontal_fov / 2))
         if written and abs(written - drawn) > _SAME_FOCAL_PX:
             log.warning(
                 "%s: <focalLength> is %g, but pictures of %d px with a <horizontal_fov> of %g rad "
-                "have %g; only camera_info tells the former: leave the tag out", self._host.
+                "have %g; only camera_info tells the former: leave the tag out", self._context.
                 describe(), written, camera.width, camera.horizontal_fov, drawn)
         return written
 
     def _distortion(self) -> tuple[float, ...]:
-        p, drawn = self._host.parameters, self._description.distortion
+        p, drawn = self._context.parameters, self._description.distortion
         if p.flag("autoDistortion", False):
             return drawn
         written = tuple(p.number(f"distortion{tag}", 0.0) for tag in _DISTORTION)
@@ -84,6 +81,6 @@ class CameraSettings:
             log.warning(
                 "%s: camera_info says D = %s by <distortionK1> and the like, but the picture is "
                 "drawn by the <distortion> of the sensor's <camera>, %s; "
-                "<autoDistortion>true</autoDistortion> makes them agree", self._host.describe(),
+                "<autoDistortion>true</autoDistortion> makes them agree", self._context.describe(),
                 list(written), list(drawn))
         return written

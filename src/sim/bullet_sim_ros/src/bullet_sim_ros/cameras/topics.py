@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import logging
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from sensor_msgs.msg import CameraInfo, Image
 from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
@@ -15,10 +14,8 @@ from bullet_sim.sensors.camera import CameraReading
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.cameras.compressed import CompressedTopic
 from bullet_sim_ros.cameras.settings import CameraSettings
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_values
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -31,15 +28,15 @@ class CameraTopics:
     What set_camera_info sets holds as long as the camera; it is not written to a file.
     """
 
-    def __init__(self, host: Host, settings: CameraSettings):
+    def __init__(self, context: PluginContext, settings: CameraSettings):
         self.settings = settings
-        self._stages = host.world.stages
+        self._profiler = context.world.profiler
         self._info = settings.info()
-        self._images = host.advertise(settings.image_topic, Image, queue_size=2, latch=True)
-        self._compressed = CompressedTopic(host, settings.image_topic, latch=True)
-        self._infos = host.advertise(settings.info_topic, CameraInfo, queue_size=2)
-        host.serve(names.join(settings.namespace, "set_camera_info"), SetCameraInfo,
-                   self._set_info)
+        self._images = context.advertise(settings.image_topic, Image, queue_size=2, latch=True)
+        self._compressed = CompressedTopic(context, settings.image_topic, latch=True)
+        self._infos = context.advertise(settings.info_topic, CameraInfo, queue_size=2)
+        context.serve(names.join(settings.namespace, "set_camera_info"), SetCameraInfo,
+                      self._set_info)
 
     def pictures_wanted(self) -> bool:
         """Whether anybody listens to images."""
@@ -52,11 +49,11 @@ class CameraTopics:
     def publish(self, reading: CameraReading) -> None:
         """Send a picture on the image topic, and compressed if somebody wants that."""
         settings = self.settings
-        with self._stages.measure("send"):
+        with self._profiler.measure("send"):
             self._images.publish(convert.image_to_msg(
-                reading.rgb, reading.time, settings.frame, settings.encoding, self._stages))
+                reading.rgb, reading.time, settings.frame, settings.encoding, self._profiler))
         if self._compressed.wanted():
-            with self._stages.measure("compress"):
+            with self._profiler.measure("compress"):
                 self._compressed.publish(reading.rgb, settings.encoding, reading.time,
                                          settings.frame)
 
@@ -77,22 +74,24 @@ class CameraTopics:
         return SetCameraInfoResponse(success=True)
 
 
-def offer_rate(host: Host, settings: CameraSettings, change: Callable[[float], None]) -> None:
+def offer_rate(
+    context: PluginContext, settings: CameraSettings, change: Callable[[float], None]
+) -> None:
     """dynamic_reconfigure's `imager_rate` (Hz); `change` is called in the loop's thread.
 
     It begins as 2 whatever the sensor's rate is, and counts from the first change on, as upstream.
     """
     if not settings.camera_name:
         log.warning("%s: without a <cameraName> there is no dynamic_reconfigure for %s",
-                    host.describe(), settings.image_topic)
+                    context.describe(), settings.image_topic)
         return
     begun: list[bool] = []
 
     def changed(values: dict[str, float]) -> None:
         """In a ROS thread; at once for the first time."""
         if begun:
-            host.shared.mailbox.leave(lambda: change(values["imager_rate"]))
+            context.services.mailbox.post(lambda: change(values["imager_rate"]))
         begun.append(True)
 
     rate = Value(FIRST_RATE, SLOWEST, FASTEST, "Rate of the sensor, Hz")
-    offer_values(host, settings.namespace, {"imager_rate": rate}, changed)
+    offer_values(context, settings.namespace, {"imager_rate": rate}, changed)

@@ -30,7 +30,7 @@ GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.senso
 
 
 @dataclass(frozen=True)
-class Said:
+class LogLine:
     """A line of the log, and what it means for the one who checks."""
 
     line: str
@@ -40,11 +40,11 @@ class Said:
 class _Listener(logging.Handler):
     def __init__(self):
         super().__init__(logging.WARNING)
-        self.heard: list[Said] = []
+        self.captured: list[LogLine] = []
 
     def emit(self, record: logging.LogRecord) -> None:
         if record.name not in UNHEARD:
-            self.heard.append(Said(record.getMessage(), _status(record)))
+            self.captured.append(LogLine(record.getMessage(), _status(record)))
 
 
 def _status(record: logging.LogRecord) -> str:
@@ -53,7 +53,7 @@ def _status(record: logging.LogRecord) -> str:
 
 
 @contextmanager
-def listening() -> Iterator[list[Said]]:
+def listening() -> Iterator[list[LogLine]]:
     """What core and plugins warn of meanwhile; it does not reach the terminal."""
     listener, loggers = _Listener(), [logging.getLogger(name) for name in LOGGERS]
     propagated = [logger.propagate for logger in loggers]
@@ -61,7 +61,7 @@ def listening() -> Iterator[list[Said]]:
         logger.propagate = False
         logger.addHandler(listener)
     try:
-        yield listener.heard
+        yield listener.captured
     finally:
         for logger, before in zip(loggers, propagated, strict=True):
             logger.removeHandler(listener)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import shlex
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import roslib.packages
 import rospkg
@@ -24,9 +24,6 @@ from bullet_sim_ros.check.launch_files import (
 )
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.interface import Row
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")

@@ -12,7 +12,7 @@ from bullet_sim.formats import Resources, load_light, load_model, load_world
 from bullet_sim.formats.xacro.files import expand_file
 from bullet_sim.formats.xacro.limits import run_bounded
 from bullet_sim.formats.xml_text import read_bytes
-from bullet_sim_ros.check.dry_run import Said, listening, try_model, try_world
+from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
 from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.check.included import included
@@ -79,7 +79,7 @@ class TextChecker:
         """
         if parameters is None:
             parameters = {"/robot_description": text}
-        with listening() as heard:
+        with listening() as captured:
             try:
                 # Looked for first, as to parse a large robot takes its time.
                 light = "<light" in text and load_light(text, self._resources) is not None
@@ -92,13 +92,13 @@ class TextChecker:
             return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
         return [Finding(where, f"model {description.name} ({links})", WORKS),
-                *_not_failed(self._details(text, where, None), heard), *_told(heard, where)]
+                *_not_failed(self._details(text, where, None), captured), *_told(captured, where)]
 
     def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
                    ) -> list[Finding]:
         """A world with all that it includes."""
         where = str(path)
-        with listening() as heard:
+        with listening() as captured:
             try:
                 description = load_world(path, self._resources)
                 try_world(description, parameters or {})
@@ -106,8 +106,8 @@ class TextChecker:
                 return [problem(where, "world", error)]
         name = f"world {description.name} ({len(description.models)} models)"
         text = path.read_text(encoding="utf-8-sig", errors="replace")
-        details = _not_failed(self._details(text, where, path.parent), heard)
-        return [Finding(where, name, WORKS), *details, *_told(heard, where)]
+        details = _not_failed(self._details(text, where, path.parent), captured)
+        return [Finding(where, name, WORKS), *details, *_told(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
         """Plugins and elements of the text, which stands in `folder`, and of what it includes."""
@@ -132,14 +132,15 @@ def _utf8(path: Path) -> str:
                           "the file as UTF-8") from None
 
 
-def _told(heard: list[Said], where: str) -> list[Finding]:
-    return [Finding(where, "it says", said.status, " ".join(said.line.split())) for said in heard]
+def _told(captured: list[LogLine], where: str) -> list[Finding]:
+    return [Finding(where, "it says", each.status, " ".join(each.line.split()))
+            for each in captured]
 
 
-def _not_failed(details: list[Finding], heard: list[Said]) -> list[Finding]:
+def _not_failed(details: list[Finding], captured: list[LogLine]) -> list[Finding]:
     """Without plugins that work by the table, and said here that they do not."""
     return [found for found in details
-            if not any(f"{found.part} is not loaded" in said.line for said in heard)]
+            if not any(f"{found.part} is not loaded" in each.line for each in captured)]
 
 
 def is_for_show(text: str) -> bool:

@@ -7,9 +7,9 @@ import threading
 import time as wall
 from collections.abc import Callable, Sequence
 
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim_ros.control import registry
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.switching import (
     ABORTED,
     RUNNING,
@@ -22,7 +22,7 @@ from bullet_sim_ros.control.switching import (
     plan,
     there_are,
 )
-from bullet_sim_ros.errors import told
+from bullet_sim_ros.errors import format_error
 
 log = logging.getLogger("bullet_sim.control")
 
@@ -32,9 +32,9 @@ LOOK = 0.1  # s, wall: how often to see whether the simulation has ended
 class ControllerManager:
     """`update` and `close` belong to the loop's thread, everything else to ROS's threads."""
 
-    def __init__(self, open_host: Callable[[str], ControllerHost],
+    def __init__(self, open_context: Callable[[str], ControllerContext],
                  stopped: Callable[[], bool] = lambda: False):
-        self._open_host = open_host
+        self._open_context = open_context
         self._stopped = stopped
         self._one_at_a_time = threading.Lock()  # requests
         self._handover = threading.Lock()  # of a switch to the loop
@@ -42,7 +42,7 @@ class ControllerManager:
         self._closed = False
         self._loaded: dict[str, Loaded] = {}
         self._running: list[Loaded] = []
-        self._duties: list[tuple[Pace, Callable[[], None]]] = []
+        self._tasks: list[tuple[Rate, Callable[[], None]]] = []
 
     # --- the loop
 
@@ -60,16 +60,16 @@ class ControllerManager:
                 loaded.controller.update(time, period)
             except Exception as error:  # one controller's fault must not take the others with it
                 self._abort(loaded, time, error)
-        for pace, action in self._duties:
-            if pace.due(time):
+        for rate, action in self._tasks:
+            if rate.due(time):
                 action()
 
     def close(self) -> None:
         """End all controllers and their topics; whoever waits is told."""
         self._closed = True
         for loaded in self._loaded.values():
-            loaded.host.close()
-        self._loaded, self._running, self._duties = {}, [], []
+            loaded.context.close()
+        self._loaded, self._running, self._tasks = {}, [], []
 
     def _carry_out(self, time: float) -> None:
         with self._handover:
@@ -96,13 +96,13 @@ class ControllerManager:
             loaded.controller.stop(time)
         except Exception as error:
             self._abort(loaded, time, error)
-        for handle in loaded.host.claims.values():
+        for handle in loaded.context.claims.values():
             handle.rest()
 
     def _abort(self, loaded: Loaded, time: float, error: Exception) -> None:
-        log.error("Controller '%s' failed and is stopped: %s", loaded.name, told(error))
+        log.error("Controller '%s' failed and is stopped: %s", loaded.name, format_error(error))
         loaded.state = ABORTED
-        for handle in loaded.host.claims.values():
+        for handle in loaded.context.claims.values():
             handle.rest()
         self._note_running()
 
@@ -127,27 +127,29 @@ class ControllerManager:
                 raise ManagerError(f"A controller named '{name}' was already loaded inside the "
                                    "controller manager")
             try:
-                host = self._open_host(name)
+                context = self._open_context(name)
             except Exception as error:  # a name that is none, or no master
-                raise ManagerError(f"Could not load controller '{name}': {told(error)}") from error
+                raise ManagerError(
+                    f"Could not load controller '{name}': {format_error(error)}"
+                ) from error
             try:
-                loaded = self._make(name, host)
+                loaded = self._make(name, context)
             except Exception:
-                host.close()
+                context.close()
                 raise
             if self._closed:
-                host.close()
+                context.close()
                 raise ManagerError(f"The model of controller '{name}' was deleted")
             self._loaded = {**self._loaded, name: loaded}
             self._note_duties()
 
-    def _make(self, name: str, host: ControllerHost) -> Loaded:
-        kind = host.parameters.value("type", None)
+    def _make(self, name: str, context: ControllerContext) -> Loaded:
+        kind = context.parameters.value("type", None)
         if kind is None:
             raise ManagerError(
                 f"Could not load controller '{name}' because the type was not specified. Did you "
                 "load the controller configuration on the parameter server (namespace: "
-                f"'{host.namespace}')? Parameter {host.parameters.where('type')} is not set")
+                f"'{context.namespace}')? Parameter {context.parameters.where('type')} is not set")
         made = registry.find(str(kind))
         if made is None:
             close = registry.nearest(str(kind))
@@ -157,9 +159,11 @@ class ControllerManager:
                 + " Use 'rosservice call controller_manager/list_controller_types' to get the "
                 "available types")
         try:
-            return Loaded(name, str(kind), made(host), host)
+            return Loaded(name, str(kind), made(context), context)
         except Exception as error:
-            raise ManagerError(f"Initializing controller '{name}' failed: {told(error)}") from error
+            raise ManagerError(
+                f"Initializing controller '{name}' failed: {format_error(error)}"
+            ) from error
 
     def unload(self, name: str) -> None:
         """Forget a controller that does not run."""
@@ -173,7 +177,7 @@ class ControllerManager:
                                    "still running")
             self._loaded = {key: other for key, other in self._loaded.items() if key != name}
             self._note_duties()
-            loaded.host.close()
+            loaded.context.close()
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
                timeout: float = 0.0) -> None:
@@ -212,4 +216,4 @@ class ControllerManager:
             raise Gone("Could not switch controllers: the simulation or the model is gone")
 
     def _note_duties(self) -> None:
-        self._duties = [duty for loaded in self._loaded.values() for duty in loaded.host.duties]
+        self._tasks = [task for loaded in self._loaded.values() for task in loaded.context.tasks]

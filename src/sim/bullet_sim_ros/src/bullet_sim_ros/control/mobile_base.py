@@ -12,9 +12,9 @@ from tf2_msgs.msg import TFMessage
 
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
 
@@ -24,9 +24,9 @@ log = logging.getLogger("bullet_sim.control")
 class MobileBaseController(Controller):
     """Commands count only while the controller runs; odometry starts at zero when it is loaded."""
 
-    def __init__(self, host: ControllerHost, base: MobileBase):
-        super().__init__(host)
-        p = host.parameters
+    def __init__(self, context: ControllerContext, base: MobileBase):
+        super().__init__(context)
+        p = context.parameters
         self.base = base
         self.enable_odom_tf = p.flag("enable_odom_tf", True)
         self.set_publish_rate(p.number("publish_rate", 50.0))
@@ -37,13 +37,13 @@ class MobileBaseController(Controller):
         self._odom_frame = p.text("odom_frame_id", "odom")
         self._pose_covariance = _diagonal(p.numbers("pose_covariance_diagonal", 6))
         self._twist_covariance = _diagonal(p.numbers("twist_covariance_diagonal", 6))
-        self._odometry = host.advertise("odom", Odometry, queue_size=100)
-        self._transforms = host.advertise("/tf", TFMessage, queue_size=100)
+        self._odometry = context.advertise("odom", Odometry, queue_size=100)
+        self._transforms = context.advertise("/tf", TFMessage, queue_size=100)
         self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
 
     def set_publish_rate(self, rate_hz: float) -> None:
         """Of odometry and transform."""
-        self._pace = Pace(rate_hz)
+        self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,
                   give: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
@@ -54,7 +54,7 @@ class MobileBaseController(Controller):
                 return None
             return give(message)
 
-        return self.host.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
+        return self.context.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
 
     def start(self, time: float) -> None:
         """Stand still and listen."""
@@ -74,13 +74,13 @@ class MobileBaseController(Controller):
 
     def refuse(self, what: str) -> None:
         """A command that is no command."""
-        log.warning("%s: a command that is %s is ignored", self.host.describe(), what)
+        log.warning("%s: a command that is %s is ignored", self.context.describe(), what)
 
     def _complain(self, what: str) -> None:
         """Once from each start or stop on: commands come many times a second."""
         if what not in self._complained:
             self._complained.add(what)
-            log.error("%s: %s", self.host.describe(), what)
+            log.error("%s: %s", self.context.describe(), what)
 
     def _take_twist(self, msg: Twist) -> Callable[[], None] | None:
         if not convert.is_sane(msg):
@@ -90,12 +90,12 @@ class MobileBaseController(Controller):
         if self._alone and senders > 1:
             self._complain(f"{senders} publishers of cmd_vel, but allow_multiple_cmd_vel_publishers"
                            " is false: it brakes")
-            return lambda: self.base.command(self.host.world_time(), 0.0, 0.0)
+            return lambda: self.base.command(self.context.world_time(), 0.0, 0.0)
         return lambda: self.give(msg)
 
     def give(self, msg: Twist) -> None:
         """Hand a good command to the drive; in the loop."""
-        self.base.command(self.host.world_time(), msg.linear.x, msg.angular.z)
+        self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z)
 
     def _publish(self) -> None:
         tf_wanted = self.enable_odom_tf and self._transforms.get_num_connections()

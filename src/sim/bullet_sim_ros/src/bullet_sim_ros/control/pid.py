@@ -7,7 +7,7 @@ from rospy import Duration
 
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.gains_reconfigure import offer_gains
 from bullet_sim_ros.control.parameters import ControllerParameters
 
@@ -27,25 +27,25 @@ def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains
     )
 
 
-def open_pid(host: ControllerHost, group: str = "pid") -> Pid:
+def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
     """A PID with the gains of a group of parameters, which dynamic_reconfigure can change."""
-    pid = Pid(read_gains(host.parameters, group))
+    pid = Pid(read_gains(context.parameters, group))
 
     def change(gains: PidGains) -> None:
         def set_gains() -> None:
             pid.gains = gains
-        host.leave(set_gains)
+        context.leave(set_gains)
 
-    offer_gains(host, host.parameters.where(group), pid.gains, change)
+    offer_gains(context, context.parameters.where(group), pid.gains, change)
     return pid
 
 
 class PidTopic:
     """`<group>/state`: what the PID did in each update."""
 
-    def __init__(self, host: ControllerHost, pid: Pid, group: str = "pid"):
+    def __init__(self, context: ControllerContext, pid: Pid, group: str = "pid"):
         self._pid = pid
-        self._publisher = host.advertise(f"{group}/state", PidState, queue_size=1)
+        self._publisher = context.advertise(f"{group}/state", PidState, queue_size=1)
 
     def publish(self, time: float, period: float) -> None:
         """Tell whoever listens; time and period in s."""

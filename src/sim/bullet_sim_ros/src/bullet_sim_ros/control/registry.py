@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 
 BASE_CLASS = "controller_interface::ControllerBase"
 
@@ -21,8 +19,8 @@ class Controller:
     says what is wrong. Time and period are in simulated seconds.
     """
 
-    def __init__(self, host: ControllerHost):
-        self.host = host
+    def __init__(self, context: ControllerContext):
+        self.context = context
 
     def start(self, time: float) -> None:
         """About to be updated; also after an emergency stop was released."""

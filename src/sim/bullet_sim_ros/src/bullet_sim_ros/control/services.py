@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
 from controller_manager_msgs.srv import (
@@ -27,9 +26,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.control")
 
@@ -40,7 +37,7 @@ INTERFACE_NAMES = {"effort": "hardware_interface::EffortJointInterface",
 READ_ONLY = "hardware_interface::JointStateInterface"
 
 
-def offer(host: Host, manager: ControllerManager, namespace: str) -> None:
+def offer(context: PluginContext, manager: ControllerManager, namespace: str) -> None:
     """Advertise them below NAMESPACE/controller_manager."""
     def switch(request: SwitchControllerRequest) -> None:
         if request.strictness not in (STRICT, BEST_EFFORT):
@@ -72,13 +69,13 @@ def offer(host: Host, manager: ControllerManager, namespace: str) -> None:
             ReloadControllerLibrariesResponse)),
     }
     for name, (kind, handler) in handlers.items():
-        host.serve(names.join(namespace, f"controller_manager/{name}"), kind, handler)
+        context.serve(names.join(namespace, f"controller_manager/{name}"), kind, handler)
 
 
 def state_of(loaded: Loaded, state: str) -> ControllerState:
     """A controller as list_controllers tells it."""
     claimed: dict[str, list[str]] = {}
-    for joint, handle in sorted(loaded.host.claims.items()):
+    for joint, handle in sorted(loaded.context.claims.items()):
         claimed.setdefault(INTERFACE_NAMES[handle.interface], []).append(joint)
     if not claimed:
         claimed[READ_ONLY] = []

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from bullet_sim.errors import SimulationError
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.registry import Controller
 
 INITIALIZED, RUNNING, STOPPED, ABORTED = "initialized", "running", "stopped", "aborted"
@@ -29,7 +29,7 @@ class Loaded:
     name: str
     type: str
     controller: Controller
-    host: ControllerHost
+    context: ControllerContext
     state: str = INITIALIZED
 
     @property
@@ -89,7 +89,7 @@ def _check_for_conflict(together: Iterable[Loaded]) -> None:
     """No joint may be commanded by two controllers, through whatever interface."""
     holder: dict[str, Loaded] = {}
     for loaded in together:
-        for joint in loaded.host.claims:
+        for joint in loaded.context.claims:
             other = holder.setdefault(joint, loaded)
             if other is not loaded:
                 raise ManagerError(

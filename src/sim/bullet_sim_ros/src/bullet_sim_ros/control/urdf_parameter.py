@@ -5,22 +5,21 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import rospy
 
 from bullet_sim_ros import params
-from bullet_sim_ros.errors import told
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.control")
 
 POLL = 0.1  # s, wall
 
 
-def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None]) -> None:
+def with_urdf(
+    context: PluginContext, namespace: str, name: str, use: Callable[[str], None]
+) -> None:
     """Call `use(text)` in the loop: at once if the parameter is there, else as soon as it is.
 
     The text is empty where the parameter holds none.
@@ -28,7 +27,7 @@ def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None])
     Upstream waits here and holds up the whole world; a spawn service would not answer meanwhile.
     """
     closed = threading.Event()
-    host.on_close(closed.set)
+    context.on_close(closed.set)
     found = params.find_upwards(namespace, name)
     rospy.loginfo("gazebo_ros_control plugin is waiting for model URDF in parameter [%s] on the "
                   "ROS param server.", found or name)
@@ -43,13 +42,13 @@ def with_urdf(host: Host, namespace: str, name: str, use: Callable[[str], None])
         try:
             use(_text(params.find_upwards(namespace, name)))
         except Exception as error:  # nobody else would see it
-            log.error("%s is not loaded: %s", host.describe(), told(error))
-            host.close()
+            log.error("%s is not loaded: %s", context.describe(), format_error(error))
+            context.close()
 
     def poll() -> None:
         while not closed.wait(POLL) and not rospy.is_shutdown():
             if params.find_upwards(namespace, name):
-                host.shared.mailbox.leave(look)
+                context.services.mailbox.post(look)
                 return
 
     threading.Thread(target=poll, name="urdf", daemon=True).start()

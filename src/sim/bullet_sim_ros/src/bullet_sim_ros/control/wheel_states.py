@@ -9,17 +9,17 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 
 
 class WheelStates:
     """Wanted, actual and the difference of both, wheel by wheel, the left ones first."""
 
-    def __init__(self, host: ControllerHost, drive: DiffDrive):
+    def __init__(self, context: ControllerContext, drive: DiffDrive):
         self._drive = drive
         self._handles = (*drive.left, *drive.right)
-        self._topic = host.advertise("wheel_joint_controller_state",
-                                     JointTrajectoryControllerState, queue_size=100)
+        self._topic = context.advertise("wheel_joint_controller_state",
+                                        JointTrajectoryControllerState, queue_size=100)
         count = len(self._handles)
         self._positions, self._wanted, self._actual = [0.0] * count, [0.0] * count, [0.0] * count
 

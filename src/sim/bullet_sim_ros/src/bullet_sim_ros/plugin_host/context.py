@@ -14,30 +14,30 @@ from bullet_sim.description import PluginDescription, SensorDescription, Visual
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert
-from bullet_sim_ros.errors import PluginError, told
+from bullet_sim_ros.errors import PluginError, format_error
 from bullet_sim_ros.plugin_host.parameters import PluginParameters
-from bullet_sim_ros.plugin_host.scope import Place
-from bullet_sim_ros.plugin_host.services import Shared
-from bullet_sim_ros.scheduler import Duty, always
+from bullet_sim_ros.plugin_host.scope import PluginScope
+from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.scheduler import PeriodicTask, always
 
 log = logging.getLogger("bullet_sim.plugins")
 
 
-class Host(Place):
+class PluginContext(PluginScope):
     """One plugin's view of the simulation. Made and used in the loop's thread."""
 
-    def __init__(self, shared: Shared, model: Model | None, description: PluginDescription,
+    def __init__(self, services: SimServices, model: Model | None, description: PluginDescription,
                  sensor: SensorDescription | None = None, link: Link | None = None,
                  visual: Visual | None = None):
-        super().__init__(shared.world, model, description, sensor, link, visual)
-        self.shared = shared
+        super().__init__(services.world, model, description, sensor, link, visual)
+        self.services = services
         self.parameters = PluginParameters(model.name if model else "(world)", description)
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
         self._drawn: Future | None = None
         self._closed = False
         self._expects_answers = False
-        self._duty: Duty | None = None  # the last that `every` was asked for
+        self._task: PeriodicTask | None = None  # the last that `every` was asked for
 
     @property
     def closed(self) -> bool:
@@ -47,7 +47,7 @@ class Host(Place):
     @property
     def updates(self) -> int:
         """How often the plugin has done what it does at a rate."""
-        return self._duty.count if self._duty else 0
+        return self._task.count if self._task else 0
 
     # --- when the loop calls
 
@@ -55,18 +55,18 @@ class Host(Place):
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
         """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step.
 
-        `whole_steps` is for plugins that count the period from the last time (see `Schedule`). As
+        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). As
         upstream has it, a rate below zero is none, too.
         """
-        agenda = self.shared.agenda
-        self._duty = duty = agenda.add(
+        scheduler = self.services.scheduler
+        self._task = task = scheduler.add(
             max(rate_hz, 0.0), self._guarded(action), wanted, whole_steps)
-        self._closers.append(lambda: agenda.remove(duty))
+        self._closers.append(lambda: scheduler.remove(task))
 
     def change_rate(self, rate_hz: float) -> None:
         """Do what `every` was last asked for at another rate, from now on."""
-        if self._duty is not None and not self._closed:
-            self.shared.agenda.change_rate(self._duty, rate_hz)
+        if self._task is not None and not self._closed:
+            self.services.scheduler.change_rate(self._task, rate_hz)
 
     def every_reading(self, rate_hz: float, action: Callable[[], None],
                       wanted: Callable[[], bool] = always) -> None:
@@ -108,21 +108,21 @@ class Host(Place):
         What that one failed with is raised here. In lockstep the world waits for the picture anyway
         and the job is done at once.
         """
-        if self.shared.lockstep.topics:
-            self.shared.drawing.settle()  # the renderer does one thing at a time
+        if self.services.lockstep.topics:
+            self.services.drawing.settle()  # the renderer does one thing at a time
             job()
             return
         if self._drawn is not None and not self._drawn.done():
-            with self.world.stages.measure("wait"):
+            with self.world.profiler.measure("wait"):
                 self._drawn.exception()
         if self._drawn is not None:
             self._drawn.result()
-        self._drawn = self.shared.drawing.submit(job)
+        self._drawn = self.services.drawing.submit(job)
 
     def expect_answer(self) -> None:
         """A frame is about to go to somebody: in lockstep the world then waits for the answer."""
         self._expects_answers = True
-        self.shared.lockstep.expect()
+        self.services.lockstep.expect()
 
     def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
         def run() -> None:
@@ -131,7 +131,7 @@ class Host(Place):
             try:
                 action()
             except Exception as error:  # a plugin's fault must not take the simulation with it
-                log.error("%s failed and is switched off: %s", self.describe(), told(error))
+                log.error("%s failed and is switched off: %s", self.describe(), format_error(error))
                 self.close()
         return run
 
@@ -145,21 +145,21 @@ class Host(Place):
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
         """A subscriber; `take(message)` returns what the loop is to do, or None."""
-        lockstep = self.shared.lockstep
+        lockstep = self.services.lockstep
         resolved = rospy.resolve_name(_legal(topic))
         answers = resolved in lockstep.topics
 
-        def leave(message) -> None:
+        def receive(message) -> None:
             function = take(message)
             if function is not None:
-                self.shared.mailbox.leave(function)
+                self.services.mailbox.post(function)
             if answers:
                 lockstep.hear(resolved, self)
 
         if answers:
-            lockstep.join(resolved, self)
-            self._closers.append(lambda: lockstep.leave(resolved, self))
-        subscriber = rospy.Subscriber(_legal(topic), kind, leave, **options)
+            lockstep.subscribe(resolved, self)
+            self._closers.append(lambda: lockstep.unsubscribe(resolved, self))
+        subscriber = rospy.Subscriber(_legal(topic), kind, receive, **options)
         self._closers.append(subscriber.unregister)
         return subscriber
 
@@ -188,13 +188,13 @@ class Host(Place):
         """End all topics and services of the plugin."""
         self._closed = True
         if self._expects_answers:
-            self.shared.lockstep.cancel()
+            self.services.lockstep.cancel()
         if self._drawn is not None:
             self._drawn.exception()  # waits: its topics are still needed
         while self._closers:
             self._closers.pop()()
         # What it calls leads back to it: the plugin's arrays would wait for the collector.
-        self._duty, self._drawn = None, None
+        self._task, self._drawn = None, None
         self._resets.clear()
 
 

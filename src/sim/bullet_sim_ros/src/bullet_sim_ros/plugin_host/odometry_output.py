@@ -7,31 +7,38 @@ from nav_msgs.msg import Odometry
 
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 
 class OdometryOutput:
     """Odometry of a plugin; the topic's height may be left at 0 while the transform has it."""
 
-    def __init__(self, host: Host, namespace: str, base_frame: str = "base_footprint", *,
-                 transform: bool = True, flat: bool = False,
-                 variances: tuple[float, float, float] = convert.DRIVE_VARIANCES,
-                 twist_variances: tuple[float, float, float] | None = None):
-        p = host.parameters
+    def __init__(
+        self,
+        context: PluginContext,
+        namespace: str,
+        base_frame: str = "base_footprint",
+        *,
+        transform: bool = True,
+        flat: bool = False,
+        variances: tuple[float, float, float] = convert.DRIVE_VARIANCES,
+        twist_variances: tuple[float, float, float] | None = None,
+    ):
+        p = context.parameters
         self.prefix = params.tf_prefix(namespace)
-        self._shared = host.shared
+        self._services = context.services
         self._odom_frame = names.frame(self.prefix, p.text("odometryFrame", "odom"))
         self._base_frame = names.frame(self.prefix, p.text("robotBaseFrame", base_frame))
         self._transform, self._flat = transform, flat
         self.variances, self.twist_variances = variances, twist_variances
-        self._topic = host.advertise(names.join(namespace, p.text("odometryTopic", "odom")),
-                                     Odometry, queue_size=1)
+        self._topic = context.advertise(names.join(namespace, p.text("odometryTopic", "odom")),
+                                        Odometry, queue_size=1)
         if transform:
-            host.shared.announce_transforms()
+            context.services.announce_transforms()
 
     def wanted(self) -> bool:
         """Whether anybody listens."""
-        return bool(self._topic.get_num_connections()) or self._shared.transforms_wanted()
+        return bool(self._topic.get_num_connections()) or self._services.transforms_wanted()
 
     def publish(self, reading: OdometryReading, others: tuple[TransformStamped, ...] = ()) -> None:
         """Send topic and transform, and other transforms with it."""
@@ -46,4 +53,4 @@ class OdometryOutput:
             transforms.append(convert.transform_to_msg(
                 reading.pose, reading.time, self._odom_frame, self._base_frame))
         if transforms:
-            self._shared.send_transforms(transforms)
+            self._services.send_transforms(transforms)

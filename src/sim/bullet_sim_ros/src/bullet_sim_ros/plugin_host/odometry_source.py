@@ -6,21 +6,21 @@ from collections.abc import Sequence
 
 from bullet_sim.joint import Joint
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
 
 
 class OdometrySource:
     """The truth (`world`), or what a left and a right wheel have turned (`encoder`)."""
 
-    def __init__(self, host: Host, p: LoggedParameters, wheels: Sequence[Joint],
+    def __init__(self, context: PluginContext, p: LoggedParameters, wheels: Sequence[Joint],
                  encoders: WheelOdometry):
-        self._world, self._model = host.world, host.model
+        self._world, self._model = context.world, context.model
         self._left, self._right = wheels
         self._encoders = encoders
         self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
         if not self._true:
-            host.each_step(self._count)
+            context.each_step(self._count)
 
     def sample(self) -> OdometryReading:
         """Pose and twist now."""

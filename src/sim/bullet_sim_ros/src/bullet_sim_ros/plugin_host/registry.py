@@ -7,15 +7,15 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 
 from bullet_sim.model import Model
-from bullet_sim_ros.errors import told
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.sensor_types import warn_of_sensor
-from bullet_sim_ros.plugin_host.services import Shared
+from bullet_sim_ros.plugin_host.services import SimServices
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
 
 log = logging.getLogger("bullet_sim.plugins")
 
-_registry: dict[str, Callable[[Host], object]] = {}
+_registry: dict[str, Callable[[PluginContext], object]] = {}
 # Libraries that only make sense inside Gazebo's own process: nothing is missing without them.
 NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 
@@ -29,38 +29,43 @@ def plugin(*filenames: str) -> Callable[[type], type]:
     return register
 
 
-def load_plugins(shared: Shared, model: Model) -> list[Host]:
+def load_plugins(services: SimServices, model: Model) -> list[PluginContext]:
     """All plugins of a model, its sensors and visuals; one that fails is one error line."""
-    hosts = [Host(shared, model, description) for description in model.description.plugins]
+    contexts = [
+        PluginContext(services, model, description) for description in model.description.plugins
+    ]
     for link in model.links.values():
         for sensor in link.description.sensors:
             warn_of_sensor(model.name, sensor)
-            hosts += [Host(shared, model, made, sensor, link) for made in sensor.plugins]
+            contexts += [
+                PluginContext(services, model, made, sensor, link) for made in sensor.plugins
+            ]
         for visual in link.description.visuals:
-            hosts += [Host(shared, model, made, link=link, visual=visual)
-                      for made in visual.plugins]
-    return [host for host in hosts if _load(host)]
+            contexts += [PluginContext(services, model, made, link=link, visual=visual)
+                         for made in visual.plugins]
+    return [context for context in contexts if _load(context)]
 
 
-def load_world_plugins(shared: Shared) -> list[Host]:
+def load_world_plugins(services: SimServices) -> list[PluginContext]:
     """The plugins that stand in the `<world>` itself."""
-    hosts = [Host(shared, None, plugin) for plugin in shared.world.description.plugins]
-    return [host for host in hosts if _load(host)]
+    contexts = [PluginContext(services, None, description)
+                for description in services.world.description.plugins]
+    return [context for context in contexts if _load(context)]
 
 
-def _load(host: Host) -> bool:
+def _load(context: PluginContext) -> bool:
     """Make the plugin, which tells its host what to call when."""
-    filename = PurePosixPath(host.description.filename).name
+    filename = PurePosixPath(context.description.filename).name
     if filename in NOT_NEEDED:
         return False
     made = _registry.get(filename)
     if made is None:
-        warn_of_unknown(host, filename, _registry)
+        warn_of_unknown(context, filename, _registry)
         return False
     try:
-        made(host)
+        made(context)
     except Exception as error:
-        log.error("%s is not loaded: %s", host.describe(), told(error))
-        host.close()
+        log.error("%s is not loaded: %s", context.describe(), format_error(error))
+        context.close()
         return False
     return True

@@ -9,7 +9,7 @@ from bullet_sim.world import World
 from bullet_sim_ros.errors import PluginError
 
 
-class Place:
+class PluginScope:
     """A plugin's element and those around it; what is asked for and not there is a PluginError."""
 
     def __init__(self, world: World, model: Model | None, description: PluginDescription,

@@ -9,17 +9,17 @@ from bullet_sim.world import World
 from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
-from bullet_sim_ros.scheduler import Agenda
+from bullet_sim_ros.scheduler import Scheduler
 
 
-class Shared:
+class SimServices:
     """What all plugins of one simulation use together."""
 
-    def __init__(self, world: World, mailbox: Mailbox, agenda: Agenda, drawing: DrawingThread,
+    def __init__(self, world: World, mailbox: Mailbox, scheduler: Scheduler, drawing: DrawingThread,
                  lockstep: Lockstep):
         self.world = world
         self.mailbox = mailbox
-        self.agenda = agenda
+        self.scheduler = scheduler
         self.drawing = drawing
         self.lockstep = lockstep
         self.warned: set[tuple[str, str]] = set()  # unknown plugins: where they are, file name

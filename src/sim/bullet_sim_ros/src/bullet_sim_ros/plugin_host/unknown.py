@@ -6,7 +6,7 @@ import difflib
 import logging
 from collections.abc import Iterable
 
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins.unknown")
 
@@ -34,27 +34,27 @@ CONSEQUENCES = {
 }
 
 
-def warn_of_unknown(host: Host, filename: str, known: Iterable[str]) -> None:
+def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str]) -> None:
     """One warning for each file name and model (or world)."""
-    place = "" if host.in_world else host.model.name
-    if (place, filename) in host.shared.warned:
+    place = "" if context.in_world else context.model.name
+    if (place, filename) in context.services.warned:
         return
-    host.shared.warned.add((place, filename))
+    context.services.warned.add((place, filename))
     close = difflib.get_close_matches(filename, known, 1, cutoff=0.85)
     hint = f"; did you mean {close[0]}?" if close else ""
-    log.warning("%s is not known here and left out; %s%s", host.describe(),
-                consequence(host, filename), hint)
+    log.warning("%s is not known here and left out; %s%s", context.describe(),
+                consequence(context, filename), hint)
 
 
-def consequence(host: Host, filename: str) -> str:
+def consequence(context: PluginContext, filename: str) -> str:
     """What will be missing: by the name, else by the place the plugin stands in."""
     for beginning, text in CONSEQUENCES.items():
         if filename.startswith(beginning):
             return text
-    if host.in_visual:
+    if context.in_visual:
         return "looks: what it shows will be missing"
-    if host.has_sensor:
+    if context.has_sensor:
         return "sensor: its topics will be missing"
-    if host.in_world:
+    if context.in_world:
         return "world plugin: what it does to the world will be missing, models are not touched"
     return "actuator or model plugin: what it moves will stand still, its topics will be missing"

@@ -7,7 +7,7 @@ from geometry_msgs.msg import Vector3, Wrench
 
 from bullet_sim.sensors.contact import ContactSensor, TouchingPair
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -18,15 +18,15 @@ class BumperPlugin:
     The sensor's own collision always comes first (upstream's order is the engine's).
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        self._sensor = ContactSensor(host.world, host.link, host.sensor)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        self._sensor = ContactSensor(context.world, context.link, context.sensor)
         namespace = p.namespace(missing="/", empty="/")
         self._frame = names.frame(params.own_tf_prefix(namespace), p.text("frameName", "world"))
         topic = names.join(namespace, p.text("bumperTopicName", "bumper_states"))
-        self._contacts = host.advertise(topic, ContactsState, queue_size=1)
-        host.every(host.sensor.update_rate, self._measure, self._contacts.get_num_connections)
+        self._contacts = context.advertise(topic, ContactsState, queue_size=1)
+        context.every(context.sensor.update_rate, self._measure, self._contacts.get_num_connections)
 
     def _measure(self) -> None:
         pairs = self._sensor.sample()

@@ -14,7 +14,7 @@ from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
 from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -26,10 +26,12 @@ log = logging.getLogger("bullet_sim.plugins")
 class DiffDrivePlugin:
     """Publishes first, then moves the wheels, as upstream does; there is no command time-out."""
 
-    def __init__(self, host: Host):
-        self._host = host
-        namespace = host.parameters.namespace(missing=host.model.name, empty=host.model.name)
-        p = LoggedParameters(host.parameters, "DiffDrive", namespace)
+    def __init__(self, context: PluginContext):
+        self._context = context
+        namespace = context.parameters.namespace(
+            missing=context.model.name, empty=context.model.name
+        )
+        p = LoggedParameters(context.parameters, "DiffDrive", namespace)
         self._joints = self._wheels(p.text("leftJoint", "left_joint"),
                                     p.text("rightJoint", "right_joint"))
         geometry = DiffDriveParameters(
@@ -38,14 +40,14 @@ class DiffDrivePlugin:
         )
         driven = self._as_driven(p.label, geometry)
         self._drive = DiffDrive(*driven, geometry)
-        self._odometry_source = OdometrySource(host, p, driven, WheelOdometry(
+        self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
-        self._updated = host.world.time
+        self._updated = context.world.time
         self._publish_tf = p.flag("publishTf", True)
         self._publish_odom_tf = p.flag("publishOdomTF", True)
         self._publish_wheel_tf = p.flag("publishWheelTF", False)
         if self._publish_tf and (self._publish_odom_tf or self._publish_wheel_tf):
-            host.shared.announce_transforms()
+            context.services.announce_transforms()
         prefix = params.tf_prefix(namespace)
         self._odom_frame = names.frame(prefix, p.text("odometryFrame", "odom"))
         self._base_frame = names.frame(prefix, p.text("robotBaseFrame", "base_footprint"))
@@ -53,11 +55,11 @@ class DiffDrivePlugin:
         self._label = p.label
         self._open_topics(namespace, p.text("commandTopic", "cmd_vel"),
                           p.text("odometryTopic", "odom"), p.flag("publishWheelJointState", False))
-        host.every(p.number("updateRate", 100.0), self._update)
-        host.on_reset(self._restart)
+        context.every(p.number("updateRate", 100.0), self._update)
+        context.on_reset(self._restart)
 
     def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
-        return self._host.model.joint(left), self._host.model.joint(right)
+        return self._context.model.joint(left), self._context.model.joint(right)
 
     def _as_driven(self, label: str, geometry: DiffDriveParameters) -> tuple[Joint, Joint]:
         """The wheels as left and right of the law: swapped for files from before Melodic.
@@ -66,8 +68,8 @@ class DiffDrivePlugin:
         right wheel left. Noetic, which does not read the tag, turns such robots the wrong way.
         """
         left, right = self._joints
-        links = self._host.model.links
-        if not self._host.parameters.flag("legacyMode", True) or not turns_backwards(
+        links = self._context.model.links
+        if not self._context.parameters.flag("legacyMode", True) or not turns_backwards(
                 *((joint, links[joint.description.child].pose) for joint in self._joints),
                 geometry):
             return left, right
@@ -78,24 +80,24 @@ class DiffDrivePlugin:
         return right, left
 
     def _open_topics(self, namespace: str, command: str, odometry: str, joints: bool) -> None:
-        host = self._host
+        context = self._context
         log.info("%s: Try to subscribe to %s", self._label, command)
-        self._odometry = host.advertise(names.join(namespace, odometry), Odometry, queue_size=10)
-        self._states = host.advertise(
+        self._odometry = context.advertise(names.join(namespace, odometry), Odometry, queue_size=10)
+        self._states = context.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if joints else None
-        host.subscribe(names.join(namespace, command), Twist, self._take_command, queue_size=1,
-                       tcp_nodelay=True)
+        context.subscribe(names.join(namespace, command), Twist, self._take_command, queue_size=1,
+                          tcp_nodelay=True)
         log.info("%s: Subscribe to %s", self._label, command)
         log.info("%s: Advertise odom on %s", self._label, odometry)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
-        world = self._host.world
+        world = self._context.world
         if self._states:
             reading = sample_joints(world, self._joints)
             self._states.publish(convert.joints_to_msg(reading, velocities=False))
@@ -105,8 +107,8 @@ class DiffDrivePlugin:
         self._updated = world.time
 
     def _heard(self) -> bool:
-        shared = self._host.shared
-        return bool(self._odometry.get_num_connections()) or shared.transforms_wanted()
+        services = self._context.services
+        return bool(self._odometry.get_num_connections()) or services.transforms_wanted()
 
     def _publish(self, reading: OdometryReading) -> None:
         """Upstream's publishTf switches the odometry topic as well as the transforms."""
@@ -119,11 +121,11 @@ class DiffDrivePlugin:
         if self._publish_wheel_tf:
             transforms += [self._wheel_transform(joint, reading.time) for joint in self._joints]
         if transforms:
-            self._host.shared.send_transforms(transforms)
+            self._context.services.send_transforms(transforms)
 
     def _wheel_transform(self, joint: Joint, time: float):
         """The wheel seen from the model, and told as if seen from its parent link: upstream's."""
-        model = self._host.model
+        model = self._context.model
         parent, child = joint.description.parent, joint.description.child
         pose = model.pose.inverse() * model.links[child].pose
         return convert.transform_to_msg(pose, time, names.frame(self._prefix, parent),
@@ -132,4 +134,4 @@ class DiffDrivePlugin:
     def _restart(self) -> None:
         self._drive.stop()
         self._odometry_source.restart()
-        self._updated = self._host.world.time
+        self._updated = self._context.world.time

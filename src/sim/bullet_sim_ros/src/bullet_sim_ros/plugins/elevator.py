@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 from bullet_sim.drives.elevator import Elevator
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -20,27 +20,32 @@ log = logging.getLogger("bullet_sim.plugins")
 class ElevatorPlugin:
     """A call while it is on its way is ignored, as upstream."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        lift, door = (host.model.joint(p.required(tag)) for tag in ("lift_joint", "door_joint"))
-        self._elevator = Elevator(host.world, lift, door, p.number("floor_height", 3.0),
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        lift, door = (context.model.joint(p.required(tag)) for tag in ("lift_joint", "door_joint"))
+        self._elevator = Elevator(context.world, lift, door, p.number("floor_height", 3.0),
                                   p.number("door_wait_time", 5.0))
         self._bottom = p.number("bottom_floor", -sys.maxsize)
         self._top = p.number("top_floor", sys.maxsize)
         topic = names.join(p.namespace(missing="/", empty="/"), p.text("topic", "elevator"))
-        host.subscribe(topic, String, self._take, queue_size=1)
-        host.each_step(self._elevator.update)
-        host.on_reset(self._elevator.reset)
+        context.subscribe(topic, String, self._take, queue_size=1)
+        context.each_step(self._elevator.update)
+        context.on_reset(self._elevator.reset)
 
     def _take(self, msg: String) -> Callable[[], None] | None:
         try:
             floor = int(msg.data)
         except ValueError:
-            log.error("%s: %r is no floor; a whole number is", self._host.describe(), msg.data)
+            log.error("%s: %r is no floor; a whole number is", self._context.describe(), msg.data)
             return None
         if not self._bottom <= floor <= self._top:
-            log.error("%s: there is no floor %d; there are %g to %g", self._host.describe(), floor,
-                      self._bottom, self._top)
+            log.error(
+                "%s: there is no floor %d; there are %g to %g",
+                self._context.describe(),
+                floor,
+                self._bottom,
+                self._top,
+            )
             return None
         return lambda: self._elevator.go(floor)

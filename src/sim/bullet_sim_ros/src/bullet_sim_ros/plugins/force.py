@@ -7,7 +7,7 @@ from collections.abc import Callable
 from geometry_msgs.msg import Wrench
 
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 NONE = (0.0, 0.0, 0.0)
@@ -17,17 +17,17 @@ NONE = (0.0, 0.0, 0.0)
 class ForcePlugin:
     """World axes, at the centre of mass; for ever, until another one comes."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        self._link = host.model.link(p.required("bodyName"))
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        self._link = context.model.link(p.required("bodyName"))
         self._force = self._torque = NONE  # N, N m
         topic = names.join(p.namespace(missing="/", empty="/"), p.required("topicName"))
-        host.subscribe(topic, Wrench, self._take, queue_size=1)
-        host.each_step(self._push)
+        context.subscribe(topic, Wrench, self._take, queue_size=1)
+        context.each_step(self._push)
 
     def _take(self, msg: Wrench) -> Callable[[], None] | None:
-        if self._host.refuses("wrench", msg.force, msg.torque):
+        if self._context.refuses("wrench", msg.force, msg.torque):
             return None
         return lambda: self._set(msg)
 

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.force import ForceDrive, ForceGains
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -44,30 +44,30 @@ FAMILIES = {
 class ForceBasedMovePlugin:
     """Odometry starts at zero where the model is spawned, and does not know what it bumped into."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        family = FAMILIES[PurePosixPath(host.description.filename).name]
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        family = FAMILIES[PurePosixPath(context.description.filename).name]
         namespace = p.namespace(missing="/", empty="/")
         gains = ForceGains(p.number("x_velocity_p_gain", family.gains.forward),
                            p.number("y_velocity_p_gain", family.gains.leftward),
                            p.number("yaw_velocity_p_gain", family.gains.yaw))
         timeout = (p.bound(family.timeout_tag, family.timeout) if family.timeout_tag
                    else family.timeout)
-        link = host.model.link(p.text("robotBaseFrame", "base_footprint"))
-        self._drive = ForceDrive(host.world, link, gains, timeout)
+        link = context.model.link(p.text("robotBaseFrame", "base_footprint"))
+        self._drive = ForceDrive(context.world, link, gains, timeout)
         self._output = OdometryOutput(
-            host, namespace, transform=p.flag("publishOdometryTf", family.transform))
-        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                       self._take_command, queue_size=1, tcp_nodelay=True)
-        host.each_step(self._drive.update)
+            context, namespace, transform=p.flag("publishOdometryTf", family.transform))
+        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                          self._take_command, queue_size=1, tcp_nodelay=True)
+        context.each_step(self._drive.update)
         rate_hz = p.number("odometryRate", 20.0)
         if rate_hz > 0:
-            host.every(rate_hz, self._publish, self._output.wanted)
-        host.on_reset(self._drive.reset)
+            context.every(rate_hz, self._publish, self._output.wanted)
+        context.on_reset(self._drive.reset)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.linear.y, msg.angular.z)
 

@@ -7,7 +7,7 @@ from geometry_msgs.msg import Vector3, WrenchStamped
 
 from bullet_sim.sensors.net_force import NetForce
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -15,19 +15,19 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class FtSensorPlugin:
     """The reaction in a joint, in the child link's frame; `provideFeedback` is not needed."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        self._joint = host.model.joint(p.required("jointName"))
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        self._joint = context.model.joint(p.required("jointName"))
         self._noise = p.deviation("gaussianNoise")
-        self._name = f"{host.model.name}::{self._joint.name} wrench"
+        self._name = f"{context.model.name}::{self._joint.name} wrench"
         namespace = p.namespace(missing="/", empty="/")
         self._frame = names.frame(params.own_tf_prefix(namespace), self._joint.description.child)
         topic = names.join(namespace, p.required("topicName"))
         self._joint.reaction()  # from now on it is measured
-        self._wrenches = host.advertise(topic, WrenchStamped, queue_size=1)
-        host.every(p.number("updateRate", 0.0), self._measure,
-                   self._wrenches.get_num_connections, whole_steps=True)
+        self._wrenches = context.advertise(topic, WrenchStamped, queue_size=1)
+        context.every(p.number("updateRate", 0.0), self._measure,
+                      self._wrenches.get_num_connections, whole_steps=True)
 
     def _measure(self) -> None:
         values = np.concatenate(self._joint.reaction())
@@ -43,16 +43,16 @@ class F3dPlugin:
     It says `world` whatever is written, as upstream intends; the tf_prefix goes before it.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        self._net = NetForce(host.world, host.model.link(p.required("bodyName")))
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        self._net = NetForce(context.world, context.model.link(p.required("bodyName")))
         namespace = p.namespace(missing="/", empty="/")
         self._frame = names.frame(params.own_tf_prefix(namespace), "world")
         topic = names.join(namespace, p.required("topicName"))
-        self._wrenches = host.advertise(topic, WrenchStamped, queue_size=1)
-        host.every(0.0, self._measure, self._wrenches.get_num_connections)
-        host.on_reset(self._net.restart)
+        self._wrenches = context.advertise(topic, WrenchStamped, queue_size=1)
+        context.every(0.0, self._measure, self._wrenches.get_num_connections)
+        context.on_reset(self._net.restart)
 
     def _measure(self) -> None:
         self._wrenches.publish(_message(self._net.sample(), self._world.time, self._frame))

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import PluginDescription
 from bullet_sim.drives.grasp import Grasp, GraspParameters
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.parameters import PluginParameters
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -20,9 +20,9 @@ log = logging.getLogger("bullet_sim.plugins")
 class GraspFixPlugin:
     """Updates by simulated time (upstream: the wall clock's)."""
 
-    def __init__(self, host: Host):
-        self._host = host
-        p = host.parameters
+    def __init__(self, context: PluginContext):
+        self._context = context
+        p = context.parameters
         most = round(p.number("max_grip_count", 10))
         parameters = GraspParameters(
             math.radians(p.number("forces_angle_tolerance", 120.0)), most,
@@ -30,26 +30,30 @@ class GraspFixPlugin:
             p.number("release_tolerance", 0.005))
         if p.flag("disable_collisions_on_attach", False):
             log.warning("%s: <disable_collisions_on_attach> has no effect: what is held goes on "
-                        "colliding", host.describe())
+                        "colliding", context.describe())
         # <arm> elements are the newer way of writing: several grippers in one plugin
-        element = host.description.element
+        element = context.description.element
         grasps = [self._grasp(arm, parameters) for arm in element.findall("arm") or [element]]
         rate_hz = p.number("update_rate", 5.0)
         for grasp in grasps:
-            host.every(rate_hz, grasp.update)
-            host.on_reset(grasp.release)
-            host.on_close(grasp.release)
+            context.every(rate_hz, grasp.update)
+            context.on_reset(grasp.release)
+            context.on_close(grasp.release)
 
     def _grasp(self, arm: Element, parameters: GraspParameters) -> Grasp:
-        host = self._host
-        palm = PluginParameters(host.model.name, PluginDescription(
-            host.description.name, host.description.filename, arm)).required("palm_link")
+        context = self._context
+        palm = PluginParameters(context.model.name, PluginDescription(
+            context.description.name, context.description.filename, arm)).required("palm_link")
         named = [(link.text or "").strip() for link in arm.findall("gripper_link")]
         if not named:
             raise PluginError("it needs a <gripper_link>")
-        fingers = [host.model.links[name] for name in named if name in host.model.links]
+        fingers = [context.model.links[name] for name in named if name in context.model.links]
         for name in named:
-            if name not in host.model.links:
-                log.error("%s: <gripper_link> %r is no link; there are: %s", host.describe(), name,
-                          ", ".join(host.model.links))
-        return Grasp(host.world, host.model.link(palm), fingers, parameters)
+            if name not in context.model.links:
+                log.error(
+                    "%s: <gripper_link> %r is no link; there are: %s",
+                    context.describe(),
+                    name,
+                    ", ".join(context.model.links),
+                )
+        return Grasp(context.world, context.model.link(palm), fingers, parameters)

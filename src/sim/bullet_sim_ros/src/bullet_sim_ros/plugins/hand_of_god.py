@@ -6,11 +6,11 @@ import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
-from bullet_sim.drives.spring_damper import Hand
+from bullet_sim.drives.spring_damper import SpringDamper
 from bullet_sim.pose import Pose, normalised
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 WORLD = "world"
@@ -20,24 +20,24 @@ WORLD = "world"
 class HandOfGodPlugin:
     """Pulls towards FRAME_desired as seen from world; publishes FRAME_actual, once it has one."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        self._link = host.model.link(p.required("linkName"))
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        self._link = context.model.link(p.required("linkName"))
         stiffness, angular = p.number("kl", 200.0), p.number("ka", 200.0)
         if stiffness < 0 or angular < 0:
             raise PluginError(f"<kl> is {stiffness:g} and <ka> {angular:g}; a spring is not "
                               "less than 0")
         frame = p.text("frameId", "hog")
         self._desired, self._actual = f"{frame}_desired", f"{frame}_actual"
-        self._hand = Hand(host.world, self._link, stiffness, angular)
+        self._hand = SpringDamper(context.world, self._link, stiffness, angular)
         self._frames = tf2_ros.BufferCore(rospy.Duration(10))
-        host.shared.announce_transforms()
-        host.subscribe("/tf", TFMessage, self._take, queue_size=100)
-        host.subscribe("/tf_static", TFMessage, self._take_static, queue_size=100)
+        context.services.announce_transforms()
+        context.subscribe("/tf", TFMessage, self._take, queue_size=100)
+        context.subscribe("/tf_static", TFMessage, self._take_static, queue_size=100)
         self._hand.update(None)  # for the first step
-        host.each_step(self._pull)
-        host.on_reset(self._frames.clear)
+        context.each_step(self._pull)
+        context.on_reset(self._frames.clear)
 
     def _take(self, msg: TFMessage) -> None:
         for transform in msg.transforms:
@@ -58,7 +58,7 @@ class HandOfGodPlugin:
     def _pull(self) -> None:
         wanted = self._wanted()
         self._hand.update(wanted)
-        shared = self._host.shared
-        if wanted is not None and shared.transforms_wanted():
-            shared.send_transforms([convert.transform_to_msg(
-                self._link.pose, self._host.world.time, WORLD, self._actual)])
+        services = self._context.services
+        if wanted is not None and services.transforms_wanted():
+            services.send_transforms([convert.transform_to_msg(
+                self._link.pose, self._context.world.time, WORLD, self._actual)])

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, Float32
 from bullet_sim.drives.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.parameters import read_numbers
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -23,30 +23,35 @@ log = logging.getLogger("bullet_sim.plugins")
 class HarnessPlugin:
     """The winch keeps its speed without the PIDs of the file, and the model does not swing."""
 
-    def __init__(self, host: Host):
-        self._host = host
-        element = host.description.element
+    def __init__(self, context: PluginContext):
+        self._context = context
+        element = context.description.element
         joints = {joint.get("name", ""): joint for joint in element.findall("joint")}
         if not joints:
             raise PluginError("it needs a <joint>")
         held, winch = (self._joint(joints, path) for path in ("detach", "winch/joint"))
-        link = host.model.link((held.findtext("child") or "").strip())
-        self._harness = Harness(host.world, link, self._axis(winch))
-        topics = names.join(f"/{host.model.name}", "harness")
-        host.subscribe(names.join(topics, "velocity"), Float32, self._take_speed, queue_size=1)
-        host.subscribe(names.join(topics, "detach"), Bool, self._take_detach, queue_size=1)
-        host.each_step(self._harness.update)
-        host.on_close(self._harness.detach)
+        link = context.model.link((held.findtext("child") or "").strip())
+        self._harness = Harness(context.world, link, self._axis(winch))
+        topics = names.join(f"/{context.model.name}", "harness")
+        context.subscribe(names.join(topics, "velocity"), Float32, self._take_speed, queue_size=1)
+        context.subscribe(names.join(topics, "detach"), Bool, self._take_detach, queue_size=1)
+        context.each_step(self._harness.update)
+        context.on_close(self._harness.detach)
 
     def _joint(self, joints: dict[str, Element], path: str) -> Element:
         """The joint that a tag names, else the first one."""
-        name = (self._host.description.element.findtext(path) or "").strip()
+        name = (self._context.description.element.findtext(path) or "").strip()
         if name in joints:
             return joints[name]
         first = next(iter(joints))
-        log.warning("%s: <%s> is %r; there are: %s; %s is used", self._host.describe(), path, name,
-                    ", ".join(filter(None, joints)) or "joints without a name",
-                    first or "the first joint")
+        log.warning(
+            "%s: <%s> is %r; there are: %s; %s is used",
+            self._context.describe(),
+            path,
+            name,
+            ", ".join(filter(None, joints)) or "joints without a name",
+            first or "the first joint",
+        )
         return joints[first]
 
     @staticmethod
@@ -59,7 +64,7 @@ class HarnessPlugin:
 
     def _take_speed(self, msg: Float32) -> Callable[[], None] | None:
         if not abs(msg.data) <= convert.LARGEST:
-            log.warning("%s: a speed that is not finite is ignored", self._host.describe())
+            log.warning("%s: a speed that is not finite is ignored", self._context.describe())
             return None
         return lambda: self._harness.command(msg.data)
 

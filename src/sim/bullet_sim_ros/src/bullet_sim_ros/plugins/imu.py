@@ -12,7 +12,7 @@ from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.imu import Imu, ImuReading
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -23,24 +23,24 @@ class ImuPlugin:
     `xyzOffset` moves nothing in upstream either. No tf_prefix.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
+    def __init__(self, context: PluginContext):
+        p = context.parameters
         namespace = p.namespace(missing="/", empty="/")
-        link = _find_link(host, p.required("bodyName"))
-        self._world = host.world
-        self._imu = Imu(host.world, link)
+        link = _find_link(context, p.required("bodyName"))
+        self._world = context.world
+        self._imu = Imu(context.world, link)
         self._frame = names.frame("", p.text("frameName", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
         self._noise = p.deviation("gaussianNoise")
-        self._random_name = f"{link.scoped_name}::{host.description.name}"
+        self._random_name = f"{link.scoped_name}::{context.description.name}"
         service = names.join(namespace, p.text("serviceName", "/default_imu"))
-        host.serve(service, Empty, lambda _request: EmptyResponse())
+        context.serve(service, Empty, lambda _request: EmptyResponse())
         topic = p.topic("/default_imu")
         if topic:
-            self._readings = host.advertise(names.join(namespace, topic), ImuMsg, queue_size=1)
-            host.every(p.number("updateRate", 0.0), self._measure,
-                       self._readings.get_num_connections, whole_steps=True)
-            host.on_reset(self._imu.restart)
+            self._readings = context.advertise(names.join(namespace, topic), ImuMsg, queue_size=1)
+            context.every(p.number("updateRate", 0.0), self._measure,
+                          self._readings.get_num_connections, whole_steps=True)
+            context.on_reset(self._imu.restart)
 
     def _measure(self) -> None:
         reading = self._with_noise(self._in_link_axes(self._imu.sample()))
@@ -66,12 +66,12 @@ class ImuPlugin:
         )
 
 
-def _find_link(host: Host, name: str) -> Link:
+def _find_link(context: PluginContext, name: str) -> Link:
     """A link of the model, else of any model in the world, as upstream looks it up."""
     try:
-        return host.model.link(name)
+        return context.model.link(name)
     except UnknownName as here:
         try:
-            return host.world.link(name)
+            return context.world.link(name)
         except UnknownName:
             raise here from None

@@ -9,7 +9,7 @@ from bullet_sim.pose import multiply, quaternion_from_rpy
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.imu_sensor import ImuSensor
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -17,21 +17,21 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class ImuSensorPlugin:
     """`gaussianNoise` disturbs the quaternion's components, too. No tf_prefix; no `xyzOffset`."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        self._imu = ImuSensor(host.world, host.link, host.sensor,
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        self._imu = ImuSensor(context.world, context.link, context.sensor,
                               p.flag("initialOrientationAsReference", False))
         self._frame = names.frame("", p.required("frameName"))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
         self._noise = p.deviation("gaussianNoise")
-        self._random_name = f"{host.link.scoped_name}::{host.sensor.name} plugin"
-        namespace = p.namespace(missing=f"/{host.model.name}", empty="/")
+        self._random_name = f"{context.link.scoped_name}::{context.sensor.name} plugin"
+        namespace = p.namespace(missing=f"/{context.model.name}", empty="/")
         topic = names.join(namespace, p.text("topicName", "imu_data"))
-        self._readings = host.advertise(topic, ImuMsg, queue_size=1)
-        host.every_reading(p.number("updateRateHZ", 1.0), self._measure,
-                           self._readings.get_num_connections)
-        host.on_reset(self._imu.restart)
+        self._readings = context.advertise(topic, ImuMsg, queue_size=1)
+        context.every_reading(p.number("updateRateHZ", 1.0), self._measure,
+                              self._readings.get_num_connections)
+        context.on_reset(self._imu.restart)
 
     def _measure(self) -> None:
         reading = self._imu.sample()

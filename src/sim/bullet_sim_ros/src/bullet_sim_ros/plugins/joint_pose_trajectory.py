@@ -13,8 +13,8 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.errors import PluginError, told
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.errors import PluginError, format_error
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -30,42 +30,42 @@ class JointPoseTrajectoryPlugin:
     which upstream leaves out when it is built.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
         namespace = p.namespace(missing="/", empty="/")
-        self._poses = JointPoses(host.world)
-        host.subscribe(names.join(namespace, p.text("topicName", "set_joint_trajectory")),
-                       JointTrajectory, self._take, queue_size=100)
-        host.serve(names.join(namespace, p.text("serviceName", "set_joint_trajectory")),
-                   SetJointTrajectory, self._serve)
-        host.each_step(self._poses.update)
-        host.on_reset(self._poses.stop)
+        self._poses = JointPoses(context.world)
+        context.subscribe(names.join(namespace, p.text("topicName", "set_joint_trajectory")),
+                          JointTrajectory, self._take, queue_size=100)
+        context.serve(names.join(namespace, p.text("serviceName", "set_joint_trajectory")),
+                      SetJointTrajectory, self._serve)
+        context.each_step(self._poses.update)
+        context.on_reset(self._poses.stop)
 
     def _take(self, msg: JointTrajectory) -> Callable[[], None]:
         def play() -> None:
             try:
                 self._play(msg, None)
             except SimulationError as error:
-                log.error("%s: %s", self._host.describe(), told(error))
+                log.error("%s: %s", self._context.describe(), format_error(error))
         return play
 
     def _serve(self, request) -> SetJointTrajectoryResponse:
         def play() -> SetJointTrajectoryResponse:
-            model = self._host.world.models.get(request.model_name)
+            model = self._context.world.models.get(request.model_name)
             try:
                 if request.set_model_pose and not convert.is_sane(request.model_pose):
                     raise PluginError(f"model_pose must be finite, up to {convert.LARGEST:g}")
                 self._play(request.joint_trajectory, model,
                            request.model_pose if request.set_model_pose else None)
             except SimulationError as error:
-                return SetJointTrajectoryResponse(False, told(error))
+                return SetJointTrajectoryResponse(False, format_error(error))
             return SetJointTrajectoryResponse(True, "SetJointTrajectory: trajectory set")
-        return self._host.shared.mailbox.call(play)
+        return self._context.services.mailbox.call(play)
 
     def _play(self, msg: JointTrajectory, model: Model | None, pose=None) -> None:
         held = self._held(msg.header.frame_id)
-        model = model or (held.model if held else self._host.model)
+        model = model or (held.model if held else self._context.model)
         for number, point in enumerate(msg.points):
             if len(point.positions) != len(msg.joint_names):
                 raise PluginError(f"point {number} of the trajectory has {len(point.positions)} "
@@ -81,4 +81,4 @@ class JointPoseTrajectoryPlugin:
                          held if held and held.model is model else None)
 
     def _held(self, frame: str) -> Link | None:
-        return None if frame in INERTIAL else self._host.world.link(frame)
+        return None if frame in INERTIAL else self._context.world.link(frame)

@@ -7,10 +7,10 @@ import logging
 from sensor_msgs.msg import JointState
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.joint import HeldJoint, Joint
+from bullet_sim.joint import Joint, PassiveJoint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -23,24 +23,26 @@ class JointStatePublisherPlugin:
     Without `jointName` the messages are empty, as upstream's are.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        namespace = p.namespace(missing=context.model.name, empty=context.model.name)
         wanted = p.text("jointName").replace(" ", "").split(",")
-        found = [_find_joint(host, name.strip()) for name in wanted if name.strip()]
+        found = [_find_joint(context, name.strip()) for name in wanted if name.strip()]
         self._joints = [joint for joint in found if joint is not None]
-        self._states = host.advertise(names.join(namespace, "joint_states"), JointState,
-                                      queue_size=1000)
-        host.every(p.number("updateRate", 100.0), self._publish, self._states.get_num_connections)
+        self._states = context.advertise(names.join(namespace, "joint_states"), JointState,
+                                         queue_size=1000)
+        context.every(
+            p.number("updateRate", 100.0), self._publish, self._states.get_num_connections
+        )
 
     def _publish(self) -> None:
         self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))
 
 
-def _find_joint(host: Host, name: str) -> Joint | HeldJoint | None:
+def _find_joint(context: PluginContext, name: str) -> Joint | PassiveJoint | None:
     try:
-        return host.model.joint(name)
+        return context.model.joint(name)
     except SimulationError as error:
-        log.error("%s: %s", host.describe(), error)
+        log.error("%s: %s", context.describe(), error)
         return None

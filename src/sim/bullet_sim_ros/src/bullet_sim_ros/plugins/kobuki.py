@@ -14,7 +14,7 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.imu_sensor import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.kobuki_core import CoreTopic
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
@@ -28,50 +28,52 @@ SIDES = ("left", "center", "right")
 class KobukiPlugin:
     """Commands, events and the gyroscope are below NAMESPACE/mobile_base, the rest in NAMESPACE."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        namespace = p.namespace(missing=host.model.name, empty=host.model.name)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        namespace = p.namespace(missing=context.model.name, empty=context.model.name)
         prefix = params.below(names.join(namespace, "base_prefix"))
         base = names.join(namespace, str(prefix or "mobile_base"))
-        imu = ImuSensor(host.world, *self._sensor(p.required("imu_name")))
+        imu = ImuSensor(context.world, *self._sensor(p.required("imu_name")))
         self._kobuki = Kobuki(
-            host.world, self._joint("left"), self._joint("right"), imu, self._number("torque"),
+            context.world, self._joint("left"), self._joint("right"), imu, self._number("torque"),
             self._number("wheel_separation"), self._number("wheel_diameter"),
             self._number("velocity_command_timeout"))
-        self._output = KobukiOutput(host, self._kobuki, namespace, base,
+        self._output = KobukiOutput(context, self._kobuki, namespace, base,
                                     p.flag("publish_tf", False))
         threshold = self._number("cliff_detection_threshold")
-        cliffs = [CliffTopic(host, base, side, threshold,
+        cliffs = [CliffTopic(context, base, side, threshold,
                              *self._sensor(p.required(f"cliff_sensor_{side}_name")))
                   for side in SIDES]
-        bumper = BumperTopic(host, base, self._sensor(p.required("bumper_name"))[0])
+        bumper = BumperTopic(context, base, self._sensor(p.required("bumper_name"))[0])
         self._subscribe(base)
-        host.each_step(self._kobuki.update)
-        host.every(RATE, self._output.publish)
-        drop = WheelDropTopic(host, base, self._kobuki)
+        context.each_step(self._kobuki.update)
+        context.every(RATE, self._output.publish)
+        drop = WheelDropTopic(context, base, self._kobuki)
         for events in (bumper, drop, *cliffs):
-            host.every(RATE, events.look, events.wanted)
-        core = CoreTopic(host, base, self._kobuki, bumper, cliffs, drop)
-        host.every(RATE, core.publish, core.wanted)
-        host.on_reset(self._kobuki.reset)
+            context.every(RATE, events.look, events.wanted)
+        core = CoreTopic(context, base, self._kobuki, bumper, cliffs, drop)
+        context.every(RATE, core.publish, core.wanted)
+        context.on_reset(self._kobuki.reset)
 
     def _subscribe(self, base: str) -> None:
         for name, kind, take in (("velocity", Twist, self._take_velocity),
                                  ("motor_power", MotorPower, self._take_power),
                                  ("reset_odometry", Empty, self._take_reset)):
-            self._host.subscribe(names.join(base, f"commands/{name}"), kind, take, queue_size=10)
+            self._context.subscribe(names.join(base, f"commands/{name}"), kind, take, queue_size=10)
 
     def _number(self, tag: str) -> float:
-        self._host.parameters.required(tag)
-        return self._host.parameters.number(tag, 0.0)
+        self._context.parameters.required(tag)
+        return self._context.parameters.number(tag, 0.0)
 
     def _joint(self, side: str):
-        return self._host.model.joint(self._host.parameters.required(f"{side}_wheel_joint_name"))
+        return self._context.model.joint(
+            self._context.parameters.required(f"{side}_wheel_joint_name")
+        )
 
     def _sensor(self, name: str) -> tuple[Link, SensorDescription]:
         """A sensor of the model by its name."""
-        found = {sensor.name: (link, sensor) for link in self._host.model.links.values()
+        found = {sensor.name: (link, sensor) for link in self._context.model.links.values()
                  for sensor in link.description.sensors}
         if name not in found:
             raise PluginError(f"the model has no sensor {name!r}; there are: "
@@ -79,7 +81,7 @@ class KobukiPlugin:
         return found[name]
 
     def _take_velocity(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._kobuki.command(msg.linear.x, msg.angular.z)
 

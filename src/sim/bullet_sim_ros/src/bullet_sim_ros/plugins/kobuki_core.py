@@ -9,7 +9,7 @@ from kobuki_msgs.msg import SensorState
 
 from bullet_sim.drives.kobuki import Kobuki
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 
 TICKS = 2578.33 / math.tau  # of a wheel's encoder, a rad: 52 a turn of the motor, geared
@@ -23,12 +23,12 @@ WORD = 0xFFFF
 class CoreTopic:
     """`sensors/core`. Currents, duty cycles, buttons and inputs are not simulated: they are 0."""
 
-    def __init__(self, host: Host, base: str, kobuki: Kobuki, bumper: BumperTopic,
+    def __init__(self, context: PluginContext, base: str, kobuki: Kobuki, bumper: BumperTopic,
                  cliffs: Sequence[CliffTopic], drop: WheelDropTopic):
-        self._host, self._kobuki = host, kobuki
+        self._context, self._kobuki = context, kobuki
         self._bumper, self._drop = bumper, drop
         self._cliffs = {cliff.side: cliff for cliff in cliffs}
-        self._topic = host.advertise(names.join(base, "sensors/core"), SensorState, queue_size=1)
+        self._topic = context.advertise(names.join(base, "sensors/core"), SensorState, queue_size=1)
 
     def wanted(self) -> int:
         """Whether anybody listens: contacts and rays cost time."""
@@ -36,7 +36,7 @@ class CoreTopic:
 
     def publish(self) -> None:
         """After a step."""
-        time = self._host.world.time
+        time = self._context.world.time
         cliffs = {side: self._cliffs[side].read() for side in BITS}
         left, right = (int(joint.position * TICKS) & WORD for joint in self._kobuki.wheels)
         msg = SensorState(

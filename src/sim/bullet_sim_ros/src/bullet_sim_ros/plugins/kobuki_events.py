@@ -13,7 +13,7 @@ from bullet_sim.drives.wheel_drop import WheelDrop
 from bullet_sim.link import Link
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading for a distance in m
 
@@ -21,9 +21,9 @@ CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading 
 class EventTopic:
     """`look` publishes what has changed since it last looked."""
 
-    def __init__(self, host: Host, base: str, name: str, kind: type):
-        self._host = host
-        self._topic = host.advertise(names.join(base, f"events/{name}"), kind, queue_size=1)
+    def __init__(self, context: PluginContext, base: str, name: str, kind: type):
+        self._context = context
+        self._topic = context.advertise(names.join(base, f"events/{name}"), kind, queue_size=1)
 
     def wanted(self) -> int:
         """Whether anybody listens: contacts and rays cost time."""
@@ -33,15 +33,15 @@ class EventTopic:
 class BumperTopic(EventTopic):
     """Each of the three that has changed."""
 
-    def __init__(self, host: Host, base: str, link: Link):
-        super().__init__(host, base, "bumper", BumperEvent)
+    def __init__(self, context: PluginContext, base: str, link: Link):
+        super().__init__(context, base, "bumper", BumperEvent)
         self._link = link
         self._pressed: set[str] = set()
 
     def pressed(self) -> set[str]:
         """Names of `SECTORS`."""
-        return pressed_bumpers(self._host.world.contacts(), self._link.scoped_name,
-                               self._host.model.pose)
+        return pressed_bumpers(self._context.world.contacts(), self._link.scoped_name,
+                               self._context.model.pose)
 
     def look(self) -> None:
         """After a step."""
@@ -57,18 +57,18 @@ class BumperTopic(EventTopic):
 class WheelDropTopic(EventTopic):
     """Each of the two wheels that lost the floor or found it."""
 
-    def __init__(self, host: Host, base: str, kobuki: Kobuki):
-        super().__init__(host, base, "wheel_drop", WheelDropEvent)
-        model = host.model
+    def __init__(self, context: PluginContext, base: str, kobuki: Kobuki):
+        super().__init__(context, base, "wheel_drop", WheelDropEvent)
+        model = context.model
         self._drop = WheelDrop({
             side: f"{model.name}::{joint.description.child}"
             for side, joint in zip(("left", "right"), kobuki.wheels, strict=True)},
-            host.world.time)
+            context.world.time)
         self._dropped: set[str] = set()
 
     def dropped(self) -> set[str]:
         """`left`, `right`."""
-        world = self._host.world
+        world = self._context.world
         return self._drop.dropped(world.contacts(), world.time)
 
     def look(self) -> None:
@@ -84,13 +84,13 @@ class WheelDropTopic(EventTopic):
 class CliffTopic(EventTopic):
     """When the floor under one sensor goes away or comes back."""
 
-    def __init__(self, host: Host, base: str, side: str, threshold: float, link: Link,
+    def __init__(self, context: PluginContext, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):
         """`threshold` in m: a floor this far down is none."""
-        super().__init__(host, base, "cliff", CliffEvent)
+        super().__init__(context, base, "cliff", CliffEvent)
         self.side = side
         self._threshold = threshold
-        self._laser = Laser(host.world, link, sensor)
+        self._laser = Laser(context.world, link, sensor)
         self._cliff = False
 
     def read(self) -> tuple[bool, int]:

@@ -6,7 +6,7 @@ from sensor_msgs.msg import LaserScan
 
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -17,16 +17,16 @@ class LaserPlugin:
     Both see collision shapes (upstream's GPU twin sees visuals).
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._laser = Laser(host.world, host.link, host.sensor)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._laser = Laser(context.world, context.link, context.sensor)
         topic = p.topic("/world")
         if not topic:
             return
-        namespace = p.namespace(missing="/", empty=host.model.name)
+        namespace = p.namespace(missing="/", empty=context.model.name)
         self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
-        self._scans = host.advertise(names.join(namespace, topic), LaserScan, queue_size=1)
-        host.every(host.sensor.update_rate, self._sweep, self._scans.get_num_connections)
+        self._scans = context.advertise(names.join(namespace, topic), LaserScan, queue_size=1)
+        context.every(context.sensor.update_rate, self._sweep, self._scans.get_num_connections)
 
     def _sweep(self) -> None:
         self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))

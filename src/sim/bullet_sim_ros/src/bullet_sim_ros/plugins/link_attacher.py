@@ -9,8 +9,8 @@ from gazebo_ros_link_attacher.srv import Attach, AttachResponse
 from bullet_sim.errors import SimulationError
 from bullet_sim.physics.weld import Weld
 from bullet_sim_ros import names
-from bullet_sim_ros.errors import told
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -23,27 +23,27 @@ Ends = tuple[str, str, str, str]  # model, link, other model, its link
 class LinkAttacherPlugin:
     """What is attached stays as it is to each other (upstream pulls the two origins together)."""
 
-    def __init__(self, host: Host):
-        self._host = host
+    def __init__(self, context: PluginContext):
+        self._context = context
         self._held: dict[Ends, Weld] = {}
         for name, action in (("attach", self._attach), ("detach", self._detach)):
-            host.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
-        host.on_close(self._let_go)
-        host.on_reset(self._let_go)
+            context.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
+        context.on_close(self._let_go)
+        context.on_reset(self._let_go)
 
     def _handler(self, name: str, action):
         def serve(request) -> AttachResponse:
             ends = (request.model_name_1, request.link_name_1,
                     request.model_name_2, request.link_name_2)
             try:
-                return AttachResponse(self._host.shared.mailbox.call(lambda: action(ends)))
+                return AttachResponse(self._context.services.mailbox.call(lambda: action(ends)))
             except SimulationError as error:
-                log.error("%s: cannot %s: %s", self._host.describe(), name, told(error))
+                log.error("%s: cannot %s: %s", self._context.describe(), name, format_error(error))
                 return AttachResponse(False)
         return serve
 
     def _attach(self, ends: Ends) -> bool:
-        world = self._host.world
+        world = self._context.world
         first, second = (world.model(ends[at]).link(ends[at + 1]) for at in (0, 2))
         if first is second:
             raise SimulationError(f"{first.scoped_name} is one link; it takes two")

@@ -8,7 +8,7 @@ from bullet_sim.control.pid import Pid
 from bullet_sim.drives.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -20,19 +20,19 @@ log = logging.getLogger("bullet_sim.plugins")
 class MimicJointPlugin:
     """Held by a strong motor, so that it can grip (upstream puts it in place, through things)."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        leader, follower = (host.model.joint(p.required(tag)) for tag in ("joint", "mimicJoint"))
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        leader, follower = (context.model.joint(p.required(tag)) for tag in ("joint", "mimicJoint"))
         self._mimic = MimicJoint(leader, follower, MimicParameters(
             p.number("multiplier", 1.0), p.number("offset", 0.0), p.number("sensitiveness", 0.0),
-            p.number("maxEffort", 1.0)), self._pid(host, follower.name))
-        host.each_step(self._follow)
-        host.on_reset(self._mimic.reset)
+            p.number("maxEffort", 1.0)), self._pid(context, follower.name))
+        context.each_step(self._follow)
+        context.on_reset(self._mimic.reset)
 
     @staticmethod
-    def _pid(host: Host, joint: str) -> Pid | None:
-        p = host.parameters
+    def _pid(context: PluginContext, joint: str) -> Pid | None:
+        p = context.parameters
         # In files of older versions the tag is empty: that it is there says it all.
         if not p.has("hasPID") or not p.flag("hasPID", True):
             return None
@@ -41,7 +41,7 @@ class MimicJointPlugin:
         if joint not in gains:
             where = names.join(namespace, f"{GAINS}/{joint}")
             log.warning("%s: <hasPID>, but there is no parameter %s/p: the joint is held without",
-                        host.describe(), where)
+                        context.describe(), where)
             return None
         return Pid(gains[joint])
 
@@ -54,5 +54,5 @@ class MimicJointPlugin:
 class DisableLinkPlugin:
     """Only looks whether the link is there: in Gazebo, too, the first touch wakes it again."""
 
-    def __init__(self, host: Host):
-        host.model.link(host.parameters.required("link"))
+    def __init__(self, context: PluginContext):
+        context.model.link(context.parameters.required("link"))

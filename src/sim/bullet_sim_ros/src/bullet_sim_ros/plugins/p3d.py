@@ -8,7 +8,7 @@ from nav_msgs.msg import Odometry
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 INERTIAL = ("world", "/world", "map", "/map")
@@ -22,22 +22,22 @@ class P3dPlugin:
     them in the world's).
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
+    def __init__(self, context: PluginContext):
+        p = context.parameters
         namespace = p.namespace(missing="/", empty="/")
-        link = host.model.link(p.required("bodyName"))
+        link = context.model.link(p.required("bodyName"))
         topic = names.join(namespace, p.required("topicName"))
         frame = p.text("frameName", "world")
-        reference = None if frame in INERTIAL else host.model.link(frame)
+        reference = None if frame in INERTIAL else context.model.link(frame)
         offset = Pose(p.vector("xyzOffset"), quaternion_from_rpy(*p.vector("rpyOffset")))
-        self._truth = GroundTruth(host.world, link, offset, reference)
-        self._world, self._child = host.world, link.name
+        self._truth = GroundTruth(context.world, link, offset, reference)
+        self._world, self._child = context.world, link.name
         self._frame = names.frame(params.own_tf_prefix(namespace), frame)
         self._noise = p.deviation("gaussianNoise")
-        self._random_name = f"{link.scoped_name}::{host.description.name}"
-        self._poses = host.advertise(topic, Odometry, queue_size=1)
-        host.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections,
-                   whole_steps=True)
+        self._random_name = f"{link.scoped_name}::{context.description.name}"
+        self._poses = context.advertise(topic, Odometry, queue_size=1)
+        context.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections,
+                      whole_steps=True)
 
     def _measure(self) -> None:
         reading = self._truth.sample()

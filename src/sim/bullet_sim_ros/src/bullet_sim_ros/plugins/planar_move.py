@@ -8,7 +8,7 @@ from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -17,40 +17,40 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class PlanarMovePlugin:
     """A reset of the simulation stops it (upstream drives on, and is silent until time is back)."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
         namespace = p.namespace(missing="/", empty="/")
-        self._drive = PlanarDrive(host.model)
-        self._odometry = PlanarOdometry(host.world, host.model)
+        self._drive = PlanarDrive(context.model)
+        self._odometry = PlanarOdometry(context.world, context.model)
         self._timeout = p.number("cmdTimeout", -1.0)  # s; below 0: never
-        self._commanded = host.world.time
-        self._output = OdometryOutput(host, namespace, flat=True)
-        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                       self._take_command, queue_size=1, tcp_nodelay=True)
-        host.each_step(self._move)
+        self._commanded = context.world.time
+        self._output = OdometryOutput(context, namespace, flat=True)
+        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                          self._take_command, queue_size=1, tcp_nodelay=True)
+        context.each_step(self._move)
         rate_hz = p.number("odometryRate", 20.0)
         if rate_hz > 0:
-            host.every(self._quantised(rate_hz), self._publish, self._output.wanted)
-        host.on_reset(self._restart)
+            context.every(self._quantised(rate_hz), self._publish, self._output.wanted)
+        context.on_reset(self._restart)
 
     def _quantised(self, rate_hz: float) -> float:
         """Upstream waits until more than the period has gone by, and counts anew from there."""
-        timestep = self._host.world.timestep
+        timestep = self._context.world.timestep
         steps = int(1.0 / (rate_hz * timestep) + 1e-6) + 1
         return 1.0 / (steps * timestep)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._command(msg)
 
     def _command(self, msg: Twist) -> None:
-        self._commanded = self._host.world.time
+        self._commanded = self._context.world.time
         self._drive.command(msg.linear.x, msg.linear.y, msg.angular.z)
 
     def _move(self) -> None:
-        if 0 <= self._timeout < self._host.world.time - self._commanded:
+        if 0 <= self._timeout < self._context.world.time - self._commanded:
             self._drive.stop()
         self._drive.update()
 
@@ -60,4 +60,4 @@ class PlanarMovePlugin:
     def _restart(self) -> None:
         self._drive.stop()
         self._odometry.restart()
-        self._commanded = self._host.world.time
+        self._commanded = self._context.world.time

@@ -7,7 +7,7 @@ import logging
 from std_msgs.msg import Int32, String
 
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -17,13 +17,13 @@ log = logging.getLogger("bullet_sim.plugins")
 class ProjectorPlugin:
     """Takes what is sent, so that nodes find their subscriber; projected light is not drawn."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
+    def __init__(self, context: PluginContext):
+        p = context.parameters
         namespace = p.namespace(missing="/", empty="/")
         for tag, kind in (("textureTopicName", String), ("projectorTopicName", Int32)):
             topic = p.text(tag)
             if topic:
-                host.subscribe(names.join(namespace, topic), kind, lambda _message: None,
-                               queue_size=1)
+                context.subscribe(names.join(namespace, topic), kind, lambda _message: None,
+                                  queue_size=1)
         log.warning("%s: topics are there, but light of projector %s is not drawn",
-                    host.describe(), p.text("projector", "(no name)"))
+                    context.describe(), p.text("projector", "(no name)"))

@@ -6,7 +6,7 @@ from sensor_msgs.msg import Range
 
 from bullet_sim.sensors.range_finder import RangeFinder
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -14,12 +14,12 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class RangePlugin:
     """The nearest thing that any ray meets. Any `radiation` but ultrasound is infrared."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        self._finder = RangeFinder(host.world, host.link, host.sensor)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        self._finder = RangeFinder(context.world, context.link, context.sensor)
         self._noise = p.deviation("gaussianNoise")
-        self._name = f"{host.link.scoped_name}::{host.sensor.name} range"
+        self._name = f"{context.link.scoped_name}::{context.sensor.name} range"
         topic = p.topic("/range")
         if not topic:
             return
@@ -28,12 +28,12 @@ class RangePlugin:
         ultrasound = p.text("radiation", "ultrasound") == "ultrasound"
         self._radiation = Range.ULTRASOUND if ultrasound else Range.INFRARED
         self._field_of_view = p.number("fov", 0.05)
-        self._ranges = host.advertise(names.join(namespace, topic), Range, queue_size=1)
-        host.every_reading(p.number("updateRate", 0.0), self._measure,
-                           self._ranges.get_num_connections)
+        self._ranges = context.advertise(names.join(namespace, topic), Range, queue_size=1)
+        context.every_reading(p.number("updateRate", 0.0), self._measure,
+                              self._ranges.get_num_connections)
 
     def _measure(self) -> None:
-        ray, world = self._finder.ray, self._host.world
+        ray, world = self._finder.ray, self._context.world
         distance = self._finder.sample()
         if self._noise and distance < ray.range_max:
             disturbed = distance + world.random(self._name).normal(0.0, self._noise)

@@ -16,12 +16,12 @@ from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim_ros import names
 from bullet_sim_ros.control import controllers, services  # noqa: F401  (controllers register)
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.steer_bot import open_steer_bot
 from bullet_sim_ros.control.urdf_parameter import with_urdf
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.control")
@@ -37,15 +37,15 @@ MOST_STEPS = 1e15  # of a control period: that is for ever
 class RosControlPlugin:
     """Waits for the robot's URDF; from then on it reads, updates and writes at each step."""
 
-    def __init__(self, host: Host):
+    def __init__(self, context: PluginContext):
         rospy.loginfo("Loading gazebo_ros_control plugin")
-        p = host.parameters
-        self._host = host
-        self._namespace = names.join(p.namespace(missing=host.model.name, empty="/"), "")
+        p = context.parameters
+        self._context = context
+        self._namespace = names.join(p.namespace(missing=context.model.name, empty="/"), "")
         simulation_type = p.text("robotSimType", SIMULATION_TYPES[0])
         if simulation_type not in SIMULATION_TYPES:
             log.warning("%s: <robotSimType> is %r; there are: %s and %s; the first is used",
-                        host.describe(), simulation_type, *SIMULATION_TYPES[::2])
+                        context.describe(), simulation_type, *SIMULATION_TYPES[::2])
         self._steer_bot = simulation_type in SIMULATION_TYPES[2:]
         self._control_period = p.number("controlPeriod", 0.0)  # s; 0: every step
         self._emergency = self._restart = False
@@ -54,14 +54,14 @@ class RosControlPlugin:
         self._check_period()
         rospy.loginfo("Starting gazebo_ros_control plugin in namespace: %s", self._namespace)
         self._robot_parameter = p.text("robotParam", "robot_description")
-        with_urdf(host, self._namespace, self._robot_parameter, self._begin)
+        with_urdf(context, self._namespace, self._robot_parameter, self._begin)
 
     def _set_period(self) -> None:
         """Count the control period in steps, from now."""
-        self._timestep = self._host.world.timestep
+        self._timestep = self._context.world.timestep
         steps = min(self._control_period / self._timestep, MOST_STEPS)
         self._steps = max(1, math.ceil(steps - ROUNDING))
-        self._updated = self._host.world.tick
+        self._updated = self._context.world.tick
 
     def _check_period(self) -> None:
         wanted, step = self._control_period, self._timestep
@@ -69,43 +69,43 @@ class RosControlPlugin:
             return
         say, how = (log.error, "faster") if wanted < step else (log.warning, "slower")
         say("%s: Desired controller update period (%g s) is %s than the gazebo simulation period "
-            "(%g s).", self._host.describe(), wanted, how, step)
+            "(%g s).", self._context.describe(), wanted, how, step)
 
     def _begin(self, urdf: str) -> None:
         try:
             self._hardware, robot = self._open_hardware(urdf)
         except SimulationError as error:
             log.critical("%s: Could not initialize robot simulation interface: %s",
-                         self._host.describe(), error)
+                         self._context.describe(), error)
             return
-        host, namespace = self._host, self._namespace
+        context, namespace = self._context, self._namespace
 
-        def open_host(name: str) -> ControllerHost:
-            own = Host(host.shared, host.model, host.description)
-            return ControllerHost(own, name, namespace, self._hardware, robot)
+        def open_context(name: str) -> ControllerContext:
+            own = PluginContext(context.services, context.model, context.description)
+            return ControllerContext(own, name, namespace, self._hardware, robot)
 
-        self._manager = ControllerManager(open_host, rospy.is_shutdown)
-        host.on_close(self._manager.close)
-        services.offer(host, self._manager, namespace)
+        self._manager = ControllerManager(open_context, rospy.is_shutdown)
+        context.on_close(self._manager.close)
+        services.offer(context, self._manager, namespace)
         if self._emergency_topic:
-            topic = names.join(names.join(host.model.name, ""), self._emergency_topic)
-            host.subscribe(topic, Bool, lambda msg: lambda: self._stop(msg.data), queue_size=1)
-        host.on_reset(self._reset)
+            topic = names.join(names.join(context.model.name, ""), self._emergency_topic)
+            context.subscribe(topic, Bool, lambda msg: lambda: self._stop(msg.data), queue_size=1)
+        context.on_reset(self._reset)
         self._set_period()
-        host.each_step(self._step)
+        context.each_step(self._step)
         rospy.loginfo("Loaded gazebo_ros_control.")
 
     def _open_hardware(self, urdf: str) -> tuple[RobotHardware, RobotFacts]:
         element = self._urdf(urdf)
         robot = RobotFacts(element)
         if self._steer_bot:
-            return open_steer_bot(self._host.model, self._namespace, robot), robot
+            return open_steer_bot(self._context.model, self._namespace, robot), robot
         transmissions = read_transmissions(element)
         if not transmissions and element is not NO_ROBOT:
             log.warning("%s: the URDF has no usable <transmission>, so there is no joint to "
-                        "control", self._host.describe())
+                        "control", self._context.describe())
         joints = [transmission.joint for transmission in transmissions]
-        hardware = RobotHardware(self._host.model, transmissions,
+        hardware = RobotHardware(self._context.model, transmissions,
                                  read_joint_limits(self._namespace, robot, joints),
                                  read_joint_gains(self._namespace, joints))
         return hardware, robot
@@ -117,14 +117,14 @@ class RosControlPlugin:
             return element
         found = "nothing" if element is None else f"a <{element.tag}>"
         log.warning("%s: its parameter %s holds %s, not a URDF's <robot>: the controller manager "
-                    "starts, but there is no joint to control", self._host.describe(),
+                    "starts, but there is no joint to control", self._context.describe(),
                     self._robot_parameter, found)
         return NO_ROBOT
 
     # --- in the loop
 
     def _step(self) -> None:
-        world = self._host.world
+        world = self._context.world
         if world.timestep != self._timestep:
             self._set_period()
         elapsed = world.tick - self._updated
@@ -142,5 +142,5 @@ class RosControlPlugin:
         self._hardware.stop(on)
 
     def _reset(self) -> None:
-        self._updated = self._host.world.tick
+        self._updated = self._context.world.tick
         self._hardware.reset()

@@ -9,7 +9,7 @@ from geometry_msgs.msg import Twist
 from bullet_sim.drives.skid_steer import SkidSteer
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -18,31 +18,31 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class SkidSteerDrivePlugin:
     """Without time-out, as upstream; a reset of the simulation stops it (upstream drives on)."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
         namespace = p.namespace(missing="/", empty="/")
         left, right = (
-            [host.model.joint(p.text(f"{side}{place}Joint", f"{side}_{place.lower()}_joint"))
+            [context.model.joint(p.text(f"{side}{place}Joint", f"{side}_{place.lower()}_joint"))
              for place in ("Front", "Rear")] for side in ("left", "right"))
         self._drive = SkidSteer(left, right, p.number("wheelSeparation", 0.4),
                                 p.number("wheelDiameter", 0.15), p.number("torque", 5.0))
         variances = (p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4),
                      p.number("covariance_yaw", 1e-2))
         self._output = OdometryOutput(
-            host, namespace, transform=p.flag("broadcastTF", False), flat=True,
+            context, namespace, transform=p.flag("broadcastTF", False), flat=True,
             variances=variances, twist_variances=variances)
-        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                       self._take_command, queue_size=1, tcp_nodelay=True)
-        host.every(p.number("updateRate", 100.0), self._update)
-        host.on_reset(self._drive.stop)
+        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                          self._take_command, queue_size=1, tcp_nodelay=True)
+        context.every(p.number("updateRate", 100.0), self._update)
+        context.on_reset(self._drive.stop)
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
         if self._output.wanted():
-            self._output.publish(true_odometry(self._host.world, self._host.model))
+            self._output.publish(true_odometry(self._context.world, self._context.model))
         self._drive.update()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -10,5 +10,5 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class TemplatePlugin:
     """In a model or in the world."""
 
-    def __init__(self, host: Host):
-        del host
+    def __init__(self, context: PluginContext):
+        del context

@@ -12,7 +12,7 @@ from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
@@ -26,10 +26,12 @@ class TricycleDrivePlugin:
     A reset of the simulation stops it and sets the encoders to zero (upstream drives on).
     """
 
-    def __init__(self, host: Host):
-        self._host = host
-        namespace = host.parameters.namespace(missing=host.model.name, empty=host.model.name)
-        p = LoggedParameters(host.parameters, "TricycleDrive", namespace)
+    def __init__(self, context: PluginContext):
+        self._context = context
+        namespace = context.parameters.namespace(
+            missing=context.model.name, empty=context.model.name
+        )
+        p = LoggedParameters(context.parameters, "TricycleDrive", namespace)
         self._joints = self._find_joints(p)
         acceleration = p.number("wheelAcceleration", 0.0)
         self._torque = p.number("wheelTorque", 5.0)
@@ -37,34 +39,34 @@ class TricycleDrivePlugin:
             p.number("actuatedWheelDiameter", 0.15), self._torque, acceleration,
             p.number("wheelDeceleration", acceleration), p.number("wheelSpeedTolerance", 0.01),
             p.number("steeringSpeed", 0.0), p.number("steeringAngleTolerance", 0.01)))
-        self._odometry_source = OdometrySource(host, p, self._joints[2:], WheelOdometry(
+        self._odometry_source = OdometrySource(context, p, self._joints[2:], WheelOdometry(
             p.number("encoderWheelSeparation", 0.5), p.number("encoderWheelDiameter", 0.15),
             signed=True))
-        self._updated = host.world.time
+        self._updated = context.world.time
         self._wheel_tf = p.flag("publishWheelTF", False)
-        self._states = host.advertise(
+        self._states = context.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if p.flag("publishWheelJointState", False) else None
-        self._output = OdometryOutput(host, namespace, "base_link")
-        host.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                       self._take_command, queue_size=1, tcp_nodelay=True)
-        host.every(p.number("updateRate", 100.0), self._update)
-        host.on_reset(self._restart)
+        self._output = OdometryOutput(context, namespace, "base_link")
+        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
+                          self._take_command, queue_size=1, tcp_nodelay=True)
+        context.every(p.number("updateRate", 100.0), self._update)
+        context.on_reset(self._restart)
 
     def _find_joints(self, p: LoggedParameters) -> list[Joint]:
         """Steering, driven wheel, left and right encoder."""
-        return [self._host.model.joint(p.text(tag, name)) for tag, name in (
+        return [self._context.model.joint(p.text(tag, name)) for tag, name in (
             ("steeringJoint", "front_steering_joint"), ("actuatedWheelJoint", "front_wheel_joint"),
             ("encoderWheelLeftJoint", "left_wheel_joint"),
             ("encoderWheelRightJoint", "right_wheel_joint"))]
 
     def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._host.refuses("command", msg):
+        if self._context.refuses("command", msg):
             return None
         return lambda: self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
-        world = self._host.world
+        world = self._context.world
         if self._output.wanted():
             self._output.publish(self._odometry_source.sample(), self._wheel_transforms())
         if self._states and self._states.get_num_connections():
@@ -76,19 +78,19 @@ class TricycleDrivePlugin:
         """Upstream calls the frames by the joints' names and sees the links from the model."""
         if not self._wheel_tf:
             return ()
-        model, time, prefix = self._host.model, self._host.world.time, self._output.prefix
+        model, time, prefix = self._context.model, self._context.world.time, self._output.prefix
         back = model.pose.inverse()
         return tuple(convert.transform_to_msg(
             back * model.links[joint.description.child].pose, time,
             names.frame(prefix, joint.description.parent), names.frame(prefix, joint.name))
-            for joint in self._joints)
+                     for joint in self._joints)
 
     def _publish_states(self) -> None:
-        msg = convert.joints_to_msg(sample_joints(self._host.world, self._joints))
+        msg = convert.joints_to_msg(sample_joints(self._context.world, self._joints))
         msg.effort = [self._torque, self._torque, 0.0, 0.0]  # the motors' limits, as upstream
         self._states.publish(msg)
 
     def _restart(self) -> None:
         self._drive.stop()
         self._odometry_source.restart()
-        self._updated = self._host.world.time
+        self._updated = self._context.world.time

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from bullet_sim_ros.cameras.camera_group import Eyes
-from bullet_sim_ros.cameras.camera_publisher import Eye
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.cameras.camera_group import CameraGroup
+from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -12,5 +12,5 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class TriggeredCameraPlugin:
     """A camera that stands by for `triggerTopicName`."""
 
-    def __init__(self, host: Host):
-        Eyes(host, [Eye(host)]).look_when_told()
+    def __init__(self, context: PluginContext):
+        CameraGroup(context, [CameraPublisher(context)]).capture_on_trigger()

@@ -7,7 +7,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.drives.vacuum import Vacuum, VacuumParameters
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -15,22 +15,22 @@ from bullet_sim_ros.plugin_host.registry import plugin
 class VacuumGripperPlugin:
     """A Bool at each step tells whether something is held."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
+    def __init__(self, context: PluginContext):
+        p = context.parameters
         namespace = p.namespace(missing="/", empty="/")
-        self._vacuum = Vacuum(host.world, host.model.link(p.required("bodyName")),
+        self._vacuum = Vacuum(context.world, context.model.link(p.required("bodyName")),
                               VacuumParameters(p.number("maxForce", 20.0),
                                                p.number("maxDistance", 0.05),
                                                p.number("minDistance", 0.01)))
         self._on = self._held = False
-        self._mailbox = host.shared.mailbox
-        self._topic = host.advertise(names.join(namespace, p.required("topicName")), Bool,
-                                     queue_size=1)
-        host.serve(names.join(namespace, "on"), Empty, lambda _request: self._switch(True))
-        host.serve(names.join(namespace, "off"), Empty, lambda _request: self._switch(False))
-        host.each_step(self._pull)
-        host.every(0.0, lambda: self._topic.publish(Bool(self._held)),
-                   self._topic.get_num_connections)
+        self._mailbox = context.services.mailbox
+        self._topic = context.advertise(names.join(namespace, p.required("topicName")), Bool,
+                                        queue_size=1)
+        context.serve(names.join(namespace, "on"), Empty, lambda _request: self._switch(True))
+        context.serve(names.join(namespace, "off"), Empty, lambda _request: self._switch(False))
+        context.each_step(self._pull)
+        context.every(0.0, lambda: self._topic.publish(Bool(self._held)),
+                      self._topic.get_num_connections)
 
     def _switch(self, on: bool) -> EmptyResponse:
         def switch() -> None:

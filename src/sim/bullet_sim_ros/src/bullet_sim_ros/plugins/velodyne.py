@@ -9,7 +9,7 @@ from sensor_msgs.msg import PointCloud2, PointField
 
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"),
@@ -26,15 +26,15 @@ class VelodynePlugin:
     Both see collision shapes (upstream's GPU twin sees visuals).
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        self._laser = Laser(host.world, host.link, host.sensor)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        self._laser = Laser(context.world, context.link, context.sensor)
         self._nearest = max(p.bound("min_range", 0.0), self._laser.ray.range_min)
         self._farthest = min(p.bound("max_range", math.inf), self._laser.ray.range_max)
         self._faintest = p.bound("min_intensity", -math.inf)
         self._noise = p.deviation("gaussianNoise")
-        self._name = f"{host.link.scoped_name}::{host.sensor.name} points"
+        self._name = f"{context.link.scoped_name}::{context.sensor.name} points"
         self._organised = p.flag("organize_cloud", False)
         topic = p.topic("/points")
         if not topic:
@@ -42,15 +42,15 @@ class VelodynePlugin:
         namespace = p.namespace(missing="/", empty="/")
         prefix = namespace if namespace != "/" else params.own_tf_prefix(namespace)
         self._frame = names.frame(prefix, p.text("frameName", "/world"))
-        self._clouds = host.advertise(names.join(namespace, topic), PointCloud2, queue_size=1)
-        host.every(host.sensor.update_rate, self._sweep, self._clouds.get_num_connections)
+        self._clouds = context.advertise(names.join(namespace, topic), PointCloud2, queue_size=1)
+        context.every(context.sensor.update_rate, self._sweep, self._clouds.get_num_connections)
 
     def _sweep(self) -> None:
         points, seen = self._points()
         if not self._organised:
             points = points[seen][None]
         msg = PointCloud2(height=points.shape[0], width=points.shape[1], fields=FIELDS)
-        msg.header.stamp, msg.header.frame_id = convert.stamp(self._host.world.time), self._frame
+        msg.header.stamp, msg.header.frame_id = convert.stamp(self._context.world.time), self._frame
         msg.point_step, msg.row_step = POINT.itemsize, POINT.itemsize * points.shape[1]
         msg.is_dense = not self._organised
         msg.data = points.tobytes()
@@ -61,7 +61,7 @@ class VelodynePlugin:
         ranges, retro = self._laser.measure()
         seen = self._within(ranges) & (retro >= self._faintest)
         if self._noise:
-            ranges = ranges + self._host.world.random(self._name).normal(
+            ranges = ranges + self._context.world.random(self._name).normal(
                 0.0, self._noise, ranges.shape)
             seen &= self._within(ranges)
         points = np.zeros(ranges.shape, POINT)

@@ -13,7 +13,7 @@ from bullet_sim.rendering.frame import LARGEST_PX
 from bullet_sim_ros import names
 from bullet_sim_ros.cameras.encodings import decode
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 _ABOVE = 0.51  # heights of the visual, from its middle: 1 % of it above its upper side
@@ -25,22 +25,22 @@ _COMPLAIN = 10.0  # s
 class VideoPlugin:
     """A screen over the visual's +z side, black until an image comes; light does not change it."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._size_px = (_pixels(host, "width", 320), _pixels(host, "height", 240))
-        self._scene = host.world.scene
-        link, visual = host.link, host.visual
-        self._name = f"video {link.scoped_name}::{visual.name}::{host.description.name}"
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._size_px = (_pixels(context, "width", 320), _pixels(context, "height", 240))
+        self._scene = context.world.scene
+        link, visual = context.link, context.visual
+        self._name = f"video {link.scoped_name}::{visual.name}::{context.description.name}"
         self._show(np.zeros((*self._size_px[::-1], 3), np.uint8))
         width, height, above = _side(visual.geometry)
-        self._scene.add_visual((host.model.name, link.name), Visual(
+        self._scene.add_visual((context.model.name, link.name), Visual(
             self._name, Plane((0.0, 0.0, 1.0), (width, height)),
             visual.pose * Pose((0.0, 0.0, above)),
             Material(texture=self._name, lighting=False), cast_shadows=False))
         topic = names.join(p.namespace(missing="/", empty="/"), p.text("topicName", "image_raw"))
         self._topic = topic
-        host.subscribe(topic, Image, self._take, queue_size=1)
-        host.on_close(lambda: self._scene.images.pop(self._name, None))
+        context.subscribe(topic, Image, self._take, queue_size=1)
+        context.on_close(lambda: self._scene.images.pop(self._name, None))
 
     def _take(self, msg: Image):
         """In a ROS thread."""
@@ -57,8 +57,8 @@ class VideoPlugin:
         self._scene.images[self._name] = rgb
 
 
-def _pixels(host: Host, tag: str, default: int) -> int:
-    value = host.parameters.number(tag, default)
+def _pixels(context: PluginContext, tag: str, default: int) -> int:
+    value = context.parameters.number(tag, default)
     if not 1 <= value <= LARGEST_PX:
         raise PluginError(f"<{tag}> is {value:g}, which is not between 1 and {LARGEST_PX} px")
     return int(value)

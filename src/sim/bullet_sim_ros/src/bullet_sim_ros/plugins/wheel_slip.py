@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -15,11 +15,11 @@ log = logging.getLogger("bullet_sim.plugins")
 class WheelSlipPlugin:
     """The engine knows no slip that grows with the force; one warning says so."""
 
-    def __init__(self, host: Host):
-        wheels = host.description.element.findall("wheel")
+    def __init__(self, context: PluginContext):
+        wheels = context.description.element.findall("wheel")
         if not wheels:
             raise PluginError('it needs a <wheel link_name="...">')
         for wheel in wheels:
-            host.model.link(wheel.get("link_name", ""))
+            context.model.link(wheel.get("link_name", ""))
         log.warning("%s is read, but has no effect: wheels slip only beyond their friction",
-                    host.describe())
+                    context.describe())

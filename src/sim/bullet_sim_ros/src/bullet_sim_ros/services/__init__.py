@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import rospy
 
 from bullet_sim.formats import Resources
@@ -16,9 +14,7 @@ from bullet_sim_ros.services.physics import offer_physics_services
 from bullet_sim_ros.services.physics_reconfigure import PhysicsReconfigure
 from bullet_sim_ros.services.states import offer_state_services
 from bullet_sim_ros.services.worlds import offer_world_services
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 
 def offer_services(simulation: Simulation, resources: Resources) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import rospy
 
 from bullet_sim.errors import SimulationError
-from bullet_sim_ros.errors import told
+from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.mailbox import Closed, Mailbox
 
 
@@ -27,7 +27,7 @@ def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any],
         except (CallFails, Closed) as error:
             raise rospy.ServiceException(str(error)) from None
         except Exception as error:  # whatever a request does, the caller gets one line
-            message = told(error)
+            message = format_error(error)
             if "success" not in response.__slots__:
                 raise rospy.ServiceException(message) from None
             response.success = False

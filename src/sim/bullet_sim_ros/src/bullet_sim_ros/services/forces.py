@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from gazebo_msgs.srv import ApplyBodyWrench, ApplyJointEffort, BodyRequest, JointRequest
 
 from bullet_sim.forces import Effort, Span, Wrench
@@ -13,9 +11,7 @@ from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
 from bullet_sim_ros.services.lookup import find_frame, find_joint, find_link
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 
 def offer_force_services(simulation: Simulation) -> None:

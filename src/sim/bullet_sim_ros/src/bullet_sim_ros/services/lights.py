@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from gazebo_msgs.srv import DeleteLight, GetLightProperties, SetLightProperties
 from std_msgs.msg import ColorRGBA
@@ -12,9 +11,7 @@ from bullet_sim.description import LightDescription
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 ATTENUATION = ("constant", "linear", "quadratic")
 

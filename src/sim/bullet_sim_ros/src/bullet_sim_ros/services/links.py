@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from gazebo_msgs.msg import LinkState
 from gazebo_msgs.srv import (
     GetLinkProperties,
@@ -22,9 +20,7 @@ from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
 from bullet_sim_ros.services.lookup import LINK_UNKNOWN, find_frame, find_link
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -71,7 +67,7 @@ def set_link_state(world: World, state: LinkState) -> None:
     if state.reference_frame not in INERTIAL_FRAMES:
         frame = find_link(world, state.reference_frame, "SetLinkState: failed")
         pose, twist = frame.pose * pose, twist_difference(twist, frame.twist)
-    link.move(pose, twist)
+    world.model(link.model.name).move_link(link, pose, twist)
 
 
 def get_link_properties(world: World, name: str, response) -> None:
@@ -89,6 +85,7 @@ def get_link_properties(world: World, name: str, response) -> None:
 def set_link_properties(world: World, request, response) -> None:
     """Writes every field but the orientation of the inertia's axes."""
     link = find_link(world, request.link_name, f"SetLinkProperties: {LINK_UNKNOWN}")
+    model = world.model(link.model.name)
     inertia = tuple(getattr(request, field) for field in INERTIA)
     if not (convert.is_sane(request.com)
             and all(abs(value) <= convert.LARGEST for value in (request.mass, *inertia))
@@ -99,9 +96,8 @@ def set_link_properties(world: World, request, response) -> None:
     old = link.description.inertial
     position = request.com.position
     try:
-        link.change(Inertial(request.mass, Pose((position.x, position.y, position.z),
-                                                old.pose.orientation), inertia),
-                    request.gravity_mode)
+        centre = Pose((position.x, position.y, position.z), old.pose.orientation)
+        model.change_link(link, Inertial(request.mass, centre, inertia), request.gravity_mode)
     except SimulationError as error:
         raise ServiceError(f"SetLinkProperties: {error}") from None
     done(response, "SetLinkProperties: properties set")

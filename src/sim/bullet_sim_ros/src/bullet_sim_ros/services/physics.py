@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 # Fields of gazebo_msgs/ODEPhysics and of our PhysicsDescription.
 ODE = {

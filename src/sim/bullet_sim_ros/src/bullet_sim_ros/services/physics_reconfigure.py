@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import rospy
 
@@ -12,9 +12,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim_ros import names
 from bullet_sim_ros.mailbox import Closed
 from bullet_sim_ros.reconfigure_server import Value, ValueServer
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.simulation import Simulation
 
 FIELDS = {  # name: field of PhysicsDescription, least, greatest, description
     "time_step": ("max_step_size", 0.0, 10.0, "Step, s"),

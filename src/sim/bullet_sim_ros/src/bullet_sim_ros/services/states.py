@@ -8,7 +8,7 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
 from geometry_msgs.msg import Pose as PoseMsg
 
-from bullet_sim.nested import find_part
+from bullet_sim.nested import find_nested_model
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import Twist, twist_difference, twist_in
 from bullet_sim.world import World
@@ -43,7 +43,7 @@ def get_model_state(world: World, request, response) -> None:
     """Pose and twist of a model, in the world or relative to another entity."""
     response.header.stamp = convert.stamp(world.time)
     response.header.frame_id = request.relative_entity_name
-    model = find_part(world.models.values(), request.model_name)
+    model = find_nested_model(world.models.values(), request.model_name)
     if model is None:
         raise ServiceError("GetModelState: model does not exist")
     frame, frame_twist = find_frame(

@@ -69,7 +69,7 @@ def test_no_camera_waits_for_the_collector(bench, cameras, no_collector, plugin,
 def test_a_camera_that_has_gone_is_not_tried_out(bench, monkeypatch):
     # conforms: libgazebo_ros_camera.so
     tried = []
-    monkeypatch.setattr(Camera, "develop", lambda *arguments: tried.append(arguments))
+    monkeypatch.setattr(Camera, "render", lambda *arguments: tried.append(arguments))
     gone = threading.Event()
     bench.simulation._drawing.submit(gone.wait)  # nothing is drawn until then
     bench.spawn(eye(PLUGINS[0][0]))

@@ -136,7 +136,7 @@ def test_a_wrench_at_rest_is_that_of_what_stands_still(bench):
       <geometry>{side}</geometry></collision></link><link name="beam">"""), Pose((0, 0, 0.2)))
     found = bench.listen("/wrench")
     bench.run(3.0)
-    assert bench.world._client.rest.reached
+    assert bench.world._client.auto_disable.disabled
     assert xyz(found[-1].wrench.force) == pytest.approx([0, 0, -WEIGHT], abs=0.02)
 
 

@@ -53,7 +53,7 @@ def check_motion(world, floor):
                   for value in (*pose.position, *pose.orientation, *twist.linear, *twist.angular)]
         states += [value for joint in model.joints.values()
                    for value in (joint.position, joint.velocity)]
-        assert all(map(math.isfinite, states)) and not model.was_mended, name
+        assert all(map(math.isfinite, states)) and not model.has_recovered, name
         if floor is not None and not model.static:
             assert lowest_point(model) > floor - DEEPEST, name
 

@@ -50,7 +50,7 @@ class MobileBase(ABC):
     def update(self, time: float, period: float) -> None:
         """One control period: count the way, then move on."""
         if self._options.open_loop:
-            self.odometry.trust(time, *self._twist(*self.limited))
+            self.odometry.update_open_loop(time, *self._twist(*self.limited))
         else:
             self.odometry.move(time, *self._moved())
         self.wanted = self._wanted(time)

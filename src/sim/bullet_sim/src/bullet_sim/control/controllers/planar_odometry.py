@@ -37,7 +37,7 @@ class PlanarOdometry:
         self._time = time
         self._speeds.append((forward / elapsed, leftward / elapsed, turn / elapsed))
 
-    def trust(self, time: float, forward: float, yaw_rate: float) -> None:
+    def update_open_loop(self, time: float, forward: float, yaw_rate: float) -> None:
         """Open loop: take these speeds (m/s, rad/s) for what was driven since the last call."""
         elapsed = max(0.0, time - self._time)
         self._time = time

@@ -8,7 +8,7 @@ from bullet_sim.control.controllers.ackermann_steering_controller import (
     AckermannGeometry,
     AckermannSteering,
 )
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
 
@@ -21,18 +21,18 @@ class AckermannSteeringController(MobileBaseController):
     steer_drive_controller is what upstream called it before; its parameters are the same.
     """
 
-    def __init__(self, host: ControllerHost):
-        p = host.parameters
+    def __init__(self, context: ControllerContext):
+        p = context.parameters
         rear = p.text("rear_wheel", "rear_wheel_joint")
         front = p.text("front_steer", "front_steer_joint")
-        super().__init__(host, AckermannSteering(
-            host.claim("velocity", rear), host.claim("position", front),
-            _geometry(host, rear, front), read_options(p)))
+        super().__init__(context, AckermannSteering(
+            context.claim("velocity", rear), context.claim("position", front),
+            _geometry(context, rear, front), read_options(p)))
 
 
-def _geometry(host: ControllerHost, rear: str, front: str) -> AckermannGeometry:
+def _geometry(context: ControllerContext, rear: str, front: str) -> AckermannGeometry:
     """Parameters, else the URDF; times the multipliers."""
-    p, robot = host.parameters, host.robot
+    p, robot = context.parameters, context.robot
     wheelbase = p.number("wheel_separation_h") if p.has("wheel_separation_h") else math.dist(
         robot.pose(rear).position, robot.pose(front).position)
     radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(rear)

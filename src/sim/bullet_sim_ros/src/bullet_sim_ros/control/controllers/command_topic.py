@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from std_msgs.msg import Float64, Float64MultiArray
 
 from bullet_sim.control.controllers.commands import Commands
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.convert import LARGEST
 from bullet_sim_ros.errors import PluginError
 
@@ -18,23 +18,25 @@ COMPLAINT_PERIOD = 10.0  # s, wall: a sender of bad commands sends many
 log = logging.getLogger("bullet_sim.control")
 
 
-def command_timeout(host: ControllerHost) -> float:
+def command_timeout(context: ControllerContext) -> float:
     """`command_timeout`, s: ours; upstream's controllers go on with the last command for ever.
 
     PluginError if it is negative.
     """
-    seconds = host.parameters.number("command_timeout", 0.0)
+    seconds = context.parameters.number("command_timeout", 0.0)
     if seconds < 0:
-        raise PluginError(f"parameter {host.parameters.where('command_timeout')} is {seconds:g}, "
-                          "which is not a time-out: write seconds, not negative (0: none)")
+        raise PluginError(
+            f"parameter {context.parameters.where('command_timeout')} is {seconds:g}, "
+            "which is not a time-out: write seconds, not negative (0: none)"
+        )
     return seconds
 
 
 class _Complaints:
     """What one controller says of bad commands: at most one line in COMPLAINT_PERIOD."""
 
-    def __init__(self, host: ControllerHost):
-        self._host = host
+    def __init__(self, context: ControllerContext):
+        self._context = context
         self._next = 0.0  # s, wall
 
     def say(self, level: int, text: str, *values: object) -> None:
@@ -42,22 +44,22 @@ class _Complaints:
         now = time.monotonic()
         if now >= self._next:
             self._next = now + COMPLAINT_PERIOD
-            log.log(level, f"%s: {text}", self._host.describe(), *values)
+            log.log(level, f"%s: {text}", self._context.describe(), *values)
 
 
-def subscribe_one(host: ControllerHost, commands: Commands) -> None:
+def subscribe_one(context: ControllerContext, commands: Commands) -> None:
     """`command` is a Float64."""
-    complaints = _Complaints(host)
+    complaints = _Complaints(context)
 
     def take(msg: Float64) -> Callable[[], None] | None:
         return _checked(complaints, commands, (msg.data,))
 
-    host.subscribe("command", Float64, take, queue_size=1, tcp_nodelay=True)
+    context.subscribe("command", Float64, take, queue_size=1, tcp_nodelay=True)
 
 
-def subscribe_all(host: ControllerHost, commands: Commands, count: int) -> None:
+def subscribe_all(context: ControllerContext, commands: Commands, count: int) -> None:
     """`command` is a Float64MultiArray with a number for each joint."""
-    complaints = _Complaints(host)
+    complaints = _Complaints(context)
 
     def take(msg: Float64MultiArray) -> Callable[[], None] | None:
         if len(msg.data) != count:
@@ -66,7 +68,7 @@ def subscribe_all(host: ControllerHost, commands: Commands, count: int) -> None:
             return None
         return _checked(complaints, commands, msg.data)
 
-    host.subscribe("command", Float64MultiArray, take, queue_size=1, tcp_nodelay=True)
+    context.subscribe("command", Float64MultiArray, take, queue_size=1, tcp_nodelay=True)
 
 
 def _checked(complaints: _Complaints, commands: Commands,

@@ -9,7 +9,7 @@ from geometry_msgs.msg import TwistStamped
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
 from bullet_sim_ros.control.wheel_states import WheelStates
@@ -24,25 +24,25 @@ RATES = (0.0, 2000.0)  # Hz
 class DiffDriveController(MobileBaseController):
     """The first wheel of each side gives separation and radius where no parameter does."""
 
-    def __init__(self, host: ControllerHost):
-        p = host.parameters
+    def __init__(self, context: ControllerContext):
+        p = context.parameters
         left, right = p.texts("left_wheel"), p.texts("right_wheel")
         if len(left) != len(right):
             raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "
                               "they must be as many")
-        self._separation, self._radius = _lengths(host, left[0], right[0])
+        self._separation, self._radius = _lengths(context, left[0], right[0])
         radius = p.number("wheel_radius_multiplier", 1.0)
         multipliers = {
             "left_wheel_radius_multiplier": p.number("left_wheel_radius_multiplier", radius),
             "right_wheel_radius_multiplier": p.number("right_wheel_radius_multiplier", radius),
             "wheel_separation_multiplier": p.number("wheel_separation_multiplier", 1.0)}
-        self._drive = DiffDrive([host.claim("velocity", name) for name in left],
-                                [host.claim("velocity", name) for name in right],
+        self._drive = DiffDrive([context.claim("velocity", name) for name in left],
+                                [context.claim("velocity", name) for name in right],
                                 self._geometry(multipliers), read_options(p))
-        super().__init__(host, self._drive)
-        self._limited = host.advertise("cmd_vel_out", TwistStamped, queue_size=100) if p.flag(
+        super().__init__(context, self._drive)
+        self._limited = context.advertise("cmd_vel_out", TwistStamped, queue_size=100) if p.flag(
             "publish_cmd", False) else None
-        self._wheels = WheelStates(host, self._drive) if p.flag(
+        self._wheels = WheelStates(context, self._drive) if p.flag(
             "publish_wheel_joint_controller_state", False) else None
         self._offer_changes(multipliers)
 
@@ -64,14 +64,14 @@ class DiffDriveController(MobileBaseController):
 
     def _offer_changes(self, multipliers: Mapping[str, float]) -> None:
         """dynamic_reconfigure, with upstream's names and ranges."""
-        host = self.host
+        context = self.context
         values = {name: Value(now, *MULTIPLIERS, name.replace("_", " "))
                   for name, now in multipliers.items()}
-        values["publish_rate"] = Value(host.parameters.number("publish_rate", 50.0), *RATES,
+        values["publish_rate"] = Value(context.parameters.number("publish_rate", 50.0), *RATES,
                                        "odometry and transforms a second")
         values["enable_odom_tf"] = Value(self.enable_odom_tf, False, True, "publish the transform")
-        offer_values(host, host.namespace, values,
-                     lambda new: host.leave(lambda: self._change(new)))
+        offer_values(context, context.namespace, values,
+                     lambda new: context.leave(lambda: self._change(new)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
         self._drive.geometry = self._geometry(values)
@@ -79,9 +79,9 @@ class DiffDriveController(MobileBaseController):
         self.set_publish_rate(values["publish_rate"])
 
 
-def _lengths(host: ControllerHost, left: str, right: str) -> tuple[float, float]:
+def _lengths(context: ControllerContext, left: str, right: str) -> tuple[float, float]:
     """Separation and radius of the wheels, m: parameters, else the URDF."""
-    p, robot = host.parameters, host.robot
+    p, robot = context.parameters, context.robot
     separation = p.number("wheel_separation") if p.has("wheel_separation") else math.dist(
         robot.pose(left).position, robot.pose(right).position)
     radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(left)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bullet_sim.control.controllers.forward import Forward
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import (
     command_timeout,
     subscribe_all,
@@ -18,15 +18,17 @@ class ForwardController(Controller):
     interface = ""
     group = False
 
-    def __init__(self, host: ControllerHost):
-        super().__init__(host)
-        joints = host.parameters.texts("joints") if self.group else [host.parameters.text("joint")]
-        handles = [host.claim(self.interface, joint) for joint in joints]
-        self._law = Forward(handles, command_timeout(host))
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        joints = (
+            context.parameters.texts("joints") if self.group else [context.parameters.text("joint")]
+        )
+        handles = [context.claim(self.interface, joint) for joint in joints]
+        self._law = Forward(handles, command_timeout(context))
         if self.group:
-            subscribe_all(host, self._law.commands, len(handles))
+            subscribe_all(context, self._law.commands, len(handles))
         else:
-            subscribe_one(host, self._law.commands)
+            subscribe_one(context, self._law.commands)
         self.update = self._law.update  # each step counts: no call more than needed
 
     def start(self, time: float) -> None:

@@ -13,7 +13,7 @@ from bullet_sim.control.controllers.four_wheel_steering_controller import (
     FourWheelSteering,
 )
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
 from bullet_sim_ros.errors import PluginError
@@ -26,18 +26,18 @@ MESSAGE = "four_wheel_steering_msgs/FourWheelSteering"
 class FourWheelSteeringController(MobileBaseController):
     """cmd_vel, and cmd_four_wheel_steering where that message's package is there."""
 
-    def __init__(self, host: ControllerHost):
-        wheels = _pair(host, "front_wheel") + _pair(host, "rear_wheel")
-        steering = _pair(host, "front_steering") + _pair(host, "rear_steering")
-        self._drive = FourWheelSteering([host.claim("velocity", name) for name in wheels],
-                                        [host.claim("position", name) for name in steering],
-                                        _geometry(host, wheels, steering),
-                                        read_options(host.parameters))
-        super().__init__(host, self._drive)
+    def __init__(self, context: ControllerContext):
+        wheels = _pair(context, "front_wheel") + _pair(context, "rear_wheel")
+        steering = _pair(context, "front_steering") + _pair(context, "rear_steering")
+        self._drive = FourWheelSteering([context.claim("velocity", name) for name in wheels],
+                                        [context.claim("position", name) for name in steering],
+                                        _geometry(context, wheels, steering),
+                                        read_options(context.parameters))
+        super().__init__(context, self._drive)
         message = get_message_class(MESSAGE)
         if message is None:
             log.warning("%s: no package has %s, so cmd_four_wheel_steering is not there; cmd_vel "
-                        "is", host.describe(), MESSAGE)
+                        "is", context.describe(), MESSAGE)
         else:
             self.subscribe("cmd_four_wheel_steering", message, self._take_axles)
 
@@ -46,21 +46,25 @@ class FourWheelSteeringController(MobileBaseController):
         if not all(abs(value) <= convert.LARGEST for value in command):
             self.refuse(f"not finite, or beyond {convert.LARGEST:g},")
             return None
-        return lambda: self._drive.command_axles(self.host.world_time(), *command)
+        return lambda: self._drive.command_axles(self.context.world_time(), *command)
 
 
-def _pair(host: ControllerHost, parameter: str) -> list[str]:
+def _pair(context: ControllerContext, parameter: str) -> list[str]:
     """The left and the right joint of an axle."""
-    names = host.parameters.texts(parameter)
+    names = context.parameters.texts(parameter)
     if len(names) != 2:
-        raise PluginError(f"parameter {host.parameters.where(parameter)} has {len(names)} joints; "
-                          "an axle has two, left and right")
+        raise PluginError(
+            f"parameter {context.parameters.where(parameter)} has {len(names)} joints; "
+            "an axle has two, left and right"
+        )
     return names
 
 
-def _geometry(host: ControllerHost, wheels: list[str], steering: list[str]) -> FourWheelGeometry:
+def _geometry(
+    context: ControllerContext, wheels: list[str], steering: list[str]
+) -> FourWheelGeometry:
     """Parameters, else the URDF."""
-    p, robot = host.parameters, host.robot
+    p, robot = context.parameters, context.robot
 
     def length(parameter: str, first: str, second: str) -> float:
         return p.number(parameter) if p.has(parameter) else math.dist(

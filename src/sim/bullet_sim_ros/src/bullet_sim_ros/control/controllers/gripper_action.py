@@ -14,9 +14,9 @@ from bullet_sim.control.controllers.gripper import (
     move_by_effort,
     move_by_position,
 )
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.goal_slot import GoalSlot
 from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.control.pid import open_pid
@@ -30,15 +30,15 @@ class GripperActionController(Controller):
 
     interface = ""
 
-    def __init__(self, host: ControllerHost):
-        super().__init__(host)
-        p = host.parameters
-        self._handle = host.claim(self.interface, p.text("joint"))
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        p = context.parameters
+        self._handle = context.claim(self.interface, p.text("joint"))
         self._gripper = Gripper(self._handle, self._make_move(), _options(p))
         self._goal = GoalSlot()
         self._running = False
-        self._pace = Pace(p.number("action_monitor_rate", 20.0))
-        host.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
+        self._pace = Rate(p.number("action_monitor_rate", 20.0))
+        context.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
 
     def _make_move(self):
         return move_by_position(self._handle)
@@ -66,11 +66,11 @@ class GripperActionController(Controller):
         command = handle.get_goal().command
         problem = self._problem(command.position, command.max_effort)
         if problem:
-            log.error("%s: goal refused: %s", self.host.describe(), problem)
+            log.error("%s: goal refused: %s", self.context.describe(), problem)
             handle.set_rejected(GripperCommandResult(), problem)
             return
         self._goal.accept(handle)
-        self._gripper.pursue(self.host.world_time(), command.position, command.max_effort)
+        self._gripper.pursue(self.context.world_time(), command.position, command.max_effort)
 
     def _problem(self, *values: float) -> str:
         if not self._running:
@@ -99,7 +99,7 @@ class EffortGripper(GripperActionController):
     interface = "effort"
 
     def _make_move(self):
-        pid = open_pid(self.host, f"gains/{self._handle.joint.name}")
+        pid = open_pid(self.context, f"gains/{self._handle.joint.name}")
         return move_by_effort(self._handle, pid)
 
 

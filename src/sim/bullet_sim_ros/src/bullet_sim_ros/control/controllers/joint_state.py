@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sensor_msgs.msg import JointState
 
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.registry import Controller, controller
 from bullet_sim_ros.errors import PluginError
 
@@ -15,25 +15,25 @@ from bullet_sim_ros.errors import PluginError
 class JointStateController(Controller):
     """Publishes joints in alphabetical order, then the extra ones, at `publish_rate`."""
 
-    def __init__(self, host: ControllerHost):
-        super().__init__(host)
-        parameters = host.parameters
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        parameters = context.parameters
         if not parameters.has("publish_rate"):
             raise PluginError("Parameter 'publish_rate' not set "
                               f"(looked for {parameters.where('publish_rate')})")
         self._rate_hz = parameters.number("publish_rate")
-        wanted = parameters.texts("joints") if parameters.has("joints") else host.joints
-        self._joints = [host.joint(name) for name in sorted(wanted)]
+        wanted = parameters.texts("joints") if parameters.has("joints") else context.joints
+        self._joints = [context.joint(name) for name in sorted(wanted)]
         self._names = [joint.name for joint in self._joints]
-        self._extra = [_extra(host, item) for item in parameters.value("extra_joints", [])]
+        self._extra = [_extra(context, item) for item in parameters.value("extra_joints", [])]
         self._names += [extra[0] for extra in self._extra]
-        topic = names.join(host.manager_namespace, "joint_states")
-        self._publisher = host.advertise(topic, JointState, queue_size=4)
-        self.start(host.world_time())
+        topic = names.join(context.manager_namespace, "joint_states")
+        self._publisher = context.advertise(topic, JointState, queue_size=4)
+        self.start(context.world_time())
 
     def start(self, time: float) -> None:
         """Publish at the first update."""
-        self._pace = Pace(self._rate_hz)
+        self._pace = Rate(self._rate_hz)
 
     def update(self, time: float, period: float) -> None:
         """Publish, if it is time and somebody listens."""
@@ -51,11 +51,11 @@ class JointStateController(Controller):
         return msg
 
 
-def _extra(host: ControllerHost, item) -> tuple[str, float, float, float]:
+def _extra(context: ControllerContext, item) -> tuple[str, float, float, float]:
     """Name, position, velocity and effort of a joint that is not simulated."""
     try:
         values = [float(item.get(key, 0.0)) for key in ("position", "velocity", "effort")]
         return (str(item["name"]), *values)
     except (AttributeError, KeyError, TypeError, ValueError):
-        raise PluginError(f"parameter {host.parameters.where('extra_joints')} has {item!r}; an "
+        raise PluginError(f"parameter {context.parameters.where('extra_joints')} has {item!r}; an "
                           "entry has a name, and if wanted position, velocity, effort") from None

@@ -20,11 +20,11 @@ from control_msgs.srv import (
 )
 from trajectory_msgs.msg import JointTrajectory
 
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim.control.trajectory.follower import Outcome, TrajectoryFollower, Verdict
 from bullet_sim.control.trajectory.joint_commands import PidDrive, PositionDrive
 from bullet_sim.control.trajectory.request import InvalidJoints, InvalidTrajectory
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.goal_slot import GoalSlot
 from bullet_sim_ros.control.pid import open_pid
 from bullet_sim_ros.control.registry import Controller, controller
@@ -50,34 +50,34 @@ class JointTrajectoryController(Controller):
 
     interface = ""
 
-    def __init__(self, host: ControllerHost):
-        super().__init__(host)
-        p = host.parameters
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        p = context.parameters
         names = p.texts("joints")
         self._drives = [self._make_drive(name) for name in names]
         self._follower = TrajectoryFollower(
-            [host.joint(name) for name in names], self._drives,
+            [context.joint(name) for name in names], self._drives,
             p.number("stop_trajectory_duration", 0.0), p.flag("allow_partial_joints_goal", False))
         self._tolerances = read_tolerances(p, names)
         self._goal = GoalSlot()
         self._running = False
         self._time = 0.0
-        self._state_pace = Pace(p.number("state_publish_rate", 50.0))
-        self._goal_pace = Pace(p.number("action_monitor_rate", 20.0))
+        self._state_pace = Rate(p.number("state_publish_rate", 50.0))
+        self._goal_pace = Rate(p.number("action_monitor_rate", 20.0))
         self._open_topics()
 
     def _make_drive(self, joint: str):
-        handle, p = self.host.claim(self.interface, joint), self.host.parameters
-        return PidDrive(handle, open_pid(self.host, f"gains/{joint}"),
+        handle, p = self.context.claim(self.interface, joint), self.context.parameters
+        return PidDrive(handle, open_pid(self.context, f"gains/{joint}"),
                         p.number(f"velocity_ff/{joint}", 0.0))
 
     def _open_topics(self) -> None:
-        host = self.host
-        self._state = host.advertise("state", JointTrajectoryControllerState, queue_size=1)
-        host.serve("query_state", QueryTrajectoryState, self._query_state)
-        host.action("follow_joint_trajectory", FollowJointTrajectoryAction, self._take_goal,
-                    self._take_cancel)
-        host.subscribe("command", JointTrajectory, self._take_command, queue_size=1)
+        context = self.context
+        self._state = context.advertise("state", JointTrajectoryControllerState, queue_size=1)
+        context.serve("query_state", QueryTrajectoryState, self._query_state)
+        context.action("follow_joint_trajectory", FollowJointTrajectoryAction, self._take_goal,
+                       self._take_cancel)
+        context.subscribe("command", JointTrajectory, self._take_command, queue_size=1)
 
     # --- in the loop
 
@@ -108,7 +108,7 @@ class JointTrajectoryController(Controller):
 
     def _finish(self, outcome: Outcome) -> None:
         if outcome.text:
-            log.warning("%s: goal aborted: %s", self.host.describe(), outcome.text)
+            log.warning("%s: goal aborted: %s", self.context.describe(), outcome.text)
         result = Result(error_code=CODES[outcome.verdict], error_string=outcome.text)
         self._goal.finish(outcome.verdict is Verdict.REACHED, result, outcome.text)
 
@@ -121,7 +121,7 @@ class JointTrajectoryController(Controller):
         except InvalidTrajectory as error:
             wrong_joints = isinstance(error, InvalidJoints)
             code = Result.INVALID_JOINTS if wrong_joints else Result.INVALID_GOAL
-            log.error("%s: goal refused: %s", self.host.describe(), error)
+            log.error("%s: goal refused: %s", self.context.describe(), error)
             handle.set_rejected(Result(error_code=code, error_string=str(error)), str(error))
             return
         self._goal.accept(handle)
@@ -136,7 +136,7 @@ class JointTrajectoryController(Controller):
             self._check_running()
             self._follower.follow(request_from_msg(msg))
         except InvalidTrajectory as error:
-            log.error("%s: command refused: %s", self.host.describe(), error)
+            log.error("%s: command refused: %s", self.context.describe(), error)
             return
         self._goal.preempt()
 
@@ -151,8 +151,8 @@ class JointTrajectoryController(Controller):
 
     def _query_state(self, request: QueryTrajectoryStateRequest) -> QueryTrajectoryStateResponse:
         if not self._running:
-            raise rospy.ServiceException(f"{self.host.describe()} is not running")
-        states = self.host.in_loop(lambda: self._follower.sample(request.time.to_sec()))
+            raise rospy.ServiceException(f"{self.context.describe()} is not running")
+        states = self.context.in_loop(lambda: self._follower.sample(request.time.to_sec()))
         return QueryTrajectoryStateResponse(
             self._follower.names, [state.position for state in states],
             [state.velocity for state in states], [state.acceleration for state in states])
@@ -165,7 +165,7 @@ class PositionTrajectory(JointTrajectoryController):
     interface = "position"
 
     def _make_drive(self, joint: str):
-        return PositionDrive(self.host.claim(self.interface, joint))
+        return PositionDrive(self.context.claim(self.interface, joint))
 
 
 @controller("velocity_controllers/JointTrajectoryController")

@@ -7,7 +7,7 @@ import logging
 from geometry_msgs.msg import Twist
 
 from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive, MecanumGeometry
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_limits, read_options
 from bullet_sim_ros.control.registry import controller
 
@@ -20,33 +20,33 @@ CORNERS = ("front_left", "back_left", "back_right", "front_right")
 class MecanumDriveController(MobileBaseController):
     """cmd_vel's linear.y is the speed to the left."""
 
-    def __init__(self, host: ControllerHost):
-        p = host.parameters
-        wheels = [_joint(host, corner) for corner in CORNERS]
+    def __init__(self, context: ControllerContext):
+        p = context.parameters
+        wheels = [_joint(context, corner) for corner in CORNERS]
         self._drive = MecanumDrive(
-            [host.claim("velocity", name) for name in wheels], _geometry(host, wheels),
+            [context.claim("velocity", name) for name in wheels], _geometry(context, wheels),
             read_options(p), read_limits(p, "linear/y"))
-        super().__init__(host, self._drive)
-        if not all(host.robot.joints_on(name) for name in wheels):
+        super().__init__(context, self._drive)
+        if not all(context.robot.joints_on(name) for name in wheels):
             log.warning("%s: its wheels have no rollers (links on passive joints), so they drive "
                         "forward and turn, but do not go sideways; a base without rollers is moved "
-                        "by libgazebo_ros_planar_move.so", host.describe())
+                        "by libgazebo_ros_planar_move.so", context.describe())
 
     def give(self, msg: Twist) -> None:
         """Hand a good command to the drive; in the loop."""
-        self._drive.command(self.host.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
+        self._drive.command(self.context.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
 
 
-def _joint(host: ControllerHost, corner: str) -> str:
+def _joint(context: ControllerContext, corner: str) -> str:
     """Of the wheel; some forks say rear, not back."""
-    p = host.parameters
+    p = context.parameters
     other = f"{corner.replace('back', 'rear')}_wheel_joint"
     return p.text(other) if p.has(other) else p.text(f"{corner}_wheel_joint")
 
 
-def _geometry(host: ControllerHost, wheels: list[str]) -> MecanumGeometry:
+def _geometry(context: ControllerContext, wheels: list[str]) -> MecanumGeometry:
     """Parameters, else the URDF, as upstream reads it."""
-    p, robot = host.parameters, host.robot
+    p, robot = context.parameters, context.robot
 
     def span(parameter: str, axis: int, first: str, second: str) -> float:
         if p.has(parameter):

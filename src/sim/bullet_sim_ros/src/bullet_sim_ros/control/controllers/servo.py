@@ -7,7 +7,7 @@ from control_msgs.msg import JointControllerState
 from bullet_sim.control.controllers.servo import PositionServo, Servo, VelocityServo
 from bullet_sim.control.controllers.servos import Servos
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_host import ControllerHost
+from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import (
     command_timeout,
     subscribe_all,
@@ -25,24 +25,24 @@ class ServoController(Controller):
     interface = "effort"
     law: type[Servo] = PositionServo
 
-    def __init__(self, host: ControllerHost):
-        super().__init__(host)
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
         self._topics: list[PidTopic] = []
-        joint = host.parameters.text("joint")
+        joint = context.parameters.text("joint")
         self._servo = self._open_servo(joint, "pid")
-        self._servos = Servos([self._servo], command_timeout(host))
-        self._state = host.advertise("state", JointControllerState, queue_size=1)
+        self._servos = Servos([self._servo], command_timeout(context))
+        self._state = context.advertise("state", JointControllerState, queue_size=1)
         self._updates = 0
-        subscribe_one(host, self._servos.commands)
+        subscribe_one(context, self._servos.commands)
 
     def _open_servo(self, joint: str, group: str) -> Servo:
-        host = self.host
-        handle = host.claim(self.interface, joint)
+        context = self.context
+        handle = context.claim(self.interface, joint)
         if self.law is PositionServo:
-            host.robot.limits(joint)  # a joint that the URDF does not have is an error
-        pid = open_pid(host, group)
-        if host.parameters.flag(f"{group}/publish_state", False):
-            self._topics.append(PidTopic(host, pid, group))
+            context.robot.limits(joint)  # a joint that the URDF does not have is an error
+        pid = open_pid(context, group)
+        if context.parameters.flag(f"{group}/publish_state", False):
+            self._topics.append(PidTopic(context, pid, group))
         return self.law(handle, pid)
 
     def start(self, time: float) -> None:
@@ -92,13 +92,13 @@ class VelocityPosition(ServoController):
 class EffortGroupPosition(ServoController):
     """rad or m for each of `joints`, by effort; gains in `<joint>/pid`. It tells no state."""
 
-    def __init__(self, host: ControllerHost):
-        Controller.__init__(self, host)
+    def __init__(self, context: ControllerContext):
+        Controller.__init__(self, context)
         self._topics = []
-        joints = host.parameters.texts("joints")
+        joints = context.parameters.texts("joints")
         self._servos = Servos([self._open_servo(joint, f"{joint}/pid") for joint in joints],
-                              command_timeout(host))
-        subscribe_all(host, self._servos.commands, len(joints))
+                              command_timeout(context))
+        subscribe_all(context, self._servos.commands, len(joints))
 
     def update(self, time: float, period: float) -> None:
         """Write the commands."""

@@ -7,7 +7,7 @@ from geometry_msgs.msg import PointStamped
 from hector_uav_msgs.msg import Altimeter
 
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 
@@ -19,21 +19,21 @@ SCALE, EXPONENT = 44330.0, 5.263157  # m; 1, as upstream rounds 1 / 0.19
 class HectorBaroPlugin:
     """Height over the world's z = 0 as a point, and pressure (in the unit of `qnh`, hPa)."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host, self._link = host, common.find_link(host)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context, self._link = context, common.find_link(context)
         self._frame = names.frame("", p.text("frameId", self._link.name))
         self._elevation, self._qnh = p.number("elevation", 0.0), p.number("qnh", 1013.25)
-        self._error = common.HectorError(host, "height", 1)
-        self._stopwatch = common.Stopwatch(host)
-        height = common.topic_of(host, "pressure_height")
-        altimeter = common.topic_of(host, "altimeter", "altimeterTopicName")
-        self._heights = host.advertise(height, PointStamped, queue_size=10) if height else None
+        self._error = common.HectorError(context, "height", 1)
+        self._stopwatch = common.Stopwatch(context)
+        height = common.topic_of(context, "pressure_height")
+        altimeter = common.topic_of(context, "altimeter", "altimeterTopicName")
+        self._heights = context.advertise(height, PointStamped, queue_size=10) if height else None
         self._altimeters = None
         if altimeter:
-            self._altimeters = host.advertise(altimeter, Altimeter, queue_size=10)
+            self._altimeters = context.advertise(altimeter, Altimeter, queue_size=10)
             self._error.offer(altimeter)
-        host.every(common.update_rate(p, 0.0), self._measure, self._wanted)
+        context.every(common.update_rate(p, 0.0), self._measure, self._wanted)
 
     def _wanted(self) -> bool:
         """A drift goes on whether or not anybody listens."""
@@ -45,7 +45,7 @@ class HectorBaroPlugin:
         true = self._link.pose.position[2]
         height = float(self._error.apply(np.array([true]), self._stopwatch.lap())[0])
         point = PointStamped()
-        point.header.stamp = convert.stamp(self._host.world.time)
+        point.header.stamp = convert.stamp(self._context.world.time)
         point.header.frame_id = self._frame
         point.point.z = height
         if self._heights:

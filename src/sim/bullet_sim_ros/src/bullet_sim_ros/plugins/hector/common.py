@@ -9,7 +9,7 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.parameters import PluginParameters, read_numbers
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
@@ -23,13 +23,13 @@ TELLS = {"gaussian_noise": "Standard deviation of the white noise",
          "scale_error": "Factor on the true value"}
 
 
-def find_link(host: Host) -> Link:
+def find_link(context: PluginContext) -> Link:
     """The link that `bodyName` names, else the model's first."""
-    name = host.parameters.text("bodyName")
-    links = host.model.description.links
+    name = context.parameters.text("bodyName")
+    links = context.model.description.links
     if not name and not links:
         raise PluginError("the model has no link")
-    return host.model.link(name or links[0].name)
+    return context.model.link(name or links[0].name)
 
 
 def update_rate(p: PluginParameters, default: float) -> float:
@@ -44,12 +44,12 @@ def update_rate(p: PluginParameters, default: float) -> float:
 class HectorError(ErrorModel):
     """An error model as a plugin's tags have it, that dynamic_reconfigure can change."""
 
-    def __init__(self, host: Host, name: str, size: int, *prefixes: str):
+    def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
         """`prefixes` are those of the tags; the last one that is used counts."""
-        self._host = host
-        super().__init__(host.world, f"{host.model.name}::{host.description.name} {name}",
-                         read_errors(host.parameters, size, prefixes or ("",)))
-        host.on_reset(self.restart)
+        self._context = context
+        super().__init__(context.world, f"{context.model.name}::{context.description.name} {name}",
+                         read_errors(context.parameters, size, prefixes or ("",)))
+        context.on_reset(self.restart)
 
     def offer(self, namespace: str) -> None:
         """Let it be reconfigured; one value is for all components, as upstream has it."""
@@ -59,11 +59,11 @@ class HectorError(ErrorModel):
             if not known:  # the first call only tells what there is
                 known.update(values)
             else:
-                self._host.shared.mailbox.leave(lambda: self._set(values))
+                self._context.services.mailbox.post(lambda: self._set(values))
 
         means = {name: math.fsum(values) / len(values)
                  for name, values in vars(self.parameters).items()}
-        offer_values(self._host, namespace, {
+        offer_values(self._context, namespace, {
             name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, change)
 
     def _set(self, values: dict[str, float]) -> None:
@@ -104,10 +104,10 @@ def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tu
 class Stopwatch:
     """Time between a plugin's updates, s; 0 at the first."""
 
-    def __init__(self, host: Host):
-        self._world = host.world
+    def __init__(self, context: PluginContext):
+        self._world = context.world
         self.restart()
-        host.on_reset(self.restart)
+        context.on_reset(self.restart)
 
     def restart(self) -> None:
         """The next update is the first."""
@@ -121,12 +121,12 @@ class Stopwatch:
         return max(0.0, elapsed)
 
 
-def topic_of(host: Host, default: str, tag: str = "topicName") -> str:
+def topic_of(context: PluginContext, default: str, tag: str = "topicName") -> str:
     """Full name of a topic, empty where the tag is empty."""
-    name = host.parameters.topic(default, tag)
-    return names.join(namespace_of(host), name) if name else ""
+    name = context.parameters.topic(default, tag)
+    return names.join(namespace_of(context), name) if name else ""
 
 
-def namespace_of(host: Host) -> str:
+def namespace_of(context: PluginContext) -> str:
     """Root without `robotNamespace`, and where it is empty."""
-    return host.parameters.namespace(missing="/", empty="/")
+    return context.parameters.namespace(missing="/", empty="/")

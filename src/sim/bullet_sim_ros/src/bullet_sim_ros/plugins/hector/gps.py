@@ -11,7 +11,7 @@ from sensor_msgs.msg import NavSatFix, NavSatStatus
 from bullet_sim.description import SphericalDescription
 from bullet_sim.sensors.gps import GeoReference
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.reconfigure_server import Value, offer_values
@@ -37,27 +37,27 @@ class HectorGpsPlugin:
     Releases of upstream differ there. A drift of the velocity moves the position, too.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host, self._link = host, common.find_link(host)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context, self._link = context, common.find_link(context)
         self._frame = names.frame("", p.text("frameId", "/world"))
         self._reference = self._read_reference()
-        self._position = common.HectorError(host, "position", 3)
-        self._velocity = common.HectorError(host, "velocity", 3, "velocity")
-        self._stopwatch = common.Stopwatch(host)
+        self._position = common.HectorError(context, "position", 3)
+        self._velocity = common.HectorError(context, "velocity", 3, "velocity")
+        self._stopwatch = common.Stopwatch(context)
         self._status = NavSatStatus(status=int(p.number("status", NavSatStatus.STATUS_FIX)),
                                     service=int(p.number("service", 0)))
-        fix, velocity = (common.topic_of(host, "fix"),
-                         common.topic_of(host, "fix_velocity", "velocityTopicName"))
-        self._fixes = host.advertise(fix, NavSatFix, queue_size=10)
-        self._velocities = host.advertise(velocity, Vector3Stamped, queue_size=10)
+        fix, velocity = (common.topic_of(context, "fix"),
+                         common.topic_of(context, "fix_velocity", "velocityTopicName"))
+        self._fixes = context.advertise(fix, NavSatFix, queue_size=10)
+        self._velocities = context.advertise(velocity, Vector3Stamped, queue_size=10)
         self._position.offer(f"{fix}/position")
         self._velocity.offer(f"{fix}/velocity")
         self._offer_status(f"{fix}/status")
-        host.every(common.update_rate(p, 4.0), self._measure, self._wanted)
+        context.every(common.update_rate(p, 4.0), self._measure, self._wanted)
 
     def _read_reference(self) -> GeoReference:
-        p, spherical = self._host.parameters, self._host.world.description.spherical
+        p, spherical = self._context.parameters, self._context.world.description.spherical
         place = (*DARMSTADT, 0.0, 0.0)
         if p.flag("useWorldSphericalCoordinates", spherical is not None):
             spherical = spherical or SphericalDescription()
@@ -73,11 +73,11 @@ class HectorGpsPlugin:
 
         def change(values: dict[str, bool]) -> None:
             if known:  # the first call only tells what there is
-                self._host.shared.mailbox.leave(lambda: self._set_status(values))
+                self._context.services.mailbox.post(lambda: self._set_status(values))
             known.append(True)
 
         usual = {"STATUS_FIX": True, **dict.fromkeys(FIXES, False), **dict.fromkeys(SERVICES, True)}
-        offer_values(self._host, namespace, {
+        offer_values(self._context, namespace, {
             name: Value(now, False, True, name) for name, now in usual.items()}, change)
 
     def _set_status(self, values: dict[str, bool]) -> None:
@@ -97,7 +97,7 @@ class HectorGpsPlugin:
         position = self._position.apply(np.array(self._link.pose.position), elapsed)
         self._position.set_drift(self._position.drift + elapsed * self._velocity.drift)
         fix = NavSatFix(status=self._status)
-        fix.header.stamp = convert.stamp(self._host.world.time)
+        fix.header.stamp = convert.stamp(self._context.world.time)
         fix.header.frame_id = self._frame
         fix.latitude, fix.longitude, fix.altitude = place.geodetic(tuple(position.tolist()))
         errors = self._position.parameters

@@ -14,7 +14,7 @@ from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.error_model import attitude_error
 from bullet_sim.sensors.imu import Imu
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 
@@ -26,30 +26,30 @@ class HectorImuPlugin:
     `heading...` tags, of older releases, mean what `yaw...` mean. `randomEngineSeed` is not needed.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._world = host.world
-        link = common.find_link(host)
-        self._imu = Imu(host.world, link)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._world = context.world
+        link = common.find_link(context)
+        self._imu = Imu(context.world, link)
         self._frame = names.frame("", p.text("frameId", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
-        self._accel = common.HectorError(host, "accel", 3, "accel")
-        self._rate = common.HectorError(host, "rate", 3, "rate")
-        self._yaw = common.HectorError(host, "yaw", 1, "heading", "yaw")
+        self._accel = common.HectorError(context, "accel", 3, "accel")
+        self._rate = common.HectorError(context, "rate", 3, "rate")
+        self._yaw = common.HectorError(context, "yaw", 1, "heading", "yaw")
         self._set_common_noise(p.deviation("gaussianNoise"))
-        self._stopwatch = common.Stopwatch(host)
-        topic = common.topic_of(host, "imu")
+        self._stopwatch = common.Stopwatch(context)
+        topic = common.topic_of(context, "imu")
         self._readings = self._biases = None
         if topic:
-            self._readings = host.advertise(topic, ImuMsg, queue_size=10)
-            bias = common.topic_of(host, f"{topic}/bias", "biasTopicName")
+            self._readings = context.advertise(topic, ImuMsg, queue_size=10)
+            bias = common.topic_of(context, f"{topic}/bias", "biasTopicName")
             if bias:
-                self._biases = host.advertise(bias, ImuMsg, queue_size=10)
+                self._biases = context.advertise(bias, ImuMsg, queue_size=10)
             for name, error in (("accel", self._accel), ("rate", self._rate), ("yaw", self._yaw)):
                 error.offer(f"{topic}/{name}")
-            self._serve(host, topic)
-            host.every(common.update_rate(p, 0.0), self._measure, self._wanted)
-            host.on_reset(self._imu.restart)
+            self._serve(context, topic)
+            context.every(common.update_rate(p, 0.0), self._measure, self._wanted)
+            context.on_reset(self._imu.restart)
 
     def _set_common_noise(self, noise: float) -> None:
         """`gaussianNoise` replaces those of accelerometer and gyroscope."""
@@ -57,24 +57,24 @@ class HectorImuPlugin:
             for error in (self._accel, self._rate):
                 error.parameters = common.with_noise(error.parameters, noise)
 
-    def _serve(self, host: Host, topic: str) -> None:
+    def _serve(self, context: PluginContext, topic: str) -> None:
         """Calibration forgets the gyroscope's drift; the others set a bias."""
         def setter(error: common.HectorError):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
                 bias = np.array([request.bias.x, request.bias.y, request.bias.z])
-                host.shared.mailbox.call(lambda: error.set_drift(bias))
+                context.services.mailbox.call(lambda: error.set_drift(bias))
                 return SetBiasResponse()
             return set_bias
 
         def calibrate(_request) -> EmptyResponse:
-            host.shared.mailbox.call(lambda: self._rate.set_drift(np.zeros(3)))
+            context.services.mailbox.call(lambda: self._rate.set_drift(np.zeros(3)))
             return EmptyResponse()
 
-        calibration = common.topic_of(host, f"{topic}/calibrate", "serviceName")
+        calibration = common.topic_of(context, f"{topic}/calibrate", "serviceName")
         if calibration:
-            host.serve(calibration, Empty, calibrate)
-        host.serve(f"{topic}/set_accel_bias", SetBias, setter(self._accel))
-        host.serve(f"{topic}/set_rate_bias", SetBias, setter(self._rate))
+            context.serve(calibration, Empty, calibrate)
+        context.serve(f"{topic}/set_accel_bias", SetBias, setter(self._accel))
+        context.serve(f"{topic}/set_rate_bias", SetBias, setter(self._rate))
 
     def _wanted(self) -> bool:
         """A drift goes on whether or not anybody listens."""

@@ -10,10 +10,10 @@ from sensor_msgs.msg import MagneticField
 
 from bullet_sim.pose import conjugate, rotate
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugins.common.gps import world_heading
 from bullet_sim_ros.plugins.hector import common
+from bullet_sim_ros.plugins.hector.gps import world_heading
 
 
 @plugin("libhector_gazebo_ros_magnetic.so")
@@ -23,22 +23,22 @@ class HectorMagneticPlugin:
     The world's `<magnetic_field>` is not used in upstream either; its heading is, as by the GPS.
     """
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host, self._link = host, common.find_link(host)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context, self._link = context, common.find_link(context)
         self._frame = names.frame("", p.text("frameId", self._link.name))
         self._field = self._read_field()
-        self._error = common.HectorError(host, "field", 3)
-        self._stopwatch = common.Stopwatch(host)
+        self._error = common.HectorError(context, "field", 3)
+        self._stopwatch = common.Stopwatch(context)
         self._kind = MagneticField if p.flag("useMagneticFieldMsgs", False) else Vector3Stamped
-        topic = common.topic_of(host, "magnetic")
-        self._fields = host.advertise(topic, self._kind, queue_size=1)
+        topic = common.topic_of(context, "magnetic")
+        self._fields = context.advertise(topic, self._kind, queue_size=1)
         self._error.offer(topic)
-        host.every(common.update_rate(p, 0.0), self._measure, self._wanted)
+        context.every(common.update_rate(p, 0.0), self._measure, self._wanted)
 
     def _read_field(self) -> np.ndarray:
         """In the world's axes, (3,)."""
-        p, spherical = self._host.parameters, self._host.world.description.spherical
+        p, spherical = self._context.parameters, self._context.world.description.spherical
         heading = 0.0
         if spherical and p.flag("useWorldSphericalCoordinates", True):
             heading = world_heading(spherical)
@@ -59,5 +59,5 @@ class HectorMagneticPlugin:
             msg = MagneticField(magnetic_field=field)
         else:
             msg = Vector3Stamped(vector=field)
-        msg.header.stamp, msg.header.frame_id = convert.stamp(self._host.world.time), self._frame
+        msg.header.stamp, msg.header.frame_id = convert.stamp(self._context.world.time), self._frame
         self._fields.publish(msg)

@@ -7,7 +7,7 @@ from sensor_msgs.msg import Range
 
 from bullet_sim.sensors.range_finder import RangeFinder
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 
@@ -16,17 +16,17 @@ from bullet_sim_ros.plugins.hector import common
 class HectorSonarPlugin:
     """Rate 10 Hz unless told, whatever the sensor's; what is nearer than range_max has errors."""
 
-    def __init__(self, host: Host):
-        p = host.parameters
-        self._host = host
-        self._finder = RangeFinder(host.world, host.link, host.sensor)
-        self._error = common.HectorError(host, f"{host.link.name} {host.sensor.name}", 1)
-        self._stopwatch = common.Stopwatch(host)
+    def __init__(self, context: PluginContext):
+        p = context.parameters
+        self._context = context
+        self._finder = RangeFinder(context.world, context.link, context.sensor)
+        self._error = common.HectorError(context, f"{context.link.name} {context.sensor.name}", 1)
+        self._stopwatch = common.Stopwatch(context)
         self._frame = names.frame("", p.text("frameId", "/sonar_link"))
-        topic = common.topic_of(host, "sonar")
-        self._ranges = host.advertise(topic, Range, queue_size=1)
+        topic = common.topic_of(context, "sonar")
+        self._ranges = context.advertise(topic, Range, queue_size=1)
         self._error.offer(topic)
-        host.every(common.update_rate(p, 10.0), self._measure, self._wanted)
+        context.every(common.update_rate(p, 10.0), self._measure, self._wanted)
 
     def _wanted(self) -> bool:
         """A drift goes on whether or not anybody listens."""
@@ -42,5 +42,5 @@ class HectorSonarPlugin:
                     max_range=ray.range_max, range=true)
         msg.field_of_view = min(abs(ray.max_angle - ray.min_angle),
                                 abs(ray.vertical_max_angle - ray.vertical_min_angle))
-        msg.header.stamp, msg.header.frame_id = convert.stamp(self._host.world.time), self._frame
+        msg.header.stamp, msg.header.frame_id = convert.stamp(self._context.world.time), self._frame
         self._ranges.publish(msg)

@@ -8,39 +8,36 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from bullet_sim.model import Model
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.quiet import EngineError
 
-if TYPE_CHECKING:
-    from bullet_sim.model import Model
-
 log = logging.getLogger(__name__)
 
 
-def mend(client: PhysicsClient, models: Iterable[Model]) -> None:
+def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
     """Put what has no place back to where it was spawned, and all others in anew, as they move."""
-    client.rest.broken = False
+    client.auto_disable.found_nan = False
     models = list(models)
     broken = [model for model in models
               if not model.static and any(_is_broken(body) for body in model.bodies)]
     for model in broken:
-        log.log(logging.DEBUG if model.was_mended else logging.WARNING,
+        log.log(logging.DEBUG if model.has_recovered else logging.WARNING,
                 "model %s: its motion is no number any more; it starts again where it was "
                 "spawned. Look for forces, speeds or gains that are far too large, or masses that "
                 "are far too small", model.name)
-        model.was_mended = True
+        model.has_recovered = True
     lost = {model.name: model.initial_pose for model in broken}
     lost |= {model.name: model.pose for model in models if model.static}  # hit by what is no number
     for model in models:
         for body in model.bodies if model.name in lost else ():
-            body.take_out()
+            body.unload()
     for model in models:
         for body in model.bodies:
             if model.name in lost:
-                body.put_in(lost[model.name] * body.base_pose_model)
+                body.load(lost[model.name] * body.base_pose_model)
             else:
                 body.rebuild({})
     for model in models:

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import rospy
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.rate import Pace
+from bullet_sim.control.rate import Rate
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
 from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
-
-if TYPE_CHECKING:
-    from bullet_sim_ros.plugin_host.context import Host
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 
-class ControllerHost:
+class ControllerContext:
     """One controller's view of robot and ROS. Made by the manager when the controller is loaded.
 
     Parameters: `self.parameters`, all below NS/<controller>, read once.
@@ -28,8 +25,14 @@ class ControllerHost:
     thread and returns a function for the loop, or None.
     """
 
-    def __init__(self, host: Host, name: str, manager_namespace: str, hardware: RobotHardware,
-                 robot: RobotFacts):
+    def __init__(
+        self,
+        context: PluginContext,
+        name: str,
+        manager_namespace: str,
+        hardware: RobotHardware,
+        robot: RobotFacts,
+    ):
         self.name = name
         self.manager_namespace = manager_namespace  # absolute, /racecar
         self.namespace = names.join(manager_namespace, name)  # absolute, /racecar/<controller>
@@ -38,9 +41,9 @@ class ControllerHost:
         self.joints: dict[str, JointHandle] = hardware.joints
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed
-        self.duties: list[tuple[Pace, Callable[[], None]]] = []
+        self.tasks: list[tuple[Rate, Callable[[], None]]] = []
         self._hardware = hardware
-        self._host = host
+        self._context = context
 
     def describe(self) -> str:
         """Whose log line it is."""
@@ -48,7 +51,7 @@ class ControllerHost:
 
     def world_time(self) -> float:
         """Simulated time, s."""
-        return self._host.world.time
+        return self._context.world.time
 
     # --- joints
 
@@ -68,27 +71,27 @@ class ControllerHost:
 
     def every(self, rate_hz: float, action: Callable[[], None]) -> None:
         """Call `action` in the loop at a rate of simulated time, as long as it is loaded."""
-        self.duties.append((Pace(rate_hz), action))
+        self.tasks.append((Rate(rate_hz), action))
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
         """A publisher that lives as long as the controller is loaded."""
-        return self._host.advertise(names.join(self.namespace, topic), kind, **options)
+        return self._context.advertise(names.join(self.namespace, topic), kind, **options)
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
         """A subscriber; `take(message)` returns what the loop is to do, or None."""
-        return self._host.subscribe(names.join(self.namespace, topic), kind, take, **options)
+        return self._context.subscribe(names.join(self.namespace, topic), kind, take, **options)
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
         """A service; `handler(request)` runs in a ROS thread."""
-        self._host.serve(names.join(self.namespace, name), kind, handler)
+        self._context.serve(names.join(self.namespace, name), kind, handler)
 
     def in_loop(self, function: Callable):
         """From a ROS thread: run `function` in the loop and give back what it returns."""
-        return self._host.shared.mailbox.call(function)
+        return self._context.services.mailbox.call(function)
 
     def leave(self, function: Callable[[], None]) -> None:
         """From any thread: have `function` run in the loop, without waiting."""
-        self._host.shared.mailbox.leave(function)
+        self._context.services.mailbox.post(function)
 
     def action(self, name: str, spec: type, on_goal: Callable,
                on_cancel: Callable) -> LoopActionServer:
@@ -103,8 +106,8 @@ class ControllerHost:
 
     def on_close(self, action: Callable[[], None]) -> None:
         """Call `action` when the controller is unloaded, before its topics are closed."""
-        self._host.on_close(action)
+        self._context.on_close(action)
 
     def close(self) -> None:
         """End all topics, services and actions."""
-        self._host.close()
+        self._context.close()
