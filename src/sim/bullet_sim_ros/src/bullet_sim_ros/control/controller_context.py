@@ -89,7 +89,7 @@ class ControllerContext:
         """From a ROS thread: run `function` in the loop and give back what it returns."""
         return self._context.services.mailbox.call(function)
 
-    def leave(self, function: Callable[[], None]) -> None:
+    def post(self, function: Callable[[], None]) -> None:
         """From any thread: have `function` run in the loop, without waiting."""
         self._context.services.mailbox.post(function)
 
@@ -97,8 +97,8 @@ class ControllerContext:
                on_cancel: Callable) -> LoopActionServer:
         """An action server; `on_goal(goal_handle)` and `on_cancel(goal_handle)` run in the loop."""
         server = LoopActionServer(names.join(self.namespace, name), spec,
-                                  lambda handle: self.leave(lambda: on_goal(handle)),
-                                  lambda handle: self.leave(lambda: on_cancel(handle)))
+                                  lambda handle: self.post(lambda: on_goal(handle)),
+                                  lambda handle: self.post(lambda: on_cancel(handle)))
         self.on_close(server.stop)
         self.every(server.STATUS_RATE, server.publish_status)
         server.start()

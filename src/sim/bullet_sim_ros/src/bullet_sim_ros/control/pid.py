@@ -34,7 +34,7 @@ def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
     def change(gains: PidGains) -> None:
         def set_gains() -> None:
             pid.gains = gains
-        context.leave(set_gains)
+        context.post(set_gains)
 
     offer_gains(context, context.parameters.where(group), pid.gains, change)
     return pid

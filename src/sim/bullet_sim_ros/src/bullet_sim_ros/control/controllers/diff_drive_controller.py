@@ -71,7 +71,7 @@ class DiffDriveController(MobileBaseController):
                                        "odometry and transforms a second")
         values["enable_odom_tf"] = Value(self.enable_odom_tf, False, True, "publish the transform")
         offer_values(context, context.namespace, values,
-                     lambda new: context.leave(lambda: self._change(new)))
+                     lambda new: context.post(lambda: self._change(new)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
         self._drive.geometry = self._geometry(values)
