@@ -55,11 +55,12 @@ def test_a_text_keeps_what_has_it_in_a_name():
 
 
 def test_every_arrow_begins_and_ends_at_its_nodes():
-    picture = draw(STATE, "all", quiet=False)
-    place = {node["id"]: (node["column"], node["row"]) for node in picture["nodes"]}
+    picture = draw(STATE, "all")
+    box = {node["id"]: node["box"] for node in picture["nodes"]}
     for edge in picture["edges"]:
-        assert edge["points"][0] == place[edge["from"]]
-        assert edge["points"][-1] == place[edge["to"]]
+        for end, (x, y) in ((edge["from"], edge["curve"][0]), (edge["to"], edge["curve"][-1])):
+            middle_x, middle_y, width, height = box[end]
+            assert abs(x - middle_x) <= width / 2 + 1 and abs(y - middle_y) <= height / 2 + 1
 
 
 def test_too_many_arrows_ask_for_a_filter():

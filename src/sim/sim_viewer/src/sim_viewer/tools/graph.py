@@ -8,7 +8,7 @@ import rospy
 
 from sim_viewer.drive import GUARD
 from sim_viewer.registry import Refused, argument, watchable
-from sim_viewer.tools.layers import layout
+from sim_viewer.tools.graph_layout import LayoutError, layout
 from sim_viewer.tools.master import SystemState
 from sim_viewer.tools.paced import Changes, Paced
 
@@ -23,7 +23,7 @@ Flow = tuple[str, str, str]  # "" for a missing end: publisher, topic, subscribe
 
 @watchable("graph")
 class Graph(Paced):
-    """Sends `{"nodes": [{name, topic, column, row}], "edges": [{from, to, points, topics}]}`."""
+    """Sends `{size, nodes: [{id, name, topic, box}], edges: [{from, to, topics, curve}]}`."""
 
     PERIOD = 2.0
 
@@ -45,8 +45,11 @@ class Graph(Paced):
 
 def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str = "",
          own: str = "") -> dict[str, Any]:
-    """The picture of `state`; `quiet` leaves out what every system has, and the node `own` with
-    its guard."""
+    """The picture of `state`, in px as a `Layout` has it.
+
+    `quiet` leaves out what every system has, and the node `own` with its guard. Refused where the
+    graph is too large, or cannot be laid out.
+    """
     if quiet:
         state = _without_quiet(state, own)
     flows = _flows(state)
@@ -57,14 +60,16 @@ def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str
         raise Refused(f"{len(edges)} arrows are more than can be drawn; filter by part of a name")
     alone = [] if text else _nodes(state)
     ids = {_node(name) for name in alone} | {end for edge in edges for end in edge}
-    plan = layout(ids, edges)
+    try:
+        plan = layout({one: one[1:] for one in ids}, edges)
+    except LayoutError as error:
+        raise Refused(str(error)) from None
     return {
-        "nodes": [{"id": one, "name": one[1:], "topic": one[0] == "t",
-                   "column": plan.cells[one][0], "row": plan.cells[one][1]}
+        "size": plan.size,
+        "nodes": [{"id": one, "name": one[1:], "topic": one[0] == "t", "box": plan.boxes[one]}
                   for one in sorted(ids)],
         "edges": [{"from": edge[0], "to": edge[1], "topics": sorted(topics),
-                   "points": plan.routes.get(edge, [])}
-                  for edge, topics in sorted(edges.items())],
+                   "curve": plan.curves[edge]} for edge, topics in sorted(edges.items())],
     }
 
 

@@ -1,0 +1,82 @@
+"""Places for a directed graph's nodes and curves for its edges, by Graphviz' dot."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+Edge = tuple[str, str]
+Point = tuple[float, float]  # px, from the left and from the top
+
+PX_PER_INCH = 72.0  # of dot's output; its font sizes are in 1/72 inch
+# The limits bound dot's search for short edges and few crossings: large graphs look no worse.
+STYLE = """rankdir=LR; ranksep=0.9; nodesep=0.2; pad=0.22; nslimit=2; nslimit1=2; mclimit=0.5;
+node [shape=box, height=0.39, fontname=Helvetica, fontsize=13, margin="0.19,0"];
+edge [dir=none];"""
+LONGEST = 5.0  # s; beyond it dot is ended
+
+
+class LayoutError(Exception):
+    """dot is missing, took too long or failed; the text says what to do."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes and places in px; `curves` are cubic Bezier: a point, then three for each segment."""
+
+    size: Point
+    boxes: dict[str, tuple[float, float, float, float]]  # centre x and y, width, height
+    curves: dict[Edge, list[Point]]
+
+
+def layout(names: dict[str, str], edges: Iterable[Edge]) -> Layout:
+    """Layered from left to right; `names` are what is written on each node.
+
+    The same graph gives the same layout. LayoutError where there is none.
+    """
+    nodes = sorted(names)
+    number = {node: str(index) for index, node in enumerate(nodes)}
+    lines = [f"{number[node]} [label={_quoted(names[node])}];" for node in nodes]
+    lines += [f"{number[source]} -> {number[target]};" for source, target in sorted(set(edges))]
+    return _parsed(_dot(f"digraph {{ {STYLE}\n" + "\n".join(lines) + "\n}"), nodes)
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _dot(source: str) -> str:
+    try:
+        done = subprocess.run(["dot", "-Tplain"], input=source, capture_output=True, text=True,
+                              timeout=LONGEST, check=True)
+    except FileNotFoundError:
+        raise LayoutError("there is no command dot; type: sudo apt-get install graphviz") from None
+    except subprocess.TimeoutExpired:
+        raise LayoutError(f"the graph takes longer than {LONGEST:g} s to lay out; "
+                          "filter by part of a name") from None
+    except subprocess.CalledProcessError as error:
+        raise LayoutError(f"dot failed: {error.stderr.strip()[:200]}") from None
+    return done.stdout
+
+
+def _parsed(plain: str, nodes: list[str]) -> Layout:
+    """dot's `plain` format: a line for the graph, each node and each edge; y points up."""
+    size, boxes, curves = (0.0, 0.0), {}, {}
+    for line in plain.splitlines():
+        kind, *words = shlex.split(line)
+        if kind == "graph":
+            size = (_px(words[1]), _px(words[2]))
+        elif kind == "node":
+            x, y, width, height = map(_px, words[1:5])
+            boxes[nodes[int(words[0])]] = (x, round(size[1] - y, 1), width, height)
+        elif kind == "edge":
+            values = list(map(_px, words[3:3 + 2 * int(words[2])]))
+            curves[nodes[int(words[0])], nodes[int(words[1])]] = [
+                (x, round(size[1] - y, 1)) for x, y in zip(values[::2], values[1::2])]
+    return Layout(size, boxes, curves)
+
+
+def _px(inches: str) -> float:
+    return round(float(inches) * PX_PER_INCH, 1)
