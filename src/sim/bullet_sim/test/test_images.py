@@ -12,7 +12,13 @@ import pytest
 from bullet_sim.description import Heightmap, ImageExtrusion
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes.generated import generated_parts
-from bullet_sim.meshes.images import check_image, read_image, shrunk, warn_if_unreadable
+from bullet_sim.meshes.images import (
+    check_image,
+    image_size,
+    read_image,
+    shrunk,
+    warn_if_unreadable,
+)
 from bullet_sim.rendering.textures import load_image
 
 
@@ -118,3 +124,10 @@ def test_a_texture_that_will_not_be_seen_is_one_warning(tmp_path, caplog):
     caplog.clear()
     warn_if_unreadable(str(path))
     assert not caplog.records
+
+
+def test_the_size_is_read_from_the_header():
+    picture = cv2.imencode(".jpg", np.zeros((45, 123, 3), np.uint8))[1].tobytes()
+    assert image_size(picture) == (123, 45)
+    for spoilt in (b"", b"\xff\xd8", b"\xff\xd8\xff\xe0\x00\x00" * 3, picture[:20]):
+        assert image_size(spoilt) is None

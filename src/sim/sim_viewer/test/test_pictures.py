@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cv_bridge import CvBridge
 from sensor_msgs.msg import CompressedImage, Image
-from sim_viewer.pictures import jpeg_width, to_jpeg
+from sim_viewer.pictures import to_jpeg
 from sim_viewer.registry import Refused
 
 ORANGE = (0, 128, 255)  # BGR
@@ -95,12 +95,6 @@ def test_a_jpeg_that_is_small_enough_goes_as_it_is():
     msg = compressed(plain(640, 480))
     assert to_jpeg(msg, 640) == msg.data
     assert to_jpeg(msg, 639) != msg.data
-
-
-def test_the_width_is_read_from_the_header():
-    assert jpeg_width(bytes(compressed(plain(123, 45)).data)) == 123
-    assert jpeg_width(b"\xff\xd8") == 0
-    assert jpeg_width(b"\xff\xd8\xff\xe0\x00\x00" * 3) == 0
 
 
 @pytest.mark.parametrize("msg", [

@@ -15,7 +15,7 @@ from sim_viewer.tools.clock import FactorMeter
 from sim_viewer.tools.console import line_of, pick
 from sim_viewer.tools.parameters import check_name, read_value, rows, to_yaml
 from sim_viewer.tools.plot import sample_time, thin
-from sim_viewer.tools.tf import FrameTree, angles
+from sim_viewer.tools.tf import FrameTree
 from sim_viewer.tools.topics import RateMeter
 from std_msgs.msg import Float64
 
@@ -95,12 +95,6 @@ def test_two_parents_and_a_loop_are_told():
     assert by_name["a"]["problem"] == "loop"
     assert len(by_name) == 4  # world, odom, a, b
 
-
-def test_angles_are_roll_pitch_yaw():
-    half = math.sqrt(0.5)
-    assert angles((0, 0, half, half)) == pytest.approx((0, 0, 90))
-    assert angles((half, 0, 0, half)) == pytest.approx((90, 0, 0))
-    assert angles((0, half, 0, half))[1] == pytest.approx(90, abs=1e-3)
 
 
 def test_lines_are_picked_by_level():

@@ -1,6 +1,5 @@
 """What spawn_model does after its command line: wait, load, spawn, set joints, unpause, delete."""
 
-import math
 import signal
 import sys
 import threading
@@ -11,6 +10,7 @@ from gazebo_msgs.srv import DeleteModel
 from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
+from bullet_sim.pose import quaternion_from_rpy
 from gazebo_ros import gazebo_interface, model_source, spawn_arguments
 from gazebo_ros.quiet_end import end_quietly
 from gazebo_ros.service_wait import wait_for_service
@@ -20,11 +20,7 @@ POLL_PERIOD = 0.1  # s
 
 def pose_from(options) -> Pose:
     """Roll, pitch, yaw about fixed axes."""
-    (sr, cr), (sp, cp), (sy, cy) = (
-        (math.sin(angle / 2), math.cos(angle / 2)) for angle in (options.R, options.P, options.Y))
-    turn = Quaternion(
-        x=sr * cp * cy - cr * sp * sy, y=cr * sp * cy + sr * cp * sy,
-        z=cr * cp * sy - sr * sp * cy, w=cr * cp * cy + sr * sp * sy)
+    turn = Quaternion(*quaternion_from_rpy(options.R, options.P, options.Y))
     return Pose(Point(options.x, options.y, options.z), turn)
 
 

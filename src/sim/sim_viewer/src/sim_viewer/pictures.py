@@ -7,11 +7,11 @@ import numpy as np
 from cv_bridge import CvBridge, CvBridgeError
 from sensor_msgs.msg import CompressedImage, Image
 
+from bullet_sim.meshes.images import JPEG, image_size
 from sim_viewer.registry import Refused
 
 QUALITY = 80  # of 100
 TALLEST_PX = 2000
-JPEG_START = b"\xff\xd8"
 _bridge = CvBridge()
 
 
@@ -20,7 +20,7 @@ def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
     the picture cannot be shown."""
     if hasattr(msg, "format"):
         data = bytes(msg.data)
-        if data.startswith(JPEG_START) and 0 < jpeg_width(data) <= width:
+        if 0 < _jpeg_width(data) <= width:
             return data
         picture = _decode(data, width)
     else:
@@ -72,7 +72,7 @@ def _spread(values: np.ndarray) -> np.ndarray:
 
 def _decode(data: bytes, width: int) -> np.ndarray:
     """A compressed picture; JPEGs of twice the width and more are read at half the size."""
-    large = data.startswith(JPEG_START) and jpeg_width(data) >= 2 * width
+    large = _jpeg_width(data) >= 2 * width
     mode = cv2.IMREAD_REDUCED_COLOR_2 if large else cv2.IMREAD_COLOR
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), mode) if data else None
     if picture is None:
@@ -80,12 +80,7 @@ def _decode(data: bytes, width: int) -> np.ndarray:
     return picture
 
 
-def jpeg_width(data: bytes) -> int:
-    """In px, from the frame header (ITU T.81, B.2.2); 0 if there is none."""
-    at = 2
-    while at + 9 <= len(data) and data[at] == 0xFF:
-        marker = data[at + 1]
-        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
-            return int.from_bytes(data[at + 7:at + 9], "big")
-        at += 2 + int.from_bytes(data[at + 2:at + 4], "big")
-    return 0
+def _jpeg_width(data: bytes) -> int:
+    """In px; 0 of what is no JPEG."""
+    size = image_size(data) if data.startswith(JPEG) else None
+    return size[0] if size else 0

@@ -29,7 +29,7 @@ def check_image(path: Path | str) -> os.stat_result:
     status = check_file(path, LARGEST_FILE, "make it smaller")
     try:
         with open(path, "rb") as file:
-            size = _size_px(file.read(HEADER_BYTES))
+            size = image_size(file.read(HEADER_BYTES))
     except OSError as error:
         raise FormatError(f"{path} cannot be read: {error.strerror}") from None
     if size and 0 in size:
@@ -72,8 +72,8 @@ def shrunk(image: np.ndarray, factor: float) -> np.ndarray:
     return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
-def _size_px(header: bytes) -> tuple[int, int] | None:
-    """Width and height that a PNG or JPEG says; None where it says none."""
+def image_size(header: bytes) -> tuple[int, int] | None:
+    """Width and height, px, from the first bytes of a PNG or JPEG; None where they do not say."""
     if header.startswith(PNG) and len(header) >= 24:
         return struct.unpack(">II", header[16:24])
     if not header.startswith(JPEG):

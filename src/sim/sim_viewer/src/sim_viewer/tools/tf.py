@@ -11,6 +11,7 @@ from typing import Any
 
 from tf2_msgs.msg import TFMessage
 
+from bullet_sim.pose import rpy_from_quaternion
 from sim_viewer.registry import watchable
 from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
@@ -112,17 +113,9 @@ class FrameTree:
         return {"frame": frame, "parent": link.parent, "publisher": link.publisher,
                 "static": link.static, "rate": (len(recent) - 1) / span if span > 0 else 0.0,
                 "age": None if link.static else now - link.stamp,
-                "place": link.place, "angles": angles(link.rotation),
+                "place": link.place,
+                "angles": [math.degrees(angle) for angle in rpy_from_quaternion(link.rotation)],
                 "problem": "parents: " + ", ".join([link.parent, *rivals]) if rivals else ""}
-
-
-def angles(rotation: tuple[float, float, float, float]) -> tuple[float, float, float]:
-    """Roll, pitch and yaw in degrees, of a quaternion (x, y, z, w); fixed axes x, y, z."""
-    x, y, z, w = rotation
-    roll = math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-    pitch = math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
-    yaw = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    return math.degrees(roll), math.degrees(pitch), math.degrees(yaw)
 
 
 @watchable("tf")
