@@ -33,7 +33,7 @@ function slider(id, name, unit, { start, most }) {
   const input = element("input", {
     type: "range", id, min: 0.02, max: most, step: 0.02, value: start,
     oninput: () => (shown.textContent = `${Number(input.value).toFixed(2)} ${unit}`),
-    onchange: () => input.blur(), // or it would eat the arrow keys
+    onchange: () => input.blur(), // or it would take the arrow keys
   });
   input.dispatchEvent(new Event("input"));
   const label = element("label", {}, element("span", { text: name }), shown, input);
@@ -72,7 +72,7 @@ function topicChoice(link, open) {
     const found = await link.call("drive_topics");
     found.forEach(({ topic, type }) => types.set(topic, type));
     const before = select.value;
-    // A robot that is gone for a moment is not exchanged for another under somebody's fingers.
+    // A robot that disappears for a moment is not replaced by another while somebody drives.
     const gone = before && !found.some(({ topic }) => topic === before);
     const topics = [...(gone ? [before] : []), ...found.map(({ topic }) => topic)];
     if (String(topics) === shown) return;

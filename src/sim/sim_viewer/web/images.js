@@ -8,7 +8,7 @@ export const title = t("Cameras", "相机");
 const LOOK_AGAIN_MS = 3000; // for new topics
 const COUNTED_MS = 2000; // over which pictures a second are counted
 const MOST_PX = 960;
-const CHOSEN = "images"; // what was looked at, kept by the browser
+const CHOSEN = "images"; // the topics shown, stored by the browser
 
 let open = null;
 

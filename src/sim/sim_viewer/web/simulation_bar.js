@@ -5,7 +5,7 @@ import { t } from "./language.js";
 
 const FACTOR_DIGITS = 2;
 
-/** `digits` behind the point: while time stands, a step of 1 ms is to be seen. */
+/** `digits` behind the point: while paused, a step of 1 ms must show. */
 function clock(time, digits) {
   const scale = 10 ** digits;
   const whole = Math.round(time * scale) / scale; // or 59.96 s would be 0:60.0

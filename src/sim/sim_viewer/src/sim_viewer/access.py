@@ -1,4 +1,4 @@
-"""Who may speak to the server: a token, and names that no foreign page can borrow.
+"""Who may connect to the server: by a token, and by host names that no other site can use.
 
 A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding) or open a WebSocket here
 from its own origin. Browsers say so in the headers Host and Origin, so both are checked.

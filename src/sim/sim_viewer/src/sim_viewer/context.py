@@ -38,7 +38,7 @@ class Node:
         return await self.loop.run_in_executor(self._workers, function, *args)
 
     def close(self) -> None:
-        """Objects kept for all that have a `close` are closed."""
+        """Close the shared objects that have a `close`."""
         for shared in self._shared.values():
             if hasattr(shared, "close"):
                 shared.close()
@@ -68,6 +68,6 @@ class Context:
         self._on_close.append(function)
 
     def closed(self) -> None:
-        """The connection has ended: tell who asked."""
+        """The connection has ended: call those who asked for it."""
         for function in self._on_close:
             function()

@@ -1,4 +1,4 @@
-"""The dead man's handle of one driven topic: who holds it, until when, what to publish for that.
+"""The dead man's switch of one command topic: who holds it, until when, and what to publish.
 
 No ROS, no thread and no clock: `now` is handed in, in seconds of a clock that never jumps.
 """
@@ -43,7 +43,7 @@ class DeadMan:
 
     @property
     def until(self) -> float:
-        """When `expire` has something to say; infinite while nobody drives."""
+        """When `expire` has a command to publish; infinite while nobody drives."""
         return self._until
 
     def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
@@ -64,7 +64,7 @@ class DeadMan:
         return self._stop() if taken else [*due, *self._go(command)]
 
     def release(self, client: Hashable) -> list[Command]:
-        """The client let go of its keys, or is gone."""
+        """The client released its keys, or disconnected."""
         self._ousted.pop(client, None)
         return self._let_go() if client == self._driver else []
 

@@ -19,7 +19,7 @@ from sim_viewer.registry import Refused, operation
 from sim_viewer.tools.master import asked, connect
 
 FASTEST = 20.0  # m/s and rad/s; more is a slip of the hand, whatever the robot
-PATIENCE = 15.0  # s until the guard has begun and opened a topic, on a busy machine
+TIMEOUT = 15.0  # s until the guard has begun and opened a topic, on a busy machine
 GUARD = "_drive"  # what its node's name has more than this one's
 
 
@@ -56,7 +56,7 @@ class Drive:
             raise Refused("somebody else drives now; let go of the keys, then press again")
 
     def release(self, client: int) -> None:
-        """The client let go, or is gone."""
+        """The client released the controls, or disconnected."""
         if self._guard is not None:
             self._tell({"do": "release", "client": client})
 
@@ -103,7 +103,7 @@ class Drive:
         self._stopping = self._loop.create_task(self._stop(topics))
 
     async def _stop(self, topics: dict[str, str]) -> None:
-        """A new guard does not know what the last one left driving."""
+        """After a restart of the guard: stop whatever the last one drove."""
         for topic, kind in topics.items():
             try:
                 await self.open(topic, kind)
@@ -117,7 +117,7 @@ class Drive:
         self._answers[number] = waiting
         try:
             self._tell({**order, "number": number})
-            done, _ = await asyncio.wait([waiting], timeout=PATIENCE)
+            done, _ = await asyncio.wait([waiting], timeout=TIMEOUT)
         finally:
             del self._answers[number]
         if not done or waiting.cancelled():
@@ -134,7 +134,7 @@ class Drive:
 
 
 def driven_topics() -> dict[str, str]:
-    """Topics that somebody listens to and whose type we can drive by, with that type, sorted."""
+    """Topics with a subscriber and a type that the page can publish, with that type, sorted."""
     types, (_, subscribers, _) = asked(lambda: (dict(connect().getTopicTypes()),
                                                 connect().getSystemState()))
     listened = sorted(name for name, _ in subscribers)

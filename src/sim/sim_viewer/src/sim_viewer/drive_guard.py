@@ -55,7 +55,7 @@ MESSAGES = {"geometry_msgs/Twist": (Twist, twist),
 
 
 class Guard:
-    """Does what the lines say; `answer` is called with an object for each that has a number."""
+    """Executes the lines; `answer` is called with an object for each that has a number."""
 
     def __init__(self, answer: Callable[[dict[str, Any]], None]) -> None:
         self._answer = answer
@@ -122,7 +122,7 @@ def main() -> None:
             with writing:
                 replies.write(json.dumps(reply) + "\n")
         except OSError:
-            pass  # the server has gone, so the input ends
+            pass  # the server has ended, and with it the input
 
     guard = Guard(answer)
     try:

@@ -1,4 +1,4 @@
-"""Who drives which topic, and a thread that stops what nobody holds any more. No ROS here."""
+"""Who drives which topic, and a thread that stops what nobody holds. Without ROS."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Handles:
             self._changed.notify()
 
     def release(self, client: Hashable) -> None:
-        """The client let go, or is gone."""
+        """The client released the controls, or disconnected."""
         with self._changed:
             self._release(client)
 

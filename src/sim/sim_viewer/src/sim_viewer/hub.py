@@ -21,7 +21,7 @@ MOST_BROWSERS = 100
 MOST_AT_ONCE = 64  # operations of one browser under way, and things it watches
 LONGEST_ID = 64  # characters of a message's number, which is sent back
 GOODBYE = 1.0  # s for all browsers together, when the node ends
-PATIENCE = 15.0  # s between pings; a browser that does not answer is gone
+PING_PERIOD = 15.0  # s; a browser that does not answer is disconnected
 
 
 class Hub:
@@ -36,7 +36,7 @@ class Hub:
         """The handler of /ws: returns when the connection has ended."""
         if len(self._sockets) >= MOST_BROWSERS:
             raise web.HTTPServiceUnavailable(text=f"{MOST_BROWSERS} pages are open already\n")
-        socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=PATIENCE,
+        socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=PING_PERIOD,
                                        compress=False)
         self._sockets.add(socket)
         try:

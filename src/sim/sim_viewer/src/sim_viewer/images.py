@@ -24,7 +24,7 @@ LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old picture waits in
 
 @operation("image_topics")
 async def image_topics(context: Context) -> list[str]:
-    """Image topics that somebody publishes; a compressed twin stands behind its own image."""
+    """Image topics with a publisher; a compressed one comes after the raw one of its name."""
     return await context.run_in_thread(_offered, context.node.shared(MasterView))
 
 
@@ -69,7 +69,7 @@ class Stream:
         now = time.monotonic()
         if now < self._due:
             return
-        # A rate that is kept on the average: 30 pictures a second give 20, not 15.
+        # The rate holds on the average: of 30 pictures a second 20 are sent, not 15.
         self._due = max(self._due + 1 / RATE_HZ, now - 1 / RATE_HZ)
         try:
             self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)

@@ -9,12 +9,12 @@ from collections import deque
 from typing import Any
 
 MOST_ANSWERS = 100  # that a browser may leave unread before nothing more is read from it
-MOST_KEPT = 500  # of one thing watched; the oldest goes first
+MOST_KEPT = 500  # messages of one watchable; the oldest is dropped first
 MOST_BYTES = 4 << 20  # of one thing watched, likewise
 
 
 class Outbox:
-    """Answers in order; of each thing watched the newest, and what is to be kept before it."""
+    """Answers in order; of each watchable the newest message, and those marked to be kept."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop):
         self._loop = loop
@@ -33,7 +33,7 @@ class Outbox:
             self._room.clear()
 
     async def room(self) -> None:
-        """Waits until the browser has read enough of its answers, or is gone."""
+        """Waits until the browser has read enough of its answers, or has disconnected."""
         await self._room.wait()
 
     def end(self) -> None:

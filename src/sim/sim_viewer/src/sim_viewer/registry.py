@@ -30,7 +30,7 @@ import sim_viewer
 
 
 class Refused(Exception):
-    """What was asked cannot be done; the text is one line that says why and what to do."""
+    """A request that cannot be met; the text is one line: why, and what to do."""
 
 
 @dataclass(frozen=True)

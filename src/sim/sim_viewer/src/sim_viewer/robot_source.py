@@ -20,14 +20,14 @@ from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
 
 DESCRIPTION = "/robot_description"
-LOOK_AGAIN = 2.0  # s between looks at the parameter and at tf's tree
-# Of our own choice: nobody says what light the robot stands in.
+POLL_PERIOD = 2.0  # s between reads of the parameter and of tf's tree
+# An arbitrary light: neither the URDF nor tf describe one.
 LIGHT = LightDescription("sun", type="directional", direction=(-0.5, 0.3, -1.0),
                          diffuse=(0.8, 0.8, 0.8, 1.0))
 
 
 class RobotSource:
-    """Poses are in the frame at the root of tf's tree; tf is heard once they are wanted."""
+    """Poses are in the frame at the root of tf's tree; tf is subscribed to once they are wanted."""
 
     def __init__(self):
         self._buffer: tf2_ros.Buffer | None = None
@@ -36,7 +36,7 @@ class RobotSource:
         self._name = ""
         self._links: tuple[str, ...] = ()
         self._root = ""
-        self._looked = -LOOK_AGAIN
+        self._looked = -POLL_PERIOD
 
     def close(self) -> None:
         """Let tf go."""
@@ -46,7 +46,7 @@ class RobotSource:
 
     def scene(self, known: bool) -> SceneContent | None:
         """If there is another one than at the last call, or if that one is not `known`."""
-        if known and time.monotonic() - self._looked < LOOK_AGAIN:
+        if known and time.monotonic() - self._looked < POLL_PERIOD:
             return None
         self._looked = time.monotonic()
         text = str(rospy.get_param(DESCRIPTION, ""))

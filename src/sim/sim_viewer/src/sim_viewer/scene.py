@@ -23,8 +23,8 @@ from sim_viewer.simulator_source import SimulatorSource
 from sim_viewer.tools.master import MasterView
 
 RATE_HZ = 20.0  # of poses, at most
-UNSEEN = 1e-5  # m, and of quaternions: a robot that stands trembles less; nothing is drawn for that
-PATIENCE = 1.0  # s without a simulator before the robot's own description counts
+SMALLEST_MOTION = 1e-5  # m, and of quaternions: less is not sent; a robot at rest moves less
+TIMEOUT = 1.0  # s without a simulator before the robot's own description counts
 
 Send = Callable[..., None]
 
@@ -93,7 +93,7 @@ class Stage:
                     await self._show(self._simulator)
                     continue
                 await self._find_simulator()
-                if clock() - seen > PATIENCE:
+                if clock() - seen > TIMEOUT:
                     self._simulator.forget()
                     await self._show(self._robot)
         finally:
@@ -128,7 +128,7 @@ class Stage:
 
     def _take(self, names: tuple[str, ...], rows: np.ndarray) -> None:
         renamed = names != self._names
-        if not renamed and np.allclose(rows, self._rows, rtol=0.0, atol=UNSEEN):
+        if not renamed and np.allclose(rows, self._rows, rtol=0.0, atol=SMALLEST_MOTION):
             return
         self._names, self._rows = names, rows
         self._send_poses(self._watching("poses"), renamed)

@@ -56,7 +56,7 @@ class Server:
         raise NoPort(f"ports {options.port} to {last - 1} are all taken; give another with port:=")
 
     async def close(self) -> None:
-        """Browsers are told first."""
+        """Browsers are informed first."""
         await self._hub.close()
         await self._runner.cleanup()
 

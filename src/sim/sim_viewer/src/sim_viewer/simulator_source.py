@@ -15,7 +15,7 @@ from sim_viewer.tools import names
 from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.simulator_name import simulator_name
 
-LOOK_AGAIN = 2.0  # s between looks whether the simulator goes by another name
+POLL_PERIOD = 2.0  # s between looks for the simulator's name
 POSE = np.dtype("<f8")
 _COUNT = struct.Struct("<I")
 
@@ -36,7 +36,7 @@ class SimulatorSource:
 
     def open(self) -> None:
         """Subscribe; again and again, since the simulator may come later, under another name."""
-        if self._name and time.monotonic() - self._looked < LOOK_AGAIN:
+        if self._name and time.monotonic() - self._looked < POLL_PERIOD:
             return
         self._looked = time.monotonic()
         name = simulator_name(self._master.state())
@@ -58,7 +58,7 @@ class SimulatorSource:
         self.forget()
 
     def forget(self) -> None:
-        """What the last simulator said, which is gone."""
+        """Forget the last simulator's state, as it has ended."""
         if not self.present():
             self._text = self._states = None
 

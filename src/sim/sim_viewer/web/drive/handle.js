@@ -1,5 +1,5 @@
-// The dead man's handle: while something is held it repeats the command, and when nothing is, it
-// says so once. The server stops the robot too, 0.25 s after the last message.
+// The dead man's switch: while a control is held it repeats the command, and on release it sends
+// one stop. The server stops the robot too, 0.25 s after the last message.
 
 const PERIOD_MS = 100;
 const HUNG_MS = 400; // between two periods; the server has stopped the robot long since

@@ -4,7 +4,7 @@ import { element } from "../dom.js";
 
 const DEAD_ZONE = 0.1; // of the way to the rim
 
-/** The joystick's element; it holds the handle while a pointer is down on it. */
+/** The joystick's element; it drives while a pointer is down on it. */
 export function joystick(handle) {
   const knob = element("div", { class: "knob" });
   const pad = element("div", { class: "joystick", id: "joystick" }, knob);

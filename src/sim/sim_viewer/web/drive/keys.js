@@ -7,7 +7,7 @@ const DIRECTIONS = { // forward, turn to the left
 
 const isForm = (target) => ["INPUT", "SELECT", "TEXTAREA"].includes(target.tagName);
 
-/** Let the keyboard hold the handle until the result is called. */
+/** Drive by keyboard until the returned function is called. */
 export function listenToKeys(handle) {
   const down = new Set();
   const ending = new AbortController();

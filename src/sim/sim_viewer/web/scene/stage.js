@@ -83,7 +83,7 @@ export class Stage {
     else requestAnimationFrame(() => this._render());
   }
 
-  /** `ground`: whether the scene has one; else a grid stands for it. */
+  /** `ground`: whether the scene has one; else a grid is drawn. */
   setBackground(colour, sky, ground) {
     this._grid.visible = !ground;
     this._scene.background = colour ? new THREE.Color(...colour.slice(0, 3)) : OWN_BACKGROUND;

@@ -109,7 +109,7 @@ export function mount(place, link) {
       } }), count),
     problem, list));
   stops = [
-    // The server tells its last lines again to who comes back.
+    // After a reconnection the server sends its last lines again.
     link.onConnection((there) => {
       if (!there) return;
       lines = [];

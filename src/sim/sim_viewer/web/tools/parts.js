@@ -84,7 +84,7 @@ export function timeText(time, digits) {
   return digits ? clock + (time - whole).toFixed(digits).slice(1) : clock;
 }
 
-/** What is told by a watch that could not collect: `{error}`; true if it was one. */
+/** Shows a watchable's `{error}`; true if it was one. */
 export function toldError(data, line) {
   line.show(data?.error ?? "");
   return Boolean(data?.error);

@@ -12,7 +12,7 @@ export class Series {
     this.values = []; // null where there was no number
   }
 
-  /** Samples are `[time, value]`; time that goes back is a simulation begun anew. */
+  /** Samples are `[time, value]`; time that goes back is a reset simulation. */
   add(samples) {
     for (const [time, value] of samples) {
       if (this.times.length && time < this.times.at(-1) - 1) this.clear();

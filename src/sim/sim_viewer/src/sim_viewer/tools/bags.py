@@ -19,7 +19,7 @@ from sim_viewer.tools.bag_folder import bag_folder, contents, existing_bag, list
 from sim_viewer.tools.paced import Changes, Paced
 
 LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
-PATIENCE = 10.0  # s for a bag to be closed
+TIMEOUT = 10.0  # s for a bag to be closed
 RATES = (0.01, 100.0)
 
 
@@ -59,7 +59,7 @@ class Child:
             if self.running:
                 self._process.send_signal(number)
             try:
-                self._process.wait(PATIENCE)
+                self._process.wait(TIMEOUT)
                 return
             except subprocess.TimeoutExpired:
                 continue

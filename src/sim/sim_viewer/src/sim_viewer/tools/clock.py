@@ -17,7 +17,7 @@ FACTOR_WINDOW = 2.0  # s of wall time that the real-time factor is measured over
 
 
 class SharedClock:
-    """One subscription to /clock for all who hold it, and none when nobody does. Thread safe.
+    """One subscription to /clock, shared by all users and closed with the last. Thread safe.
 
     rospy's own time would not do: it decides between the two when its node starts, and the page
     may be older than the simulator.
@@ -47,7 +47,7 @@ class SharedClock:
 
     @property
     def simulated(self) -> float | None:
-        """Simulated time in s; None where no /clock has been heard."""
+        """Simulated time in s; None before the first /clock."""
         return self._stamp.to_sec() if self._stamp is not None else None
 
     def now(self) -> float:

@@ -18,7 +18,7 @@ NUMBERS = frozenset(["int8", "int16", "int32", "int64", "uint8", "uint16", "uint
                      "byte", "char", "float32", "float64", "bool"])
 TIMES = frozenset(["time", "duration"])  # read as seconds
 MOST_PATHS = 400  # offered for one type
-MOST_LISTED = 9  # elements of an array of known length; of longer ones the first stands for all
+MOST_LISTED = 9  # elements of an array of known length; of longer ones only the first is listed
 ELEMENT = re.compile(r"^([A-Za-z]\w*)((?:\[\d{1,9}\])*)$")
 
 Step = str | int
@@ -49,7 +49,7 @@ def parse_steps(path: str) -> list[Step]:
 
 
 def expand(path: str, message_class: type) -> list[str]:
-    """The paths to single numbers that `path` (below the topic) stands for; else Refused."""
+    """The paths to single numbers that `path` (below the topic) names; else Refused."""
     parent, _, last = path.rpartition("/")
     names = last.split(":") if ":" in last else [last]
     found = []

@@ -19,7 +19,7 @@ BOUNDS = {f"{sign}int{bits}": (0 if sign else -(1 << bits - 1), (1 << bits - (no
 
 
 class PlainLoader(yaml.SafeLoader):
-    """YAML without anchors and aliases, by which a short text can stand for a huge one."""
+    """YAML without anchors and aliases, by which a short text can expand to a huge one."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         event = self.peek_event()
@@ -87,7 +87,7 @@ def fill(message_class: type, text: str) -> Any:
 
 
 def _check(message_class: type, values: dict, path: str) -> None:
-    """What genpy would leave to the wire or say unclearly: unknown fields, kinds, bounds."""
+    """Checks that genpy leaves to serialisation or reports unclearly: fields, types, bounds."""
     kinds = dict(zip(message_class.__slots__, message_class._slot_types))
     for name, value in values.items():
         if name not in kinds:

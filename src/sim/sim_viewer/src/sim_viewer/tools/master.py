@@ -1,4 +1,4 @@
-"""What the ROS master knows, asked at most once a second however many pages look."""
+"""The ROS master's state, read at most once a second however many pages show it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages as YAML text, short enough to read: long arrays and strings are cut and say so."""
+"""Messages as YAML text, short enough to read: long arrays and strings are cut, with a mark."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The watchable that the tools' own are made of: it looks at intervals and sends what is new."""
+"""Base class of the tools' watchables: polls at a period and sends what has changed."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Paced:
             await asyncio.sleep(self.PERIOD)
 
     def _look(self) -> Any:
-        """Its news; an error is told once, until it has passed."""
+        """What has changed; an error is sent once, until it has passed."""
         try:
             data = self.collect()
             self._last_error = ""

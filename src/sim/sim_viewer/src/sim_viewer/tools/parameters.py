@@ -64,7 +64,7 @@ def row(name: str, value: Any, most: int) -> dict[str, Any]:
 
 
 def to_yaml(value: Any, in_lines: bool = True) -> str:
-    """On one line, but for texts of several lines; what YAML cannot say, as Python shows it."""
+    """On one line, but for texts of several lines; what YAML cannot express, as Python's repr."""
     if isinstance(value, str) and "\n" in value and in_lines:
         return yaml.dump(value, default_style="|", allow_unicode=True)
     if isinstance(value, str) and "\n" in value:

@@ -31,7 +31,7 @@ async def plot_fields(context: Any, topic: str) -> list[str]:
 
 @operation("plot_expand")
 async def plot_expand(context: Any, path: str) -> list[str]:
-    """The lines that a path stands for: `/turtle1/pose/x:y` are two."""
+    """The lines that a path names: `/turtle1/pose/x:y` are two."""
     return await context.run_in_thread(lines_of, context.node.shared(MasterView), path)
 
 

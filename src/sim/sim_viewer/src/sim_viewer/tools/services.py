@@ -16,7 +16,7 @@ from sim_viewer.tools.forms import fill, template
 from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.message_text import to_text
 
-PATIENCE = 30.0  # s until an answer is no longer waited for
+TIMEOUT = 30.0  # s until an answer is no longer waited for
 MOST_AT_ONCE = 8  # calls of all pages
 
 
@@ -62,7 +62,7 @@ def service_class(name: str) -> type:
 
 
 class Calls:
-    """Calls under way. Each has a thread of its own: a server that hangs holds up no worker."""
+    """Calls under way. Each has a thread of its own: a service that hangs blocks no other call."""
 
     def __init__(self, node: Any):
         self._loop: asyncio.AbstractEventLoop = node.loop
@@ -77,9 +77,9 @@ class Calls:
         threading.Thread(target=self._work, args=(name, kind, request, answer),
                          daemon=True).start()
         try:
-            return await asyncio.wait_for(asyncio.shield(answer), PATIENCE)
+            return await asyncio.wait_for(asyncio.shield(answer), TIMEOUT)
         except TimeoutError:
-            raise Refused(f"{name} has not answered within {PATIENCE:.0f} s") from None
+            raise Refused(f"{name} has not answered within {TIMEOUT:.0f} s") from None
         except (rospy.ServiceException, rospy.ROSException) as error:
             raise Refused(f"{name}: {error}") from None
 

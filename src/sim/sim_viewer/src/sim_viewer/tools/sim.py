@@ -124,7 +124,7 @@ def physics(name: str) -> Any:
 
 
 class SharedPause:
-    """Whether the simulator stands, asked at most once a second however many pages look."""
+    """Whether the simulator is paused, asked at most once a second however many pages show it."""
 
     def __init__(self, node: Any = None):
         self._lock = threading.Lock()

@@ -33,24 +33,24 @@ class Link:
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, in the parent
     rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w
     times: deque[float] = field(default_factory=lambda: deque(maxlen=600))  # s, wall
-    others: dict[str, float] = field(default_factory=dict)  # rival parent -> wall s last heard
+    others: dict[str, float] = field(default_factory=dict)  # other parent -> wall s of its last
 
 
 class FrameTree:
-    """What /tf and /tf_static have said. `add` and `rows` may come from different threads."""
+    """The transforms of /tf and /tf_static. `add` and `rows` may come from different threads."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._links: dict[str, Link] = {}
 
     def add(self, transforms: list, publisher: str, static: bool, now: float) -> None:
-        """Take in a message's transforms, heard at `now` s of wall time."""
+        """Add a message's transforms, received at `now` s of wall time."""
         with self._lock:
             for one in transforms:
                 self._add(one, publisher, static, now)
 
     def _add(self, one: Any, publisher: str, static: bool, now: float) -> None:
-        # tf2 knows no leading slashes; old tf nodes write them.
+        # tf2 has no leading slashes; old tf nodes write them.
         child, parent = one.child_frame_id.lstrip("/"), one.header.frame_id.lstrip("/")
         link = self._links.get(child)
         if link is None:
