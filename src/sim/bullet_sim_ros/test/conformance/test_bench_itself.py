@@ -6,6 +6,8 @@ import pytest
 import rospy
 from geometry_msgs.msg import Twist
 
+from bullet_sim.pose import Pose
+
 ROBOT = """<model name="box">
   <link name="body"><inertial><mass>1</mass></inertial>
     <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link>
@@ -36,9 +38,14 @@ def test_services_answer_and_fail_as_over_the_wire(bench):
 
 
 def test_what_is_sent_reaches_the_plugins(bench):
-    bench.spawn("""<model name="car"><link name="base"/><plugin name="d"
-      filename="libgazebo_ros_diff_drive.so"/></model>""")
-    assert bench.subscribed().get("/cmd_vel") in (Twist, None)  # no wheels: not loaded
+    model = bench.spawn("""<model name="car"><link name="base"/><plugin name="d"
+      filename="libgazebo_ros_planar_move.so"/></model>""", Pose((0, 0, 5)))
+    assert bench.subscribed()["/cmd_vel"] is Twist
+    command = Twist()
+    command.linear.x = 0.5
+    bench.send("/cmd_vel", command)
+    bench.run(0.1)
+    assert model.twist.linear[0] == pytest.approx(0.5, abs=0.01)
 
 
 def test_pictures_are_drawn(bench):
