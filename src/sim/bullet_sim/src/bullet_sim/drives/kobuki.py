@@ -7,8 +7,7 @@ import math
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
 from bullet_sim.pose import Pose, quaternion_from_rpy
-from bullet_sim.sensors.imu import ImuReading
-from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.world import World
 
