@@ -27,7 +27,6 @@ from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
-from bullet_sim.snapshot import Snapshot, take_snapshot
 from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)
@@ -220,10 +219,6 @@ class World:
         self.tick = round(self._initial_time / self.timestep)
 
     # --- reads
-
-    def snapshot(self) -> Snapshot:
-        """Where everything is now."""
-        return take_snapshot(self.time, self.models)
 
     def update_scene(self) -> Scene:
         """The scene with every moving link where it is now."""

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
-from bullet_sim.control.controllers.timed_command import TimedCommand
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import SimulationError
 

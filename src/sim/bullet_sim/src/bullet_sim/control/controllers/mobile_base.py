@@ -5,9 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
-from bullet_sim.control.controllers.timed_command import TimedCommand
 
 
 @dataclass(frozen=True)
