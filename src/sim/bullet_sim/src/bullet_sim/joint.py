@@ -49,7 +49,10 @@ class Joint:
         self._body.drive_velocity(self.name, velocity, effort)
 
     def drive_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step, cut to the joint's limit as upstream does."""
+        """Effort (N m or N) during the next step, within the joint's limits.
+
+        As Gazebo's Joint::CheckAndTruncateForce (physics/Joint.cc) cuts it.
+        """
         self._body.drive_effort(self.name, self._within_limit(effort))
 
     def add_effort(self, effort: float) -> None:
@@ -101,7 +104,7 @@ class PassiveJoint:
 
     @property
     def position(self) -> float:
-        """Always 0, as upstream has it."""
+        """Always 0: there is no single angle."""
         return 0.0
 
     @property

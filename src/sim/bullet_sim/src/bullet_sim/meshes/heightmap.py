@@ -15,7 +15,10 @@ BARE = TerrainLayer(Material(ambient=(0.45, 0.4, 0.3, 1.0), diffuse=(0.45, 0.4, 
 
 
 def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
-    """A part for each layer that shows anywhere, in the link frame."""
+    """A part for each layer that shows anywhere, in the link frame.
+
+    FormatError as of `read_image`.
+    """
     heights = _heights(shape)
     rows, columns = heights.shape
     across, along, _ = shape.size

@@ -44,7 +44,8 @@ class _FileVersion:
 def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """Parts of a file, one per material, in the mesh's own frame and in metres.
 
-    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning.
+    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning. FormatError
+    for a file that cannot be read or has no triangles.
     """
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)

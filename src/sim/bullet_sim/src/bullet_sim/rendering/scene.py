@@ -104,20 +104,27 @@ class Scene(SceneState):
         return self._visuals
 
     def add_light(self, light: LightDescription) -> None:
-        """Poses and directions of lights are in the world."""
+        """Poses and directions of lights are in the world.
+
+        NameTaken if there is one of that name.
+        """
         if light.name in self.lights:
             raise NameTaken(f"the scene already has a light named {light.name!r}")
         self.lights[light.name] = light
         self.version = next(_versions)
 
     def remove_light(self, name: str) -> None:
+        """No longer drawn; UnknownName without one of that name."""
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
         self.version = next(_versions)
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
-        """Visuals whose mesh cannot be read are left out, with one warning each."""
+        """Visuals whose mesh cannot be read are left out, with one warning each.
+
+        NameTaken if the link is there already.
+        """
         if key in self.nodes:
             raise NameTaken(f"the scene already has a link {'::'.join(key)}")
         wanted = tuple(visuals)
@@ -140,6 +147,7 @@ class Scene(SceneState):
             self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
+        """Move a link, pose in the world; UnknownName if it is not in the scene."""
         node = self.nodes.get(key)
         if node is None:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))

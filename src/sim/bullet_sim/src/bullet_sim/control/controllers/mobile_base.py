@@ -12,7 +12,7 @@ from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter
 
 @dataclass(frozen=True)
 class BaseOptions:
-    """Defaults are upstream's."""
+    """Defaults of diff_drive_controller.cpp, DiffDriveController::init."""
 
     forward_limits: SpeedLimits = UNLIMITED  # m/s
     turning_limits: SpeedLimits = UNLIMITED  # rad/s; of a steering angle rad
