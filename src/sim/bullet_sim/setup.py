@@ -1,12 +1,29 @@
-"""Installs the core with plain pip as well as through catkin."""
+"""Installs the core with plain pip; catkin reads packages and package_dir of it."""
+
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
 setup(
     name="bullet_sim",
     version="0.1.0",
+    description="Gazebo's models, worlds, sensors and cameras on PyBullet, without ROS",
+    long_description=(Path(__file__).parent / "README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
+    license="BSD-3-Clause",
     package_dir={"": "src"},
     packages=find_packages("src"),
-    package_data={"bullet_sim": ["data/**/*", "rendering/shaders/*"]},
+    package_data={"bullet_sim": ["py.typed", "data/**/*"]},
     python_requires=">=3.11",
+    install_requires=[
+        "moderngl>=5.10,<6",  # textures are let go by weak references, which 5.6 lacks
+        "numpy>=1.26,<3",
+        "opencv-python-headless>=4.8,<5",
+        "pybullet>=3.2.5,<4",
+        "pycollada>=0.8,<1",  # .dae
+        "scipy>=1.11,<2",  # for trimesh
+        "trimesh>=4.4,<6",  # .ply, .off, .glb, .gltf
+        "xacro>=2.1,<3",
+    ],
+    extras_require={"test": ["pytest>=7,<10"]},
 )

@@ -29,8 +29,8 @@ from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
-from bullet_sim.sensors.imu import Imu
 from bullet_sim.sensors.laser import Laser
+from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim.world import World
 
 SECONDS = 3.0
@@ -86,7 +86,7 @@ def run(seed: int, look_every: int) -> dict[str, str]:
     renderer = open_renderer()
     base = model.links["base"]
     camera, laser = Camera(world, base, CAMERA, renderer), Laser(world, base, LASER)
-    imu = Imu(world, base)
+    imu = LinkMotion(world, base)
     for frame in range(1, round(SECONDS / world.timestep) // FRAME + 1):
         drive.update(FRAME * world.timestep)
         world.step(FRAME)
@@ -97,7 +97,8 @@ def run(seed: int, look_every: int) -> dict[str, str]:
             continue
         hashes["images"].update(image.rgb.tobytes())
         hashes["scans"].update(scan.ranges.tobytes())
-        hashes["imu"].update(struct.pack("4d3d", *motion.orientation, *motion.angular_velocity))
+        hashes["imu"].update(struct.pack(
+            "4d3d", *motion.orientation, *motion.world_angular_velocity))
         for pose, twist in (state for m in world.models.values()
                             for state in m.link_states().values()):
             numbers = (*pose.position, *pose.orientation, *twist.linear, *twist.angular)

@@ -8,6 +8,7 @@ from bullet_sim.control.controllers.ackermann_steering_controller import (
     AckermannGeometry,
     AckermannSteering,
 )
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
 from bullet_sim.control.controllers.four_wheel_steering_controller import (
     FourWheelGeometry,
@@ -18,7 +19,6 @@ from bullet_sim.control.controllers.four_wheel_steering_controller import (
 from bullet_sim.control.controllers.mobile_base import BaseOptions
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.control.controllers.speed_limiter import SpeedLimiter, SpeedLimits
-from bullet_sim.control.controllers.timed_command import TimedCommand
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.errors import SimulationError
 

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from bullet_sim.control.controllers.forward import Forward
-from bullet_sim.control.controllers.servo import PositionServo, VelocityServo
-from bullet_sim.control.controllers.servos import Servos
+from bullet_sim.control.controllers.servo import PositionServo, Servos, VelocityServo
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import Pid, PidGains

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from snapshots import take_snapshot
 
 from bullet_sim.description import (
     Box,
@@ -224,9 +225,9 @@ def test_pause_means_time_and_motion_stand_still(world):
     model = world.spawn(box(), Pose((0, 0, 5.0)))
     run(world, 0.1)
     world.paused = True
-    before = world.snapshot()
+    before = take_snapshot(world)
     run(world, 0.1)
-    assert world.snapshot() == before
+    assert take_snapshot(world) == before
     world.paused = False
     world.step()
     assert world.tick == 101
@@ -299,7 +300,7 @@ def test_the_same_run_twice_is_bit_identical():
         for name, rate in (("left_joint", 4.0), ("right_joint", 5.0)):
             model.joint(name).drive_velocity(rate, 10.0)
         run(world, 1.0)
-        result = world.snapshot()
+        result = take_snapshot(world)
         world.close()
         return result
     assert once() == once()

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pybullet
 import pytest
+from snapshots import take_snapshot
 
 from bullet_sim.description import (
     Box,
@@ -138,9 +139,9 @@ def test_what_stands_comes_to_rest_and_stays_where_it_is(counted, thing):
     world.spawn(ground())
     STANDING[thing](world)
     counted.settle()
-    before = world.snapshot()
+    before = take_snapshot(world)
     assert counted.run(60.0) == 0
-    assert world.snapshot().models == before.models
+    assert take_snapshot(world).models == before.models
     assert world.time == pytest.approx(SETTLE + 60.1)
 
 
@@ -199,10 +200,10 @@ def test_every_disturbance_ends_it(counted, disturbance):
     world.spawn(single("table", Box((0.3, 0.3, 0.2))), Pose((1.0, 0.0, 0.1)))
     box = world.spawn(BOX, Pose((1.0, 0.0, 0.4)))  # falls 15 cm on the table
     counted.settle()
-    before = world.snapshot()
+    before = take_snapshot(world)
     DISTURBANCES[disturbance](world)
     assert counted.run(0.4) == 400
-    moved = {name for name, model in world.snapshot().models.items()
+    moved = {name for name, model in take_snapshot(world).models.items()
              if not _close(model, before.models.get(name))}
     assert moved - {"ball"}, "nothing moved"
     assert box.pose.position[2] > 0.04
@@ -235,7 +236,7 @@ def test_looking_does_not_end_it(counted):
     world.spawn(ground())
     Drive(world)
     counted.settle()
-    world.snapshot()
+    take_snapshot(world)
     world.update_scene()
     world.cast_rays(np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, -1.0]]))
     assert counted.run(0.1) == 0

@@ -1,5 +1,6 @@
 """Sensors against closed forms."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from bullet_sim.description import (
     Box,
     Collision,
+    ImuDescription,
     LinkDescription,
     ModelDescription,
     Noise,
@@ -16,8 +18,9 @@ from bullet_sim.description import (
 )
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.sensors.ground_truth import GroundTruth
-from bullet_sim.sensors.imu import Imu
+from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.laser import Laser
+from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
@@ -113,19 +116,34 @@ def test_a_scan_may_have_more_beams_than_the_engine_takes_at_once():
     assert reading.ranges == pytest.approx(np.full(20000, 2.0), abs=0.002)
 
 
-def test_imu_of_a_falling_and_of_a_turning_link():
+def test_motion_of_a_falling_and_of_a_turning_link():
     world = World()
     model = world.spawn(ModelDescription("thing", links=(LinkDescription("link"),)))
     model.set_twist(Twist((0, 0, 0), (0.0, 0.0, 2.0)))
-    imu = Imu(world, model.links["link"])
-    assert imu.sample().linear_acceleration == (0.0, 0.0, 0.0)
+    motion = LinkMotion(world, model.links["link"])
+    assert motion.sample().world_acceleration == (0.0, 0.0, 0.0)
     for _ in range(100):
         world.step()
-    reading = imu.sample()
-    assert reading.linear_acceleration == pytest.approx((0, 0, -9.8), abs=1e-3)
-    assert reading.angular_velocity == pytest.approx((0, 0, 2.0), abs=1e-6)
+    reading = motion.sample()
+    assert reading.world_acceleration == pytest.approx((0, 0, -9.8), abs=1e-3)
+    assert reading.world_angular_velocity == pytest.approx((0, 0, 2.0), abs=1e-6)
     assert 2 * math.atan2(reading.orientation[2], reading.orientation[3]) == pytest.approx(
         0.2, abs=1e-3)
+    world.close()
+
+
+def test_an_imu_reads_in_its_own_axes_what_a_links_motion_has_in_the_worlds():
+    world = World()
+    lying = Pose.from_xyz_rpy((0.0, 0.0, 0.5), (math.pi / 2, 0.0, 0.0))  # its y is the world's z
+    link = world.spawn(ModelDescription("thing", links=(LinkDescription("link"),), static=True),
+                       lying).links["link"]
+    sensor = SensorDescription("imu", "imu", imu=ImuDescription())
+    felt, moved = ImuSensor(world, link, sensor).sample(), LinkMotion(world, link).sample()
+    assert felt.linear_acceleration == pytest.approx((0.0, 9.8, 0.0), abs=1e-6)
+    assert moved.world_acceleration == (0.0, 0.0, 0.0)
+    own, world_axes = ({field.name for field in dataclasses.fields(kind)}
+                       for kind in (ImuReading, LinkMotionReading))
+    assert own & world_axes == {"time", "orientation"}  # a mix-up is an AttributeError
     world.close()
 
 

@@ -13,6 +13,7 @@ from bullet_sim.physics.body import Body
 from bullet_sim.physics.reaction import joint_reaction
 from bullet_sim.physics.urdf_text import NO_LIMIT
 from bullet_sim.pose import Pose, Vector3, rotate
+from bullet_sim.twist import dot
 
 
 class Joint:
@@ -48,7 +49,10 @@ class Joint:
         self._body.drive_velocity(self.name, velocity, effort)
 
     def drive_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step, cut to the joint's limit as upstream does."""
+        """Effort (N m or N) during the next step, within the joint's limits.
+
+        As Gazebo's Joint::CheckAndTruncateForce (physics/Joint.cc) cuts it.
+        """
         self._body.drive_effort(self.name, self._within_limit(effort))
 
     def add_effort(self, effort: float) -> None:
@@ -100,7 +104,7 @@ class PassiveJoint:
 
     @property
     def position(self) -> float:
-        """Always 0, as upstream has it."""
+        """Always 0: there is no single angle."""
         return 0.0
 
     @property
@@ -163,8 +167,8 @@ class LoopJoint(PassiveJoint):
         axis = self.description.axis
         apart = parent.inverse() * child
         if self.description.type == "prismatic":
-            return _dot(apart.position, axis)
-        angle = 2.0 * math.atan2(_dot(apart.orientation[:3], axis), apart.orientation[3])
+            return dot(apart.position, axis)
+        angle = 2.0 * math.atan2(dot(apart.orientation[:3], axis), apart.orientation[3])
         return math.remainder(angle, 2.0 * math.pi)
 
     @property
@@ -173,7 +177,7 @@ class LoopJoint(PassiveJoint):
         joint = self.description
         axis = rotate(self._ends()[0].orientation, joint.axis)
         part = "linear" if joint.type == "prismatic" else "angular"
-        parent, child = (0.0 if link is None else _dot(getattr(link.twist, part), axis)
+        parent, child = (0.0 if link is None else dot(getattr(link.twist, part), axis)
                          for link in (self._parent, self._child))
         return child - parent
 
@@ -217,7 +221,3 @@ class SingleJointGroup:
 
 def _described(link: Link | None) -> Pose:
     return Pose() if link is None else link.description.pose
-
-
-def _dot(a, b) -> float:
-    return sum(x * y for x, y in zip(a, b, strict=True))

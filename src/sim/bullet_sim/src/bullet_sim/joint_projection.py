@@ -9,7 +9,7 @@ import math
 
 from bullet_sim.link import Link
 from bullet_sim.pose import Pose, rotate
-from bullet_sim.twist import Twist, shifted_twist, twist_difference
+from bullet_sim.twist import Twist, dot, shifted_twist, twist_difference
 
 
 def project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
@@ -31,16 +31,12 @@ def project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, 
     own = twist_difference(
         twist, shifted_twist(parent_twist, parent_pose.position, pose.position))
     if joint.type == "prismatic":
-        step, motion = _dot(moved.position, axis), own.linear
+        step, motion = dot(moved.position, axis), own.linear
     else:
         x, y, z, w = moved.orientation
-        step = math.remainder(2.0 * math.atan2(_dot((x, y, z), axis), w), 2.0 * math.pi)
+        step = math.remainder(2.0 * math.atan2(dot((x, y, z), axis), w), 2.0 * math.pi)
         motion = own.angular
     position = body.joint_state(joint.name)[0] + step
     if joint.type != "continuous" and joint.lower <= joint.upper:
         position = max(joint.lower, min(joint.upper, position))
-    return joint.name, position, _dot(rotate(frame.orientation, axis), motion)
-
-
-def _dot(a, b) -> float:
-    return sum(x * y for x, y in zip(a, b, strict=True))
+    return joint.name, position, dot(rotate(frame.orientation, axis), motion)

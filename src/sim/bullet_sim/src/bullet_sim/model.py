@@ -157,7 +157,10 @@ class Model(ModelState):
             link.apply_steady_force(gravity_compensation(link.description, gravity))
 
     def link(self, name: str) -> Link:
-        """The link, or the one that took it in when fixed joints were lumped."""
+        """The link, or the one that took it in when fixed joints were lumped.
+
+        UnknownName without it.
+        """
         if name not in self.links:
             name = self._without_scope(name)
         name = self.description.lumped.get(name, (name, None))[0]
@@ -166,7 +169,10 @@ class Model(ModelState):
         return self.links[name]
 
     def joint(self, name: str) -> Joint | PassiveJoint:
-        """The joint of that name; fixed ones are there too, but not among `joints`."""
+        """The joint of that name; fixed ones are there too, but not among `joints`.
+
+        UnknownName without it; SimulationError for one that nothing can be read of.
+        """
         if name not in self.joints:
             name = self._without_scope(name)
         found = self.joints.get(name) or self.fixed_joints.get(name)

@@ -13,7 +13,7 @@ class TickRate:
     A period that is no whole number of steps alternates between two lengths, so that the long-run
     rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps, as in Gazebo's plugins that
     accumulate. With `whole_steps` the period is rounded up to steps: every 34, as in those that
-    count from the last time.
+    count from the last time. SimulationError for a rate that is negative or not finite.
     """
 
     def __init__(self, rate_hz: float, timestep: float, origin: int = 0,

@@ -18,6 +18,11 @@ class Twist:
 STILL = Twist()
 
 
+def dot(a, b) -> float:
+    """Scalar product."""
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
 def cross(a, b) -> Vector3:
     """Vector product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

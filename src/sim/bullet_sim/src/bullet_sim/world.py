@@ -27,7 +27,6 @@ from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
-from bullet_sim.snapshot import Snapshot, take_snapshot
 from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)
@@ -133,7 +132,11 @@ class World:
 
     def spawn(self, description: ModelDescription, pose: Pose = IDENTITY,
               name: str | None = None) -> Model:
-        """Put a model in: its own pose is kept as an offset to `pose`, as Gazebo does."""
+        """Put a model in: its own pose is kept as an offset to `pose`, as Gazebo does.
+
+        NameTaken if there is a model of that name; SimulationError if the engine cannot
+        hold it.
+        """
         name = name or description.name
         if name in self.models:
             raise NameTaken(f"a model named {name!r} is already there; delete it or choose another")
@@ -160,7 +163,7 @@ class World:
                                        pose=link.pose * light.pose))
 
     def delete(self, name: str) -> None:
-        """Take a model out."""
+        """Take a model out. UnknownName without one of that name."""
         model = self.model(name)
         del self.models[name]
         self._actors.pop(name, None)
@@ -175,33 +178,42 @@ class World:
             function(name)
 
     def model(self, name: str) -> Model:
-        """The model of that name."""
+        """The model of that name. UnknownName without one."""
         if name not in self.models:
             raise UnknownName("model", name, self.models)
         return self.models[name]
 
     def link(self, name: str) -> Link:
-        """A link by scoped name `model::link`, or by an unscoped name that only one model has."""
+        """A link by scoped name `model::link`, or by an unscoped name that only one model has.
+
+        UnknownName without one.
+        """
         return find_link(self.models, name)
 
     def frame(self, name: str) -> tuple[Pose, Twist]:
-        """Pose and twist of a reference frame: a model, a link, or the world by its usual names."""
+        """Pose and twist of a reference frame: a model, a link, or the world by its usual names.
+
+        UnknownName without one.
+        """
         return find_frame(self.models, name)
 
     def add_light(self, light: LightDescription) -> None:
-        """Switch a light on."""
+        """Switch a light on. NameTaken if there is one of that name."""
         if light.name in self.lights:
             raise NameTaken(f"a light named {light.name!r} is already there")
         self.lights[light.name] = light
         self.scene.add_light(light)
 
     def change_light(self, light: LightDescription) -> None:
-        """Give the light of that name other properties, from the next picture on."""
+        """Give the light of that name other properties, from the next picture on.
+
+        UnknownName without one.
+        """
         self.remove_light(light.name)
         self.add_light(light)
 
     def remove_light(self, name: str) -> None:
-        """Switch a light off for good."""
+        """Switch a light off for good. UnknownName without one of that name."""
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
@@ -221,10 +233,6 @@ class World:
 
     # --- reads
 
-    def snapshot(self) -> Snapshot:
-        """Where everything is now."""
-        return take_snapshot(self.time, self.models)
-
     def update_scene(self) -> Scene:
         """The scene with every moving link where it is now."""
         for model in self.models.values():
@@ -242,7 +250,10 @@ class World:
             (model.name, body) for model in self.models.values() for body in model.bodies])
 
     def configure_physics(self, **changes) -> None:
-        """Change fields of the world's PhysicsDescription, and gravity (m/s^2): all or none."""
+        """Change fields of the world's PhysicsDescription, and gravity (m/s^2): all or none.
+
+        SimulationError for values that are not possible.
+        """
         gravity = changes.pop("gravity", self.description.gravity)
         physics = replace(self.description.physics, **changes)
         check_physics(physics)

@@ -20,7 +20,10 @@ NO_LIMITS = JointLimits()
 
 
 class RobotHardware:
-    """Handles of all joints that have a transmission, by name. Used in the loop's thread."""
+    """Handles of all joints that have a transmission, by name. Used in the loop's thread.
+
+    SimulationError for a transmission of a joint that the model lacks.
+    """
 
     def __init__(self, model: Model, transmissions: Iterable[Transmission],
                  limits: Mapping[str, JointLimits], gains: Mapping[str, PidGains]):
@@ -93,14 +96,17 @@ class RobotHardware:
     # --- for controllers
 
     def joint_handle(self, name: str) -> JointHandle:
-        """The state of a joint; an error lists those that there are."""
+        """The state of a joint. UnknownName without one of that name."""
         if name not in self.joints:
             raise UnknownName(f"joint with a transmission in model {self.model_name}", name,
                               self.joints)
         return self.joints[name]
 
     def command_handle(self, interface: str, joint: str) -> CommandHandle:
-        """The handle of a joint's command; an error says what there is instead."""
+        """The handle of a joint's command.
+
+        UnknownName without such a joint, SimulationError if it takes other commands.
+        """
         self.joint_handle(joint)
         handle = self._handles[joint]
         if handle.interface == interface:

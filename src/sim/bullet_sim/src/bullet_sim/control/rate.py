@@ -10,7 +10,10 @@ ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by roundi
 
 
 class Rate:
-    """Due `rate_hz` times a simulated second, exact in the long run; 0 means at every update."""
+    """Due `rate_hz` times a simulated second, exact in the long run; 0 means at every update.
+
+    SimulationError for a rate that is negative or not finite.
+    """
 
     def __init__(self, rate_hz: float):
         if rate_hz < 0 or not math.isfinite(rate_hz):

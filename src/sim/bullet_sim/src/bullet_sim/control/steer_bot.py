@@ -1,8 +1,8 @@
 """A car as a bicycle: one virtual rear wheel and one virtual steering joint move its real ones.
 
 What steer_bot_hardware_gazebo does for ackermann_steering_controller, which knows one joint each.
-Upstream gives all four wheels one speed; here the rear ones differ and the front ones roll, so that
-the car drives the circle that its odometry counts.
+Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear ones differ and the
+front ones roll, so that the car drives the circle that its odometry counts.
 """
 
 from __future__ import annotations

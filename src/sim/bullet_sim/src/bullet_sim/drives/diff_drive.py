@@ -26,7 +26,10 @@ class DiffDriveParameters:
 
 
 class DiffDrive:
-    """Turns (forward, yaw rate) into motor targets; call `update` at the drive's own rate."""
+    """Turns (forward, yaw rate) into motor targets; call `update` at the drive's own rate.
+
+    SimulationError for a diameter or separation of 0.
+    """
 
     def __init__(self, left: Joint, right: Joint, parameters: DiffDriveParameters):
         if not parameters.wheel_diameter or not parameters.wheel_separation:

@@ -14,7 +14,10 @@ class Harness:
     """`update` at every step."""
 
     def __init__(self, world: World, link: Link, axis: Vector3):
-        """`axis` in the world: where the winch goes at a positive speed."""
+        """`axis` in the world: where the winch goes at a positive speed.
+
+        SimulationError if it is zero.
+        """
         length = math.hypot(*axis)
         if length == 0.0:
             raise SimulationError("the harness has a joint without axis: it is 0 0 0")

@@ -7,8 +7,7 @@ import math
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
 from bullet_sim.pose import Pose, quaternion_from_rpy
-from bullet_sim.sensors.imu import ImuReading
-from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.world import World
 
@@ -18,7 +17,10 @@ class Kobuki:
 
     def __init__(self, world: World, left: Joint, right: Joint, imu: ImuSensor, torque: float,
                  wheel_separation: float, wheel_diameter: float, timeout: float):
-        """Torque in N m, separation and diameter in m, `timeout` of a command in s."""
+        """Torque in N m, separation and diameter in m, `timeout` of a command in s.
+
+        SimulationError for a separation or diameter that is not above 0.
+        """
         if wheel_diameter <= 0 or wheel_separation <= 0:
             raise SimulationError(f"wheel diameter {wheel_diameter} and separation "
                                   f"{wheel_separation} must both be more than 0 m")

@@ -15,7 +15,9 @@ class SkidSteer:
                  wheel_diameter: float, torque: float):
         """Separation and diameter in m, torque in N m for each wheel.
 
-        As upstream, a negative separation reverses turns, and a negative diameter reverses all.
+        As in gazebo_ros_skid_steer_drive.cpp, a negative separation reverses turns, and a negative
+        diameter reverses all.
+        SimulationError for a separation or diameter of 0.
         """
         if not wheel_diameter or not wheel_separation:
             raise SimulationError(f"wheel diameter {wheel_diameter} and separation "

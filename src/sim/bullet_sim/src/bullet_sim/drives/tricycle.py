@@ -26,7 +26,10 @@ class TricycleParameters:
 
 
 class Tricycle:
-    """Turns (wheel speed, steering angle) into motor targets; `update` at the drive's own rate."""
+    """Turns (wheel speed, steering angle) into motor targets; `update` at the drive's own rate.
+
+    SimulationError for a diameter that is not above 0.
+    """
 
     def __init__(self, steering: Joint, wheel: Joint, parameters: TricycleParameters):
         if parameters.wheel_diameter <= 0:

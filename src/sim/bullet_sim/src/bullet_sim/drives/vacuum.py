@@ -47,6 +47,7 @@ class Vacuum:
             pose = Pose(cup.position, pose.orientation)
         model.move_link(link, pose, self._cup.twist)
         if distance > 0.0:
-            force = min(1.0 / distance, limits.max_force)  # N: upstream's law
+            # N, as in gazebo_ros_vacuum_gripper.cpp, UpdateChild
+            force = min(1.0 / distance, limits.max_force)
             link.apply_force(tuple(force * g / distance for g in gap))
         return True

@@ -30,7 +30,10 @@ PACKAGE_URI = re.compile(r"package://([^/\\\s\"'<>]+)")
 
 
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
-    """The model of a URDF or SDF text; `name` replaces the one in the text."""
+    """The model of a URDF or SDF text; `name` replaces the one in the text.
+
+    FormatError for a text that is neither, and for what is wrong in it beyond repair.
+    """
     root = _parse_model(text)
     named = root
     if root.tag == "robot":
@@ -47,7 +50,10 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
 
 
 def load_light(text: str, resources: Resources, name: str | None = None) -> LightDescription | None:
-    """The light of an SDF text whose root's first child is one; None for other texts."""
+    """The light of an SDF text whose root's first child is one; None for other texts.
+
+    FormatError for a text that is not XML.
+    """
     root = _parse_model(text)
     if root.tag not in SDF_ROOTS or len(root) == 0 or root[0].tag != "light":
         return None
@@ -60,7 +66,7 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     """The first world of a file; `Resources.find_world` finds the file.
 
     FormatError where the file is no XML or has no `<world>`; all else that is wrong in it is an
-    error line, and the rest is read.
+    error line, and the rest is read. ResourceNotFound without the file.
     """
     path = Path(path)
     if not path.is_file():

@@ -26,7 +26,7 @@ class ScriptMaterial:
 
 
 def parse_script(text: str) -> dict[str, ScriptMaterial]:
-    """All materials of a script by name."""
+    """All materials of a script by name. FormatError for braces that do not match."""
     statements = _statements(text)
     materials: dict[str, ScriptMaterial] = {}
     imports: list[str] = []
@@ -51,7 +51,10 @@ def to_material(
     find_texture: Callable[[str], str | None],
     ready: Mapping[str, Material] = MappingProxyType({}),
 ) -> Material:
-    """The description of a parsed material, with what it inherits, at last from one of `ready`."""
+    """The description of a parsed material, with what it inherits, at last from one of `ready`.
+
+    FormatError for an unknown parent and for numbers that are none.
+    """
     values, oldest = _inherited(name, materials)
     shown = ready.get(oldest or "", Material())
     specular, shininess = _specular(name, values.get("specular"), shown)

@@ -1,4 +1,4 @@
-"""Upstream's meshes for which the shapes of data/models stand: how large they are, and where."""
+"""Meshes of Gazebo's model library that shapes of data/models replace: their sizes and places."""
 
 from __future__ import annotations
 

@@ -49,6 +49,7 @@ class Resources:
         """The existing file or folder behind a URI; `base` is the folder of the text it is in.
 
         What is not there as written is sought with `%20` and the like as letters, `\\` as `/`.
+        ResourceNotFound names the searched folders.
         """
         written = uri.strip()
         try:
@@ -77,7 +78,10 @@ class Resources:
         raise ResourceNotFound(uri, ["nowhere. Unknown URI prefix; known: model package file"])
 
     def find_world(self, name: str) -> Path:
-        """A world file: as given, else below the resource paths."""
+        """A world file: as given, else below the resource paths.
+
+        ResourceNotFound lists those that there are.
+        """
         try:
             return self._first(name, self._plain_candidates(name, Path.cwd()))
         except ResourceNotFound as error:
@@ -89,7 +93,7 @@ class Resources:
                        for path in (folder / "worlds").glob("*.world")})
 
     def package_folder(self, package: str) -> Path:
-        """Folder of a ROS package."""
+        """Folder of a ROS package. ResourceNotFound if the package finder has none."""
         if self._find_package is None:
             raise ResourceNotFound(f"package {package}", ["no package finder was given"])
         try:

@@ -22,7 +22,10 @@ BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\
 
 
 def parse_xml(text: str, what: str = "XML") -> Element:
-    """Root element of a text. Prefixes such as `xacro:` stay part of the tag, declared or not."""
+    """Root element of a text. Prefixes such as `xacro:` stay part of the tag, declared or not.
+
+    FormatError for a text that is not well-formed or too large.
+    """
     if len(text) > LARGEST_TEXT:
         raise FormatError(_too_large(what, len(text)))
     stripped = text.lstrip("\ufeff \t\r\n")

@@ -33,7 +33,7 @@ Value = TypeVar("Value")
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
-    """`count` finite numbers parted by any white space."""
+    """`count` finite numbers parted by any white space. FormatError for anything else."""
     words = text.split()
     try:
         values = tuple(float(word) for word in words)
@@ -53,7 +53,7 @@ def _quoted(text: str) -> str:
 
 
 def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
-    """The same numbers, or an error that names the first below zero or beyond `LARGEST`."""
+    """The same numbers; FormatError names the first below zero or beyond `LARGEST`."""
     for value in values:
         if value < 0.0:
             raise FormatError(f"{where}: {value:g} is negative")
@@ -61,7 +61,7 @@ def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
 
 
 def bounded(values: Sequence[float], where: str) -> Sequence[float]:
-    """The same numbers, or an error that names the first whose size is beyond `LARGEST`."""
+    """The same numbers; FormatError names the first whose size is beyond `LARGEST`."""
     for value in values:
         if abs(value) > LARGEST:
             raise FormatError(f"{where}: {value:g} is too large; at most {LARGEST:g} is possible")

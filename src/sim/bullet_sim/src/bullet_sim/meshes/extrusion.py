@@ -29,7 +29,10 @@ def polyline_part(shape: Polyline) -> MeshPart:
 
 
 def image_part(shape: ImageExtrusion) -> MeshPart:
-    """Blocks where the picture is dark; its upper edge is +y, its right edge +x."""
+    """Blocks where the picture is dark; its upper edge is +y, its right edge +x.
+
+    FormatError without a dark pixel, and as of `read_image`.
+    """
     try:
         image = read_image(shape.path, cv2.IMREAD_GRAYSCALE)
     except FormatError as error:
@@ -75,6 +78,7 @@ def trapezoids(outlines: Iterable[Iterable[tuple[float, float]]]) -> np.ndarray:
 
     The plane is cut into slabs between all corners and crossings; in a slab no two edges meet, so
     that every second gap between them is solid. Holes and crossed outlines need no other care.
+    FormatError where they enclose nothing, or for more than MOST_POINTS.
     """
     loops = [np.array(list(outline), float) for outline in outlines]
     if sum(len(loop) for loop in loops) > MOST_POINTS:

@@ -8,14 +8,17 @@ import numpy as np
 from bullet_sim.description import Heightmap, Material, TerrainLayer
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes.images import read_image
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import MeshPart, grid_faces
 
 FINEST = 173  # corners along a side; larger images are taken coarser, see MOST_COLLIDING
 BARE = TerrainLayer(Material(ambient=(0.45, 0.4, 0.3, 1.0), diffuse=(0.45, 0.4, 0.3, 1.0)))
 
 
 def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
-    """A part for each layer that shows anywhere, in the link frame."""
+    """A part for each layer that shows anywhere, in the link frame.
+
+    FormatError as of `read_image`.
+    """
     heights = _heights(shape)
     rows, columns = heights.shape
     across, along, _ = shape.size
@@ -25,7 +28,8 @@ def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
     slope_y, slope_x = np.gradient(heights, -along / (rows - 1), across / (columns - 1))
     normals = np.stack([-slope_x, -slope_y, np.ones_like(heights)], axis=-1).reshape(-1, 3)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    faces = _grid(rows, columns)
+    # The image's rows follow downwards: each triangle's other side is above.
+    faces = grid_faces(rows, columns).reshape(-1, 2, 3)[:, ::-1, (0, 2, 1)].reshape(-1, 3)
     layers = shape.layers or (BARE,)
     bounds = [layer.lowest for layer in layers[1:]]
     layer_of = np.searchsorted(bounds, heights.ravel()[faces].mean(axis=1), side="right")
@@ -73,11 +77,3 @@ def _between(pixels: int, corners: int) -> tuple[np.ndarray, np.ndarray, np.ndar
     place = np.linspace(0, pixels - 1, corners)
     before = place.astype(np.int64)
     return before, np.minimum(before + 1, pixels - 1), place - before
-
-
-def _grid(rows: int, columns: int) -> np.ndarray:
-    """(n, 3) triangles, counter-clockwise seen from above."""
-    row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
-    a = row * columns + column  # upper left
-    b, c, d = a + columns, a + columns + 1, a + 1
-    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)

@@ -21,6 +21,8 @@ SILENT = 0  # OpenCV's log level: what it would say comes in our own line
 HEADER_BYTES = 2**16  # JPEG's size may stand behind a preview
 PNG = b"\x89PNG\r\n\x1a\n"
 JPEG = b"\xff\xd8"
+# Its name up to OpenCV 4.12 or so, and the later one; both return the level before.
+set_log_level = getattr(cv2, "setLogLevel", None) or cv2.utils.logging.setLogLevel
 JPEG_SIZES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # markers of a frame's header
 
 
@@ -53,14 +55,14 @@ def warn_if_unreadable(path: str) -> None:
 def read_image(path: Path | str, flags: int, advice: str = "give a PNG or JPEG") -> np.ndarray:
     """(height, width[, 3]) by OpenCV's `flags`; FormatError as of `check_image`, with `advice`."""
     check_image(path)
-    before, reason = cv2.setLogLevel(SILENT), "it is damaged, or no image"
+    before, reason = set_log_level(SILENT), "it is damaged, or no image"
     try:
         image = cv2.imread(str(path), flags)
     except cv2.error:  # the size, in a kind not looked at here, is beyond what OpenCV may take
         reason = f"it has more than {MOST_PIXELS // 10**6} million pixels, or a long side"
         image, advice = None, "make it smaller"
     finally:
-        cv2.setLogLevel(before)
+        set_log_level(before)
     if image is None:
         raise FormatError(f"{path} cannot be read: {reason}; {advice}")
     return image

@@ -15,13 +15,13 @@ from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
 from bullet_sim.meshes.collada import read_collada
 from bullet_sim.meshes.generated import generated_parts
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded, join_parts
 from bullet_sim.meshes.simplify import cluster
 from bullet_sim.meshes.stl import read_stl
 from bullet_sim.meshes.trimesh_files import read_scene
 from bullet_sim.meshes.wavefront import read_wavefront
 
-__all__ = ["MeshPart", "collision_mesh", "load_mesh", "to_obj"]
+__all__ = ["MeshPart", "collision_mesh", "load_mesh"]
 
 LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times that of memory
 MOST_DRAWN = 300_000  # triangles of one file; more hold the camera up
@@ -44,7 +44,8 @@ class _FileVersion:
 def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """Parts of a file, one per material, in the mesh's own frame and in metres.
 
-    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning.
+    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning. FormatError
+    for a file that cannot be read or has no triangles.
     """
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)
@@ -60,12 +61,8 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
 
     Of more than `MOST_COLLIDING`, so many that stay close to them.
     """
-    parts = load_mesh(geometry)
-    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    vertices = np.concatenate([part.vertices for part in parts])
-    faces = np.concatenate([
-        part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
-    ])
+    whole = join_parts(load_mesh(geometry))
+    vertices, faces = whole.vertices, whole.faces
     if len(faces) > MOST_COLLIDING:
         kept, faces = cluster(vertices, faces, MOST_COLLIDING)
         return vertices[kept], faces
@@ -73,24 +70,6 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
     faces = index.reshape(-1)[faces].astype(np.uint32)
     has_area = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
     return unique, faces[has_area]
-
-
-def to_obj(geometry: Mesh, folder: Path | str) -> Path:
-    """Write the collision triangles as plain OBJ into `folder`; equal meshes, equal names."""
-    vertices, faces = collision_mesh(geometry)
-    key = f"{geometry.path}|{geometry.scale}|{geometry.submesh}|{geometry.centre_submesh}"
-    path = Path(folder) / f"{Path(geometry.path).stem}-{_short_hash(key)}.obj"
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]
-    lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
-    return path
-
-
-def _short_hash(text: str) -> str:
-    value = 0
-    for byte in text.encode():
-        value = (value * 1000003 ^ byte) & 0xFFFFFFFFFFFF
-    return f"{value:012x}"
 
 
 @functools.lru_cache(maxsize=256)

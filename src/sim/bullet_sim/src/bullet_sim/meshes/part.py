@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,3 +43,34 @@ def flat_shaded(
         faces=np.arange(count, dtype=np.uint32).reshape(-1, 3),
         material=material,
     )
+
+
+def join_parts(parts: Sequence[MeshPart]) -> MeshPart:
+    """All triangles as one part, in order, with the first one's material."""
+    if len(parts) == 1:
+        return parts[0]
+    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
+    faces = [
+        part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
+    ]
+    uv = None
+    if any(part.uv is not None for part in parts):
+        uv = np.concatenate([
+            np.zeros((len(part.vertices), 2), np.float32) if part.uv is None else part.uv
+            for part in parts
+        ])
+    return MeshPart(
+        vertices=np.concatenate([part.vertices for part in parts]),
+        normals=np.concatenate([part.normals for part in parts]),
+        uv=uv,
+        faces=np.concatenate(faces),
+        material=parts[0].material,
+    )
+
+
+def grid_faces(rows: int, columns: int) -> np.ndarray:
+    """(n, 3) triangles of a grid of vertices, row by row; counter-clockwise if rows follow up."""
+    row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
+    a = row * columns + column
+    b, c, d = a + 1, a + columns + 1, a + columns
+    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)

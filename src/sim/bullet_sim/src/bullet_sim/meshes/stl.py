@@ -24,7 +24,10 @@ _VERTEX = re.compile(r"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(path: Path, split: bool) -> list[NamedPart]:
-    """One part per solid of a text, by its name; a single one has the file's name."""
+    """One part per solid of a text, by its name; a single one has the file's name.
+
+    FormatError for what is no STL.
+    """
     content = path.read_bytes()
     corners = _binary_corners(content)
     if corners is not None:

@@ -32,7 +32,10 @@ class _Statements:
 
 
 def read_wavefront(path: Path, split: bool) -> list[NamedPart]:
-    """One part per material; with `split`, one per object and material, named as in the file."""
+    """One part per material; with `split`, one per object and material, named as in the file.
+
+    FormatError for indices or numbers that are none.
+    """
     statements = _statements(path, split)
     materials = read_materials(path, statements.libraries)
     arrays = {key: _array(rows, WIDTHS[key]) for key, rows in statements.lists.items()}

@@ -15,7 +15,7 @@ log = logging.getLogger(__name__)
 
 SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and with it an answer, take a second
 LONGEST_STEP = 0.1  # s; with longer ones things pass through each other
-MOST_ITERATIONS = 10_000  # a step; upstream's bound in dynamic_reconfigure
+MOST_ITERATIONS = 10_000  # a step; the bound in gazebo_ros' cfg/Physics.cfg
 HIGHEST_RATE = 1e6  # Hz
 # Fields of PhysicsDescription that no engine's number follows, and their names in messages: from
 # 0 on.

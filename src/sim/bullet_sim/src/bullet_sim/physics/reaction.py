@@ -11,10 +11,10 @@ from bullet_sim.twist import cross
 def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     """What the joint that carries `link` bears: force (N) and torque (N m) about its anchor.
 
-    As upstream: of the joint's child on the joint, in the child link's frame, effort of the
-    joint's motor included; a weight hanging below is a force downwards. The effort of a stop that
-    is being pressed against is missing along the axis. Zero until the step after the first call,
-    unless the joint asked for feedback.
+    As of Gazebo's ODEJoint::GetForceTorque (physics/ode/ODEJoint.cc): of the joint's child on the
+    joint, in the child link's frame, effort of the joint's motor included; a weight hanging below
+    is a force downwards. The effort of a stop that is being pressed against is missing along the
+    axis. Zero until the step after the first call, unless the joint asked for feedback.
     """
     index = body.index(link.name)
     body.enable_feedback(index)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from bullet_sim.description import Box, Cylinder, Plane, Sphere
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import MeshPart, grid_faces, join_parts
 from bullet_sim.pose import Vector3
 
 CYLINDER_SEGMENTS = 32
@@ -61,7 +61,8 @@ def plane(normal: Vector3, size: tuple[float, float]) -> MeshPart:
     u, v = np.meshgrid(np.linspace(0, 1, cells[0] + 1), np.linspace(0, 1, cells[1] + 1))
     uv = np.stack([u, v], axis=-1).reshape(-1, 2)
     corners = (uv - 0.5) * size @ np.stack([right, up])
-    return _part(corners, np.tile(up_axis, (len(uv), 1)), uv, _strip(*cells))
+    faces = grid_faces(cells[1] + 1, cells[0] + 1)
+    return _part(corners, np.tile(up_axis, (len(uv), 1)), uv, faces)
 
 
 def cylinder(radius: float, length: float) -> MeshPart:
@@ -72,14 +73,14 @@ def cylinder(radius: float, length: float) -> MeshPart:
     side = np.concatenate([circle * radius - half, circle * radius + half])
     along = np.linspace(0, 1, len(turn))
     side_uv = np.concatenate([np.stack([along, np.full_like(along, v)], 1) for v in (0, 1)])
-    parts = [(side, np.tile(circle, (2, 1)), side_uv, _strip(CYLINDER_SEGMENTS, 1))]
+    parts = [_part(side, np.tile(circle, (2, 1)), side_uv, grid_faces(2, CYLINDER_SEGMENTS + 1))]
     for sign in (1, -1):
         rim = circle[:-1] * radius + sign * half
         corner = np.arange(1, CYLINDER_SEGMENTS - 1)
         fan = np.stack([np.zeros_like(corner), corner, corner + 1], axis=1)[:, ::sign]
         cap_uv = circle[:-1, :2] * (sign / 2, 0.5) + 0.5
-        parts.append((rim, np.tile((0, 0, sign), (len(rim), 1)), cap_uv, fan))
-    return _joined(parts)
+        parts.append(_part(rim, np.tile((0, 0, sign), (len(rim), 1)), cap_uv, fan))
+    return join_parts(parts)
 
 
 def sphere(radius: float) -> MeshPart:
@@ -92,7 +93,8 @@ def sphere(radius: float) -> MeshPart:
         [np.sin(fall) * np.cos(turn), np.sin(fall) * np.sin(turn), np.cos(fall)], axis=-1
     ).reshape(-1, 3)
     uv = np.stack([turn / (2 * math.pi), 1 - fall / math.pi], axis=-1).reshape(-1, 2)
-    faces = _strip(SPHERE_SEGMENTS, SPHERE_RINGS).reshape(SPHERE_RINGS, SPHERE_SEGMENTS, 2, 3)
+    faces = grid_faces(SPHERE_RINGS + 1, SPHERE_SEGMENTS + 1).reshape(
+        SPHERE_RINGS, SPHERE_SEGMENTS, 2, 3)
     caps = [faces[0, :, 1], faces[-1, :, 0]]  # at a pole one triangle of each pair has no area
     faces = np.concatenate([*caps, faces[1:-1].reshape(-1, 3)])
     return _part(normals * radius, normals, uv, faces)
@@ -104,21 +106,6 @@ _SQUARE = [(-1, -1), (1, -1), (1, 1), (-1, 1)]  # counter-clockwise from the ima
 def _quads(count: int) -> np.ndarray:
     start = np.arange(count)[:, None, None] * 4
     return (start + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
-
-
-def _strip(columns: int, rows: int) -> np.ndarray:
-    """Triangles of a grid of (rows + 1) x (columns + 1) vertices, row by row."""
-    row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
-    a = row * (columns + 1) + column
-    b, c, d = a + 1, a + columns + 2, a + columns + 1
-    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
-
-
-def _joined(pieces: list[tuple]) -> MeshPart:
-    offsets = np.cumsum([0] + [len(piece[0]) for piece in pieces[:-1]])
-    faces = [piece[3] + offset for piece, offset in zip(pieces, offsets, strict=True)]
-    columns = [np.concatenate([piece[i] for piece in pieces]) for i in range(3)]
-    return _part(*columns, np.concatenate(faces))
 
 
 def _part(vertices, normals, uv, faces) -> MeshPart:

@@ -21,7 +21,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.meshes.loading import load_mesh
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import MeshPart, join_parts
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.primitives import primitive_part
 
@@ -104,20 +104,27 @@ class Scene(SceneState):
         return self._visuals
 
     def add_light(self, light: LightDescription) -> None:
-        """Poses and directions of lights are in the world."""
+        """Poses and directions of lights are in the world.
+
+        NameTaken if there is one of that name.
+        """
         if light.name in self.lights:
             raise NameTaken(f"the scene already has a light named {light.name!r}")
         self.lights[light.name] = light
         self.version = next(_versions)
 
     def remove_light(self, name: str) -> None:
+        """No longer drawn; UnknownName without one of that name."""
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
         self.version = next(_versions)
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
-        """Visuals whose mesh cannot be read are left out, with one warning each."""
+        """Visuals whose mesh cannot be read are left out, with one warning each.
+
+        NameTaken if the link is there already.
+        """
         if key in self.nodes:
             raise NameTaken(f"the scene already has a link {'::'.join(key)}")
         wanted = tuple(visuals)
@@ -140,6 +147,7 @@ class Scene(SceneState):
             self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
+        """Move a link, pose in the world; UnknownName if it is not in the scene."""
         node = self.nodes.get(key)
         if node is None:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
@@ -153,7 +161,7 @@ def link_shape(visuals: Sequence[Visual]) -> LinkShape:
     for visual in visuals:
         for part in _visual_parts(visual):
             by_material.setdefault(part.material, []).append(part)
-    parts = tuple(_joined(parts) for parts in by_material.values())
+    parts = tuple(join_parts(parts) for parts in by_material.values())
     if not parts:
         return LinkShape((), np.zeros(3), 0.0)
     low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
@@ -201,31 +209,9 @@ def _placed(part: MeshPart, visual: Visual) -> MeshPart:
         normals=normals.astype(np.float32),
         material=material,
     )
-    return _joined([placed, _turned_over(placed)]) if material.double_sided else placed
+    return join_parts([placed, _turned_over(placed)]) if material.double_sided else placed
 
 
 def _turned_over(part: MeshPart) -> MeshPart:
     """The same triangles, seen from behind."""
     return replace(part, normals=-part.normals, faces=np.ascontiguousarray(part.faces[:, ::-1]))
-
-
-def _joined(parts: list[MeshPart]) -> MeshPart:
-    if len(parts) == 1:
-        return parts[0]
-    offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    faces = [
-        part.faces + np.uint32(offset) for part, offset in zip(parts, offsets, strict=True)
-    ]
-    uv = None
-    if any(part.uv is not None for part in parts):
-        uv = np.concatenate([
-            np.zeros((len(part.vertices), 2), np.float32) if part.uv is None else part.uv
-            for part in parts
-        ])
-    return MeshPart(
-        vertices=np.concatenate([part.vertices for part in parts]),
-        normals=np.concatenate([part.normals for part in parts]),
-        uv=uv,
-        faces=np.concatenate(faces),
-        material=parts[0].material,
-    )

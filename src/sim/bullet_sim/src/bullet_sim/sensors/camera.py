@@ -47,6 +47,7 @@ class Camera:
     """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
 
     A `<distortion>` bends the colours, not the depth, which stays a pinhole's as in Gazebo.
+    FormatError without a <camera>, and for a picture that cannot be drawn.
     """
 
     def __init__(self, world: World, link: Link, sensor: SensorDescription, renderer: Renderer,

@@ -33,7 +33,8 @@ class ErrorModel:
     """value x scale + offset + drift + noise; all drawn by seed, name and tick.
 
     The drift is a Gauss-Markov process whose deviation stays `drift` at any rate of updates (that
-    of upstream shrinks with the rate). It starts with a value drawn with that deviation.
+    of SensorModel_::update in hector_gazebo_plugins' sensor_model.h shrinks with the rate). It
+    starts with a value drawn with that deviation.
     """
 
     def __init__(self, world: World, name: str, parameters: ErrorParameters):

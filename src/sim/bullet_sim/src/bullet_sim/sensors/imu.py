@@ -1,30 +1,47 @@
-"""Inertial measurements of a link: orientation, rate of turn, acceleration."""
+"""Gazebo's IMU sensor: accelerometer (gravity included), gyroscope and orientation."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from bullet_sim.description import SensorDescription
 from bullet_sim.link import Link
-from bullet_sim.pose import Quaternion, Vector3
+from bullet_sim.pose import IDENTITY, Quaternion, Vector3, conjugate, multiply, rotate
+from bullet_sim.sensors.noise import SensorNoise
+from bullet_sim.twist import shifted_twist
 from bullet_sim.world import World
 
 
 @dataclass(frozen=True)
 class ImuReading:
-    """Everything in world axes; `linear_acceleration` is without gravity."""
+    """Rate and acceleration are in the axes of the sensor; a LinkMotionReading's are the world's.
+
+    Of an ImuSensor `linear_acceleration` is the specific force: +g upwards at rest.
+    """
 
     time: float  # s, simulated
-    orientation: Quaternion  # link in the world
+    orientation: Quaternion  # sensor in the reference frame, by default the world
     angular_velocity: Vector3  # rad/s
-    linear_acceleration: Vector3  # m/s^2, change of the link's velocity since the last sample
+    linear_acceleration: Vector3  # m/s^2
 
 
-class Imu:
-    """Ideal: noise, offsets and axes are the business of who publishes."""
+class ImuSensor:
+    """Measures at the sensor's origin, with the noise of its SDF element.
 
-    def __init__(self, world: World, link: Link):
-        self._world = world
-        self._link = link
+    Orientations are in the world or, with `from_first`, relative to the first one.
+    """
+
+    def __init__(self, world: World, link: Link, description: SensorDescription,
+                 from_first: bool = False):
+        self._world, self._link, self._mount = world, link, description.pose
+        first = (link.pose * description.pose).orientation
+        self._reference = conjugate(first) if from_first else IDENTITY.orientation
+        name = f"{link.scoped_name}::{description.name}"
+        self._gyroscope = SensorNoise(world, f"{name} rate", description.imu.angular_velocity)
+        self._accelerometer = SensorNoise(
+            world, f"{name} acceleration", description.imu.linear_acceleration)
         self.restart()
 
     def restart(self) -> None:
@@ -32,14 +49,16 @@ class Imu:
         self._last: tuple[float, Vector3] | None = None
 
     def sample(self) -> ImuReading:
-        """Read the link; the first acceleration is zero."""
-        time, twist = self._world.time, self._link.twist
-        acceleration = (0.0, 0.0, 0.0)
+        """The acceleration is the mean one since the last sample; of the first, gravity alone."""
+        link_pose = self._link.pose
+        pose, time = link_pose * self._mount, self._world.time
+        twist = shifted_twist(self._link.twist, link_pose.position, pose.position)
+        felt = -np.array(self._world.description.gravity)
         if self._last is not None and time > self._last[0]:
-            elapsed = time - self._last[0]
-            acceleration = tuple(
-                (now - before) / elapsed
-                for now, before in zip(twist.linear, self._last[1], strict=True)
-            )
+            felt += np.subtract(twist.linear, self._last[1]) / (time - self._last[0])
         self._last = (time, twist.linear)
-        return ImuReading(time, self._link.pose.orientation, twist.angular, acceleration)
+        back = conjugate(pose.orientation)
+        rate = self._gyroscope.apply(np.array(rotate(back, twist.angular)))
+        acceleration = self._accelerometer.apply(np.array(rotate(back, felt)))
+        return ImuReading(time, multiply(self._reference, pose.orientation),
+                          tuple(rate.tolist()), tuple(acceleration.tolist()))

@@ -22,7 +22,8 @@ class RayFan:
     """Rays against collision shapes, as Gazebo's ray sensor lays them out.
 
     A row has `samples` x `resolution` rays. A single ray looks straight ahead, whatever the angles.
-    Rays begin at range_min, so the housing around the sensor is not seen.
+    Rays begin at range_min, so the housing around the sensor is not seen. FormatError without a
+    <ray>.
     """
 
     def __init__(self, world: World, link: Link, description: SensorDescription):

@@ -10,7 +10,8 @@ from std_srvs.srv import Empty, EmptyResponse
 from bullet_sim.errors import UnknownName
 from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.sensors.imu import Imu, ImuReading
+from bullet_sim.sensors.imu import ImuReading
+from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -28,7 +29,7 @@ class ImuPlugin:
         namespace = p.namespace(missing="/", empty="/")
         link = _find_link(context, p.required("bodyName"))
         self._world = context.world
-        self._imu = Imu(context.world, link)
+        self._imu = LinkMotion(context.world, link)
         self._frame = names.frame("", p.text("frameName", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
         self._noise = p.deviation("gaussianNoise")
@@ -46,13 +47,13 @@ class ImuPlugin:
         reading = self._with_noise(self._in_link_axes(self._imu.sample()))
         self._readings.publish(convert.imu_to_msg(reading, self._frame, self._noise ** 2))
 
-    def _in_link_axes(self, reading: ImuReading) -> ImuReading:
+    def _in_link_axes(self, reading: LinkMotionReading) -> ImuReading:
         back = conjugate(reading.orientation)
-        return dataclasses.replace(
-            reading,
-            orientation=multiply(self._offset, reading.orientation),
-            angular_velocity=rotate(back, reading.angular_velocity),
-            linear_acceleration=rotate(back, reading.linear_acceleration),
+        return ImuReading(
+            reading.time,
+            multiply(self._offset, reading.orientation),
+            rotate(back, reading.world_angular_velocity),
+            rotate(back, reading.world_acceleration),
         )
 
     def _with_noise(self, reading: ImuReading) -> ImuReading:

@@ -6,8 +6,7 @@ import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
 
 from bullet_sim.pose import multiply, quaternion_from_rpy
-from bullet_sim.sensors.imu import ImuReading
-from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin

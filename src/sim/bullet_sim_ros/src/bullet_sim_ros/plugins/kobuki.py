@@ -11,7 +11,7 @@ from std_msgs.msg import Empty
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.kobuki import Kobuki
 from bullet_sim.link import Link
-from bullet_sim.sensors.imu_sensor import ImuSensor
+from bullet_sim.sensors.imu import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext

@@ -25,7 +25,10 @@ class AckermannGeometry:
 
 
 class AckermannSteering(MobileBase):
-    """`turning` is the steering angle itself (rad), as upstream has it; its limits are of that."""
+    """`turning` is the steering angle itself (rad), and its limits are of that.
+
+    So in ackermann_steering_controller.cpp, AckermannSteeringController::update.
+    """
 
     def __init__(self, rear_wheel: CommandHandle, front_steer: CommandHandle,
                  geometry: AckermannGeometry, options: BaseOptions):

@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
-from bullet_sim.control.controllers.timed_command import TimedCommand
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import SimulationError
 
-CRAWL = 1e-3  # m/s; slower than this the wheels stand, as upstream has it
+# m/s; slower than this the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
+CRAWL = 1e-3
 STEEPEST = math.radians(89.9)  # an axle steered further has no tangent to drive by
 
 

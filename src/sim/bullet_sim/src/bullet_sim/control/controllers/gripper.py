@@ -11,7 +11,7 @@ from bullet_sim.control.pid import Pid
 
 @dataclass(frozen=True)
 class GripperOptions:
-    """Defaults are upstream's."""
+    """Defaults of gripper_action_controller_impl.h, GripperActionController::init."""
 
     goal_tolerance: float = 0.01  # rad or m
     max_effort: float = 0.0  # N m or N, while no goal says otherwise

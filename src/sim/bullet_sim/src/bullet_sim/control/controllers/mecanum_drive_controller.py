@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
-from bullet_sim.control.controllers.timed_command import TimedCommand
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import SimulationError
 

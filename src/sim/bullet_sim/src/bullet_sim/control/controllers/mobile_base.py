@@ -5,14 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
+from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
-from bullet_sim.control.controllers.timed_command import TimedCommand
 
 
 @dataclass(frozen=True)
 class BaseOptions:
-    """Defaults are upstream's."""
+    """Defaults of diff_drive_controller.cpp, DiffDriveController::init."""
 
     forward_limits: SpeedLimits = UNLIMITED  # m/s
     turning_limits: SpeedLimits = UNLIMITED  # rad/s; of a steering angle rad

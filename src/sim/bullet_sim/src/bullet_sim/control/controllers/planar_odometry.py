@@ -8,7 +8,8 @@ from collections import deque
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.odometry import OdometryReading
 
-SHORTEST = 1e-4  # s; no speed is told from a shorter time, as in upstream's odometry.cpp
+# s; no speed is computed from a shorter time (diff_drive_controller's odometry.cpp, update)
+SHORTEST = 1e-4
 STRAIGHT = 1e-6  # rad; less turn than this is a straight way
 
 

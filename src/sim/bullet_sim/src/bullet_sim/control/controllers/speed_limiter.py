@@ -33,8 +33,8 @@ class SpeedLimiter:
     def limit(self, wanted: float, period: float) -> float:
         """The allowed speed nearest to `wanted`, `period` s after the last one."""
         limits, last = self._limits, self._last
-        # Upstream's speed_limiter.cpp lets a jerk act twice as much as it would by its unit, so the
-        # bounds in published configurations mean that.
+        # SpeedLimiter::limit_jerk (diff_drive_controller's speed_limiter.cpp) lets a jerk act twice
+        # as much as it would by its unit, so the bounds in published configurations mean that.
         bend = 2.0 * period * period
         speed = _within(wanted, limits.jerk, bend, last + (last - self._before))
         speed = _within(speed, limits.acceleration, period, last)

@@ -46,7 +46,10 @@ class TrajectoryRequest:
 
 
 def check(request: TrajectoryRequest, joints: Sequence[str], partial: bool) -> None:
-    """An error that says what is wrong; `partial`: some of the joints are enough."""
+    """Raise for what is wrong; `partial`: some of the joints are enough.
+
+    InvalidJoints or InvalidTrajectory.
+    """
     _check_joints(request.joints, joints, partial)
     last = -math.inf
     for number, point in enumerate(request.points, 1):
@@ -81,6 +84,7 @@ def join(request: TrajectoryRequest, joints: Sequence[str], continuous: Sequence
 
     Points that lie in the past are left out. A `continuous` joint goes the shortest way to the
     first point and keeps counting turns from there. Joints that are not asked for go on.
+    InvalidTrajectory if no point is later than `now`.
     """
     start = now if request.start is None else request.start  # in the time of `now`
     points = [point for point in request.points if start + point.time > now]

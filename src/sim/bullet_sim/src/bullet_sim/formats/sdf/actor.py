@@ -32,7 +32,10 @@ SKIN = Material(ambient=(0.8, 0.6, 0.5, 1.0), diffuse=(0.8, 0.6, 0.5, 1.0))
 
 
 def read_actor(element: Element, source: Source) -> ModelDescription:
-    """An actor as a model that is moved, at the pose where its script begins."""
+    """An actor as a model that is moved, at the pose where its script begins.
+
+    FormatError without a name.
+    """
     name = element.get("name", "")
     if not name:
         raise FormatError("an <actor> has no name")

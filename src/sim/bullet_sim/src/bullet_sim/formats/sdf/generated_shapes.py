@@ -53,7 +53,10 @@ def read_heightmap(element: Element, source: Source, where: str) -> Heightmap:
 
 
 def read_polylines(geometry: Element, source: Source, where: str) -> Polyline:
-    """All `<polyline>` of a `<geometry>` as one solid; the height is that of the first."""
+    """All `<polyline>` of a `<geometry>` as one solid; the height is that of the first.
+
+    FormatError for an outline of fewer than three points.
+    """
     where = f"{where} <polyline>"
     elements = geometry.findall("polyline")
     outlines = tuple(

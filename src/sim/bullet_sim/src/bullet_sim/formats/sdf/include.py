@@ -80,7 +80,10 @@ def _placed_light(light: LightDescription, include: Element) -> LightDescription
 
 
 def model_file(found: Path) -> Path:
-    """The file to read for a model folder: the newest SDF its model.config names that we know."""
+    """The file to read for a model folder: the newest SDF its model.config names that we know.
+
+    ResourceNotFound without one, FormatError for a model.config that names none.
+    """
     if found.is_file():
         return found
     for manifest in MANIFESTS:

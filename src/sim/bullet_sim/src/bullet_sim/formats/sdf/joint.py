@@ -37,7 +37,10 @@ AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the 
 def read_joint(
     element: Element, source: Source, model: str, frames: Frames, links: set[str]
 ) -> JointDescription:
-    """A joint between two of `links`, or between one and the world."""
+    """A joint between two of `links`, or between one and the world.
+
+    FormatError for an unknown type or link.
+    """
     name = element.get("name", "")
     where = f"{model}, joint {name!r}"
     kind = element.get("type", "")

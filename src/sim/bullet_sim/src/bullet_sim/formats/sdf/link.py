@@ -25,7 +25,10 @@ TENSOR = (("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), 
 def read_link(
     element: Element, source: Source, model: str, frames: Frames | None = None
 ) -> LinkDescription:
-    """A link where its model's frames have it; without them in the origin of its model."""
+    """A link where its model's frames have it; without them in the origin of its model.
+
+    FormatError without a name, or with the name `world`.
+    """
     name = element.get("name", "")
     if not name:
         raise FormatError(f"{model}: a <link> has no name")

@@ -23,7 +23,10 @@ NOT_SUPPORTED = ("gripper", "urdf")
 def read_model(
     element: Element, source: Source, read_include: IncludeReader, inside: str = ""
 ) -> ModelDescription:
-    """A `<model>`; links of nested models are named `nested::link`, as Gazebo scopes them."""
+    """A `<model>`; links of nested models are named `nested::link`, as Gazebo scopes them.
+
+    FormatError without a name or a link.
+    """
     name = element.get("name", "")
     if not name:
         raise FormatError("a <model> has no name")

@@ -28,7 +28,10 @@ DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z"
 def read_population(
     element: Element, source: Source, read_model: ModelReader
 ) -> list[ModelDescription]:
-    """The copies, called `NAME_clone_0` and so on."""
+    """The copies, called `NAME_clone_0` and so on.
+
+    FormatError without a <model>, and for an unknown distribution.
+    """
     name = element.get("name", "")
     where = f"population {name!r}"
     model = element.find("model")

@@ -16,7 +16,7 @@ LIFT = Pose((0.0, 0.0, 0.005))  # m, above the ground it lies in
 
 
 def read_road(element: Element, source: Source) -> Visual:
-    """A road as one visual in the world's frame."""
+    """A road as one visual in the world's frame. FormatError for fewer than two points."""
     name = element.get("name", "road")
     where = f"road {name!r}"
     points = tuple(bounded(numbers(point.text or "", 3, f"{where} <point>"), f"{where} <point>")

@@ -27,7 +27,10 @@ LATEST = 4e9  # s; ROS counts to 2**32
 
 
 def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
-    """The world as it was saved; names that do not exist (any more) are passed over."""
+    """The world as it was saved; names that do not exist (any more) are passed over.
+
+    Values that would be a FormatError keep their defaults, with an error line.
+    """
     deleted = {(name.text or "").strip() for name in state.findall("deletions/name")}
     models = {model.get("name", ""): model for model in state.findall("model")}
     lights = {light.get("name", ""): light for light in state.findall("light")}

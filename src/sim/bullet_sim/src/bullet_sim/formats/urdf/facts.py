@@ -24,11 +24,11 @@ class RobotFacts:
         return name in self._joints
 
     def parent(self, name: str) -> str:
-        """The joint's parent link."""
+        """The joint's parent link. UnknownName without such a joint."""
         return self._joint(name).parent
 
     def child(self, name: str) -> str:
-        """The joint's child link."""
+        """The joint's child link. UnknownName without such a joint."""
         return self._joint(name).child
 
     def joints_on(self, name: str) -> list[str]:
@@ -36,7 +36,10 @@ class RobotFacts:
         return [joint.name for joint in self._joints.values() if joint.parent == self.child(name)]
 
     def pose(self, name: str) -> Pose:
-        """The joint's frame in the root link's, with every joint at zero."""
+        """The joint's frame in the root link's, with every joint at zero.
+
+        UnknownName without such a joint.
+        """
         pose, joint = IDENTITY, self._joint(name)
         while joint is not None:
             pose = joint.origin * pose
@@ -44,11 +47,17 @@ class RobotFacts:
         return pose
 
     def limits(self, name: str) -> JointLimits:
-        """`<limit>` and `<safety_controller>`; a value of 0 is a limit of 0."""
+        """`<limit>` and `<safety_controller>`; a value of 0 is a limit of 0.
+
+        UnknownName without such a joint, FormatError without k_velocity.
+        """
         return _limits(self._joint(name))
 
     def wheel_radius(self, name: str) -> float:
-        """Radius, m, of the first collision of the joint's child: a cylinder or a sphere."""
+        """Radius, m, of the first collision of the joint's child: a cylinder or a sphere.
+
+        FormatError without one.
+        """
         link = self.child(name)
         for tag in ("cylinder", "sphere"):
             shape = self._tree.links[link].find(f"collision/geometry/{tag}")

@@ -22,7 +22,10 @@ SPRINGS = {"springReference": "spring_reference", "springStiffness": "spring_sti
 
 
 def read_urdf_joint(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointDescription:
-    """A joint below `parent`, the link that its written parent was lumped into."""
+    """A joint below `parent`, the link that its written parent was lumped into.
+
+    FormatError for numbers that are none.
+    """
     if joint.type == "fixed":
         return _kept_fixed(joint, parent, extensions)
     where = f"joint {joint.name!r}"

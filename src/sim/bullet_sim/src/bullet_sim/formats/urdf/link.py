@@ -41,7 +41,10 @@ def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError
 
 
 def link_as_sdf(link: Element) -> Element:
-    """An SDF `<link>` with the URDF link's shapes; their names are still URDF's, often empty."""
+    """An SDF `<link>` with the URDF link's shapes; their names are still URDF's, often empty.
+
+    FormatError for a geometry that is none.
+    """
     result = _named_link(link)
     _add_shapes(result, link)
     return result
@@ -58,7 +61,10 @@ def _add_shapes(result: Element, link: Element) -> None:
 
 
 def read_urdf_inertial(link: Element) -> Inertial | None:
-    """A link's mass and tensor; None without `<inertial>` or with mass 0."""
+    """A link's mass and tensor; None without `<inertial>` or with mass 0.
+
+    FormatError for numbers that are none.
+    """
     element = link.find("inertial")
     if element is None:
         return None

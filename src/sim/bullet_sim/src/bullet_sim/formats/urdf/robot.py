@@ -25,7 +25,7 @@ KEEP_FIXED_JOINT = ("preserveFixedJoint", "disableFixedJointLumping")
 
 
 def read_robot(robot: Element, source: Source) -> ModelDescription:
-    """A `<robot>` as Gazebo would simulate it."""
+    """A `<robot>` as Gazebo would simulate it. FormatError as of `read_tree`."""
     tree = read_tree(robot)
     extensions = Extensions(robot)
     _warn_of_unknown_references(tree, extensions, source)
@@ -139,7 +139,10 @@ def _with_robot_level(
 
 
 def _with_survivors(joint: Element, lumped: dict[str, tuple[str, Pose]]) -> Element:
-    """An SDF joint whose ends were lumped names the survivors; its pose stays, as upstream's."""
+    """An SDF joint whose ends were lumped names the survivors.
+
+    Its pose stays, as in sdformat's parser_urdf.cc, ReduceSDFExtensionJointFrameReplace.
+    """
     joint = copy.deepcopy(joint)
     for role in ("parent", "child"):
         end = joint.find(role)

@@ -30,7 +30,7 @@ class Transmission:
 
 def read_transmissions(robot: Element) -> list[Transmission]:
     """All usable ones of a `<robot>`, one a joint; a joint whose interface is none of the three
-    is an error."""
+    is a FormatError."""
     found: dict[str, Transmission] = {}
     for element in robot.findall("transmission"):
         made = _read(element)

@@ -46,7 +46,7 @@ class UrdfTree:
 
 
 def read_tree(robot: Element) -> UrdfTree:
-    """The tree of a `<robot>`, or an error that names what is wrong with it."""
+    """The tree of a `<robot>`, or a FormatError that names what is wrong with it."""
     name = robot.get("name", "")
     if not name:
         raise FormatError("<robot> has no name")

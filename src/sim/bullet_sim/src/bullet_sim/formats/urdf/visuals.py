@@ -26,7 +26,8 @@ RobotLinks = dict[str, tuple[Pose, tuple[Visual, ...]]]
 def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks]:
     """The robot's name, and its links with their poses at joints zero, seen from the root.
 
-    A visual that cannot be read is left out with one warning.
+    A visual that cannot be read is left out with one warning. FormatError for a text that is no
+    URDF.
     """
     robot = parse_xml(text, "the robot description")
     if robot.tag != "robot":

@@ -30,7 +30,8 @@ from bullet_sim.formats.xacro.unexpanded import unanswered_inside
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
 
-DEEPEST = 2000  # Python calls; macros may call themselves as deep as with upstream's 1000
+# Python calls. Python's default of 1000 is for ROS's xacro, which needs fewer calls for a macro.
+DEEPEST = 2000
 KEYWORDS = frozenset(["arg", "if", "include", "insert_block", "macro", "property", "unless"])
 _ROBOT_TAGS = frozenset([
     # URDF
@@ -62,7 +63,7 @@ class Attempt:
     macros: frozenset[str] = frozenset()  # the names of those that are defined
 
     def text(self) -> str:
-        """The document as XML."""
+        """The document as XML. FormatError if it is nested too deep."""
         try:
             return self.document.toprettyxml(indent="  ")
         except RecursionError:

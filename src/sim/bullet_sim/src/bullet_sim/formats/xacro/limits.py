@@ -42,7 +42,10 @@ class Budget:
         self._eval_text = xacro.eval_text
 
     def replace_node(self, node: Any, by: Any, content_only: bool = False) -> None:
-        """xacro calls it once for each macro, property, condition, block, include."""
+        """xacro calls it once for each macro, property, condition, block, include.
+
+        TooLarge beyond MOST_PARTS.
+        """
         self._parts += 1
         if self._parts > MOST_PARTS:
             raise TooLarge(f"{place('xacro')}: more than {MOST_PARTS} macro calls, properties "
@@ -50,7 +53,10 @@ class Budget:
         replace_node(node, by, content_only)
 
     def eval_text(self, text: str, symbols: Any) -> Any:
-        """xacro calls it once for each attribute and text; most hold nothing to evaluate."""
+        """xacro calls it once for each attribute and text; most hold nothing to evaluate.
+
+        TooLarge beyond MOST_TEXTS.
+        """
         self._texts += 1
         if self._texts > MOST_TEXTS:
             raise TooLarge(f"{place('xacro')}: more than {MOST_TEXTS} attributes and texts; do "

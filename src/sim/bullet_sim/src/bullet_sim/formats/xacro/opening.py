@@ -22,7 +22,10 @@ _xacros_load_yaml = xacro.load_yaml
 
 
 def parse(_source: object, filename: str) -> minidom.Document:
-    """Reads bytes, so that the file's own encoding counts and not the terminal's."""
+    """Reads bytes, so that the file's own encoding counts and not the terminal's.
+
+    TooLarge beyond MOST_FILES, XacroException for what cannot be read.
+    """
     if len(xacro.all_includes) > MOST_FILES:
         raise TooLarge(f"{place('xacro')}: more than {MOST_FILES} files are included; include each "
                        "once and call its macros")
@@ -39,7 +42,7 @@ def parse(_source: object, filename: str) -> minidom.Document:
 
 
 def load_yaml(filename: str) -> Any:
-    """Stands for xacro's."""
+    """Replaces xacro's; FormatError for a file that cannot be read or is nested too deep."""
     try:
         _check(xacro.abs_filename_spec(filename))
         return _xacros_load_yaml(filename)

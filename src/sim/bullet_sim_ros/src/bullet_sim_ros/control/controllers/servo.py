@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from control_msgs.msg import JointControllerState
 
-from bullet_sim.control.controllers.servo import PositionServo, Servo, VelocityServo
-from bullet_sim.control.controllers.servos import Servos
+from bullet_sim.control.controllers.servo import PositionServo, Servo, Servos, VelocityServo
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import (

@@ -12,7 +12,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.error_model import attitude_error
-from bullet_sim.sensors.imu import Imu
+from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -30,7 +30,7 @@ class HectorImuPlugin:
         p = context.parameters
         self._world = context.world
         link = common.find_link(context)
-        self._imu = Imu(context.world, link)
+        self._imu = LinkMotion(context.world, link)
         self._frame = names.frame("", p.text("frameId", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
         self._accel = common.HectorError(context, "accel", 3, "accel")
@@ -89,8 +89,8 @@ class HectorImuPlugin:
         reading, elapsed = self._imu.sample(), self._stopwatch.lap()
         gravity = np.array(self._world.description.gravity)
         orientation = multiply(self._offset, reading.orientation)
-        felt = rotate(conjugate(orientation), reading.linear_acceleration - gravity)
-        body_rate = rotate(conjugate(reading.orientation), reading.angular_velocity)
+        felt = rotate(conjugate(orientation), reading.world_acceleration - gravity)
+        body_rate = rotate(conjugate(reading.orientation), reading.world_angular_velocity)
         acceleration = self._accel.apply(np.array(felt), elapsed)
         rate = self._rate.apply(np.array(rotate(conjugate(self._offset), body_rate)), elapsed)
         self._yaw.update(elapsed)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.twist import Twist
+from bullet_sim.world import World
 
 
 @dataclass(frozen=True)
@@ -28,12 +27,12 @@ class Snapshot:
     models: dict[str, ModelSnapshot]
 
 
-def take_snapshot(time: float, models: Mapping[str, Model]) -> Snapshot:
-    """Where the models are now; `time` in s."""
-    return Snapshot(time, {
+def take_snapshot(world: World) -> Snapshot:
+    """Where the models are now."""
+    return Snapshot(world.time, {
         name: ModelSnapshot(
             model.pose, model.twist, dict(model.link_states()),
             {joint.name: (joint.position, joint.velocity) for joint in model.joints.values()},
         )
-        for name, model in models.items()
+        for name, model in world.models.items()
     })
