@@ -45,13 +45,21 @@ class PluginParameters:
         self._model = model
         self._plugin = description.name
         self._element = description.element
+        self.read: set[str] = set()  # tags that were asked for
+
+    def unread(self) -> list[str]:
+        """Tags that are there and were not asked for, each once; those of other namespaces not."""
+        found = dict.fromkeys(child.tag for child in self._element if isinstance(child.tag, str))
+        return [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
 
     def has(self, tag: str) -> bool:
         """Whether the tag is there, empty or not."""
+        self.read.add(tag)
         return self._element.find(tag) is not None
 
     def text(self, tag: str, default: str = "") -> str:
         """Trimmed text of the first such tag; the default if it is absent or empty."""
+        self.read.add(tag)
         found = self._element.findtext(tag)
         return found.strip() if found and found.strip() else default
 

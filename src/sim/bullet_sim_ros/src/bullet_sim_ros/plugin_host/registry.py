@@ -12,6 +12,7 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.sensor_types import warn_of_sensor
 from bullet_sim_ros.plugin_host.services import SimServices
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
+from bullet_sim_ros.plugin_host.unread_tags import warn_of_unread_tags
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -68,4 +69,5 @@ def _load(context: PluginContext) -> bool:
         log.error("%s is not loaded: %s", context.describe(), format_error(error))
         context.close()
         return False
+    warn_of_unread_tags(context)
     return True
