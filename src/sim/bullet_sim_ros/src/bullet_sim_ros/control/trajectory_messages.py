@@ -60,7 +60,7 @@ def _replaced(default: dict[str, Tolerance],
 
 def fill_state(msg, follower: TrajectoryFollower, time: float):
     """header, joint_names, desired, actual and error of a state or a feedback."""
-    msg.header.stamp = convert.stamp(time)
+    convert.stamped(msg, time)
     msg.joint_names = follower.names
     msg.desired = _point(follower.desired)
     msg.actual = _point(follower.actual)

@@ -65,6 +65,11 @@ class PluginScope:
             raise PluginError("it belongs inside a <sensor>, not in the model")
         return self._link
 
+    @property
+    def sensor_name(self) -> str:
+        """`model::link::sensor`."""
+        return f"{self.link.scoped_name}::{self.sensor.name}"
+
     def describe(self) -> str:
         """Model, sensor or visual, and plugin, for log lines."""
         sensor = f" sensor {self._sensor.name}:" if self._sensor else ""

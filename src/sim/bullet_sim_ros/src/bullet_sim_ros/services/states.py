@@ -41,8 +41,7 @@ def offer_state_services(simulation) -> None:
 
 def get_model_state(world: World, request, response) -> None:
     """Pose and twist of a model, in the world or relative to another entity."""
-    response.header.stamp = convert.stamp(world.time)
-    response.header.frame_id = request.relative_entity_name
+    convert.stamped(response, world.time, request.relative_entity_name)
     model = find_nested_model(world.models.values(), request.model_name)
     if model is None:
         raise ServiceError("GetModelState: model does not exist")

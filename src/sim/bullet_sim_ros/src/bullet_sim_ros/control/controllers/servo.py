@@ -67,8 +67,7 @@ class ServoController(Controller):
             i_clamp=gains.i_clamp_max, antiwindup=gains.antiwindup)
         if self.law is PositionServo:
             msg.process_value_dot = servo.handle.joint.velocity
-        msg.header.stamp = convert.stamp(time)
-        return msg
+        return convert.stamped(msg, time)
 
 
 @controller("effort_controllers/JointPositionController")
