@@ -61,7 +61,7 @@ class ControllerContext:
         return self._hardware.joint_handle(name)
 
     def claim(self, interface: str, joint: str) -> CommandHandle:
-        """The command of a joint, for this controller alone while it runs."""
+        """The command of a joint, for this controller alone; PluginError if it has it already."""
         handle = self._hardware.command_handle(interface, joint)
         if joint in self.claims:
             raise PluginError(f"joint {joint!r} is named twice")

@@ -40,7 +40,10 @@ def read_tolerances(parameters: ControllerParameters, joints: Sequence[str]) -> 
 
 
 def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) -> GoalTolerances:
-    """The controller's, as far as the goal does not say otherwise."""
+    """The controller's, as far as the goal does not say otherwise.
+
+    InvalidTrajectory if the goal names a joint that the controller has not.
+    """
     return GoalTolerances(_replaced(default.path, goal.path_tolerance),
                           _replaced(default.goal, goal.goal_tolerance),
                           default.replaced_time(goal.goal_time_tolerance.to_sec()))

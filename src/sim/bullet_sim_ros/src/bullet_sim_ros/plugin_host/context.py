@@ -138,13 +138,16 @@ class PluginContext(PluginScope):
     # --- ROS
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the plugin."""
+        """A publisher that lives as long as the plugin; PluginError if that is no topic's name."""
         publisher = rospy.Publisher(_legal(topic), kind, **options)
         self._closers.append(publisher.unregister)
         return publisher
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
-        """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        """A subscriber; `take(message)` returns what the loop is to do, or None.
+
+        PluginError if that is no topic's name.
+        """
         lockstep = self.services.lockstep
         resolved = rospy.resolve_name(_legal(topic))
         answers = resolved in lockstep.topics

@@ -64,21 +64,21 @@ class PluginParameters:
         return found.strip() if found and found.strip() else default
 
     def required(self, tag: str) -> str:
-        """Trimmed text of a tag that has to be there."""
+        """Trimmed text of a tag; PluginError if it is not there or empty."""
         found = self.text(tag)
         if not found:
             raise PluginError(f"it needs a <{tag}>")
         return found
 
     def number(self, tag: str, default: float) -> float:
-        """A finite number."""
+        """A finite number; PluginError if it is none."""
         value = self.bound(tag, default)
         if self.text(tag) and math.isinf(value):
             raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
         return value
 
     def bound(self, tag: str, default: float) -> float:
-        """A number that may be infinite: there is no such bound."""
+        """A number that may be infinite: there is no such bound. PluginError if it is no number."""
         text = self.text(tag)
         if not text:
             return default
@@ -88,7 +88,7 @@ class PluginParameters:
         return values[0]
 
     def deviation(self, tag: str) -> float:
-        """A standard deviation; 0 if absent."""
+        """A standard deviation; 0 if absent, PluginError if it is negative or no number."""
         value = self.number(tag, 0.0)
         if value < 0:
             raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")
@@ -112,7 +112,7 @@ class PluginParameters:
         return default
 
     def vector(self, tag: str) -> tuple[float, float, float]:
-        """Three numbers; zeros if absent."""
+        """Three numbers; zeros if absent, PluginError if they are not three finite ones."""
         text = self.text(tag, "0 0 0")
         values = self._leading(tag, text, 3)
         if len(values) != 3 or not all(map(math.isfinite, values)):

@@ -22,7 +22,10 @@ NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 
 
 def plugin(*filenames: str) -> Callable[[type], type]:
-    """Register a class under the library names that model files use."""
+    """Register a class under the library names that model files use.
+
+    It is made with a PluginContext; a PluginError then, of a wrong tag, is one line of the log.
+    """
     def register(made: type) -> type:
         for filename in filenames:
             _registry[filename] = made

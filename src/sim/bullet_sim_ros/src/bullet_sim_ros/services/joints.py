@@ -35,7 +35,10 @@ def get_joint_properties(world: World, name: str, response) -> None:
 
 
 def set_joint_properties(world: World, request, response) -> None:
-    """Empty arrays leave what is; of the others the first number counts, joints have one axis."""
+    """Empty arrays leave what is; of the others the first number counts, joints have one axis.
+
+    ServiceError if there is no such joint, or a number is impossible.
+    """
     _, _, joint = find_joint(world, request.joint_name, "SetJointProperties: joint not found")
     config = request.ode_joint_config
     _check(config)

@@ -61,7 +61,10 @@ def find_frame(world: World, name: str, missing: str) -> tuple[Pose, Twist]:
 
 def find_joint(world: World, name: str, missing: str) -> tuple[Model, JointDescription,
                                                                 Joint | None]:
-    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed."""
+    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed.
+
+    ServiceError(`missing`) if there is none.
+    """
     for model, description in _joints(world):
         if name in (description.name, f"{model.name}::{description.name}"):
             return model, description, model.joints.get(description.name)

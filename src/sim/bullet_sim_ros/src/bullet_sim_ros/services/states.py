@@ -53,7 +53,10 @@ def get_model_state(world: World, request, response) -> None:
 
 
 def set_model_state(world: World, state: ModelState) -> None:
-    """Move a model and set its velocity; both are in the axes of the reference entity."""
+    """Move a model and set its velocity; both are in the axes of the reference entity.
+
+    ServiceError if model or entity are not there, or a number is impossible.
+    """
     model = find_model(world, state.model_name, "SetModelState: model does not exist")
     if not convert.is_sane(state.pose, state.twist):
         raise ServiceError(
@@ -67,7 +70,10 @@ def set_model_state(world: World, state: ModelState) -> None:
 
 
 def set_model_configuration(world: World, request) -> None:
-    """Joint positions at once; unknown joints are ignored, as upstream does."""
+    """Joint positions at once; unknown joints are ignored, as upstream does.
+
+    ServiceError if there is no such model, or the positions are impossible.
+    """
     model = find_model(world, request.model_name, "SetModelConfiguration: model does not exist")
     if len(request.joint_names) != len(request.joint_positions):
         raise ServiceError(
@@ -81,7 +87,7 @@ def set_model_configuration(world: World, request) -> None:
 
 
 def spawn_pose(world: World, request) -> Pose:
-    """The wanted pose of a spawn request, in the world."""
+    """The wanted pose of a spawn request, in the world; ServiceError if it is impossible."""
     if not convert.is_sane(request.initial_pose):
         raise ServiceError(
             f"SpawnModel: initial_pose must be finite and not beyond {convert.LARGEST:g}")

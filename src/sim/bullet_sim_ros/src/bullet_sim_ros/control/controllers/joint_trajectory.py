@@ -46,7 +46,10 @@ CODES = {
 
 
 class JointTrajectoryController(Controller):
-    """After a violated tolerance the trajectory goes on, as upstream has it; only the goal ends."""
+    """After a violated tolerance the trajectory goes on, as upstream has it; only the goal ends.
+
+    PluginError of parameters that are missing or wrong.
+    """
 
     interface = ""
 

@@ -25,7 +25,7 @@ TELLS = {"gaussian_noise": "Standard deviation of the white noise",
 
 
 def find_link(context: PluginContext) -> Link:
-    """The link that `bodyName` names, else the model's first."""
+    """The link that `bodyName` names, else the model's first; PluginError if there is none."""
     name = context.parameters.text("bodyName")
     links = context.model.description.links
     if not name and not links:
@@ -110,7 +110,10 @@ def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:
 
 
 def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> ErrorParameters:
-    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one."""
+    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one.
+
+    PluginError if a tag has the wrong number of numbers, or a negative one where none can be.
+    """
     values = vars(ErrorParameters.none(size))
     for prefix in prefixes:
         for name, tag in TAGS.items():
