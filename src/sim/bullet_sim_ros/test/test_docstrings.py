@@ -49,7 +49,8 @@ def silent(tree: ast.Module) -> list[str]:
             # What is registered, as by @plugin(...), may raise PluginError when made: said there.
             made = node.name == "__init__" and not owner.decorator_list
             if made or not node.name.startswith("_"):
-                said = (ast.get_docstring(node) or "") + (ast.get_docstring(owner) or "" if made else "")
+                doc = ast.get_docstring(node) or ""
+                said = doc + (ast.get_docstring(owner) or "") if made else doc
                 missing = sorted(name for name in raised(node, private) if name not in said)
                 lines += [f"{node.lineno}: {node.name} raises {name}" for name in missing]
     return lines

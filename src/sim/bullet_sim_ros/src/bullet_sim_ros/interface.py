@@ -26,7 +26,7 @@ class InterfaceError(ValueError):
 
 @dataclass(frozen=True)
 class Entry:
-    """How one thing is supported; `how` says so in words unless it simply works."""
+    """How one thing is supported; `how` describes it unless it simply works."""
 
     name: str
     status: str
@@ -68,7 +68,7 @@ def read_interface(folder: Path | None = None) -> list[Section]:
     for section in sections:
         for row in section.rows:
             if row.name in seen:
-                raise InterfaceError(f"{row.name!r} stands twice: in {seen[row.name]!r} and "
+                raise InterfaceError(f"{row.name!r} is there twice: in {seen[row.name]!r} and "
                                      f"{section.title!r}")
             seen[row.name] = section.title
     return sections

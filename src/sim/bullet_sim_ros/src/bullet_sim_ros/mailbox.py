@@ -14,7 +14,7 @@ log = logging.getLogger("bullet_sim.mailbox")
 
 
 class Closed(Exception):
-    """The loop has ended; nobody will answer any more."""
+    """The loop has ended: there will be no answer."""
 
 
 class Mailbox:

@@ -1,4 +1,4 @@
-"""The cameras of a sensor, which take their pictures together, at a rate or when told to."""
+"""The cameras of a sensor, which take their pictures together, at a rate or on a trigger."""
 
 from __future__ import annotations
 

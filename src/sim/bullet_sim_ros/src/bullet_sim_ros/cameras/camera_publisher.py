@@ -87,7 +87,7 @@ class CameraPublisher:
 def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
     """Log what a picture of this camera costs to draw; by the drawing thread, before the first.
 
-    A camera that has gone meanwhile is not drawn.
+    A camera that was deleted meanwhile is not drawn.
     """
     state = camera.capture()
 

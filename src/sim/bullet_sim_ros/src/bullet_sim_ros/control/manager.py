@@ -65,7 +65,7 @@ class ControllerManager:
                 action()
 
     def close(self) -> None:
-        """End all controllers and their topics; whoever waits is told."""
+        """End all controllers and their topics; who waits gets a Gone."""
         self._closed = True
         for loaded in self._loaded.values():
             loaded.context.close()

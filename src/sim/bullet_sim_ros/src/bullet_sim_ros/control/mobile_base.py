@@ -43,18 +43,18 @@ class MobileBaseController(Controller):
         self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,
-                  give: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
-        """`give(message)` makes a command for the loop of a message; refused while stopped."""
+                  command: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
+        """`command(message)` returns what the loop is to do; messages are refused while stopped."""
         def take(message) -> Callable[[], None] | None:
             if not self._running:
                 self._complain(f"{topic}: Can't accept new commands. Controller is not running.")
                 return None
-            return give(message)
+            return command(message)
 
         return self.context.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
 
     def start(self, time: float) -> None:
-        """Stand still and listen."""
+        """Take commands, from standstill."""
         self.base.start(time)
         self._running, self._complained = True, set()
 
@@ -70,7 +70,7 @@ class MobileBaseController(Controller):
         self.base.stop()
 
     def refuse(self, what: str) -> None:
-        """A command that is no command."""
+        """Warn of a command that cannot be used."""
         log.warning("%s: a command that is %s is ignored", self.context.describe(), what)
 
     def _complain(self, what: str) -> None:
@@ -88,10 +88,10 @@ class MobileBaseController(Controller):
             self._complain(f"{senders} publishers of cmd_vel, but allow_multiple_cmd_vel_publishers"
                            " is false: it brakes")
             return lambda: self.base.command(self.context.world_time(), 0.0, 0.0)
-        return lambda: self.give(msg)
+        return lambda: self.apply_command(msg)
 
-    def give(self, msg: Twist) -> None:
-        """Hand a good command to the drive; in the loop."""
+    def apply_command(self, msg: Twist) -> None:
+        """Hand a checked command to the drive; in the loop."""
         self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z)
 
 

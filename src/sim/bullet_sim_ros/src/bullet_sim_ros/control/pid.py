@@ -48,7 +48,7 @@ class PidTopic:
         self._publisher = context.advertise(f"{group}/state", PidState, queue_size=1)
 
     def publish(self, time: float, period: float) -> None:
-        """Tell whoever listens; time and period in s."""
+        """Publish if somebody listens; time and period in s."""
         if not self._publisher.get_num_connections():
             return
         pid, gains = self._pid, self._pid.gains

@@ -19,7 +19,7 @@ class ManagerError(SimulationError):
 
 
 class Gone(ManagerError):
-    """The simulation or the model ended while somebody waited."""
+    """The simulation or the model ended during a wait."""
 
 
 @dataclass

@@ -72,7 +72,7 @@ def fill_state(msg, follower: TrajectoryFollower, time: float):
 
 
 def _point(waypoints: Sequence[Waypoint]) -> JointTrajectoryPoint:
-    """Accelerations are left out where nobody knows them."""
+    """Accelerations are left out where they are unknown."""
     known = all(waypoint.acceleration is not None for waypoint in waypoints)
     return JointTrajectoryPoint(
         positions=[waypoint.position for waypoint in waypoints],

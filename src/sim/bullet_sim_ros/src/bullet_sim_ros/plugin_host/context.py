@@ -53,7 +53,7 @@ class PluginContext(PluginScope):
 
     def every(self, rate_hz: float, action: Callable[[], None],
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
-        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step.
+        """Call `action` at a rate of simulated time, while `wanted` is true; 0: every step.
 
         `whole_steps` is for plugins that count the period from the last time (see `TickRate`). As
         upstream has it, a rate below zero is none, too.
@@ -120,7 +120,7 @@ class PluginContext(PluginScope):
         self._drawn = self.services.drawing.submit(job)
 
     def expect_answer(self) -> None:
-        """A frame is about to go to somebody: in lockstep the world then waits for the answer."""
+        """A frame is about to be sent: in lockstep the world then waits for the answer."""
         self._expects_answers = True
         self.services.lockstep.expect()
 
@@ -157,7 +157,7 @@ class PluginContext(PluginScope):
             if function is not None:
                 self.services.mailbox.post(function)
             if answers:
-                lockstep.hear(resolved, self)
+                lockstep.receive(resolved, self)
 
         if answers:
             lockstep.subscribe(resolved, self)

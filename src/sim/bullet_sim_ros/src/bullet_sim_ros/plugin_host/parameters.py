@@ -120,7 +120,7 @@ class PluginParameters:
         return (values[0], values[1], values[2])
 
     def _leading(self, tag: str, text: str, count: int) -> list[float]:
-        """The first `count` numbers; what stands behind them is a warning."""
+        """The first `count` numbers; what follows them is a warning."""
         values, whole = read_numbers(text, count)
         if len(values) == count and not whole:
             self._warn_of_rest(tag, text, " ".join(f"{value:g}" for value in values))

@@ -51,14 +51,14 @@ def load_plugins(services: SimServices, model: Model) -> list[PluginContext]:
 
 
 def load_world_plugins(services: SimServices) -> list[PluginContext]:
-    """The plugins that stand in the `<world>` itself."""
+    """The plugins of the `<world>` itself."""
     contexts = [PluginContext(services, None, description)
                 for description in services.world.description.plugins]
     return [context for context in contexts if _load(context)]
 
 
 def _load(context: PluginContext) -> bool:
-    """Make the plugin, which tells its host what to call when."""
+    """Make the plugin, which registers with its context what to call when."""
     filename = PurePosixPath(context.description.filename).name
     if filename in NOT_NEEDED:
         return False

@@ -1,4 +1,4 @@
-"""Where a plugin stands: in the world, a model, a sensor or a visual."""
+"""Where a plugin is: in the world, a model, a sensor or a visual."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 @plugin("libgazebo_ros_bumper.so")
 class BumperPlugin(SensorPlugin):
-    """In world axes, whatever `frameName` says; empty `states` while nothing touches.
+    """In world axes, whatever `frameName` is; empty `states` while nothing touches.
 
     The sensor's own collision always comes first (upstream's order is the engine's).
     """

@@ -33,7 +33,7 @@ class FtSensorPlugin(SensorPlugin):
 class F3dPlugin(SensorPlugin):
     """What moves a link, gravity and contacts included: m a, in world axes. `frameName` is a label.
 
-    It says `world` whatever is written, as upstream intends; the tf_prefix goes before it.
+    The frame is `world` whatever is written, as upstream intends; the tf_prefix goes before it.
     """
 
     def __init__(self, context: PluginContext):

@@ -1,4 +1,4 @@
-"""What a Kobuki base tells of itself all the time: joints, odometry, gyroscope."""
+"""What a Kobuki base publishes all the time: joints, odometry, gyroscope."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def offer_joint_services(simulation: Simulation) -> None:
 
 
 def get_joint_properties(world: World, name: str, response) -> None:
-    """Position and rate; the type is always REVOLUTE and no damping is told, as upstream."""
+    """Position and rate; the type is always REVOLUTE and damping is left out, as upstream."""
     _, _, joint = find_joint(world, name, "GetJointProperties: joint not found")
     response.type = response.REVOLUTE
     response.position = [joint.position if joint else 0.0]

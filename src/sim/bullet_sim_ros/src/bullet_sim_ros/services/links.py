@@ -74,7 +74,7 @@ def set_link_state(world: World, state: LinkState) -> None:
 
 
 def get_link_properties(world: World, name: str, response) -> None:
-    """Mass, centre of mass and inertia; the orientation of the latter's axes is not told."""
+    """Mass, centre of mass and inertia; the orientation of the latter's axes is left out."""
     link = find_link(world, name, f"GetLinkProperties: {LINK_UNKNOWN}").description
     response.com.position = Point(*link.inertial.pose.position)
     response.com.orientation = Quaternion(w=1.0)

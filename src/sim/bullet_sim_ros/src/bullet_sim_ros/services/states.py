@@ -100,7 +100,7 @@ def spawn_pose(world: World, request) -> Pose:
 
 
 def is_turnless(pose: PoseMsg) -> bool:
-    """Whether the orientation is (0, 0, 0, 0), as in a message that nobody filled in.
+    """Whether the orientation is (0, 0, 0, 0), as in a message that was not filled in.
 
     In the arithmetic of upstream's spawn services such a turn makes all others vanish: that of the
     reference frame, and the model's own pose.

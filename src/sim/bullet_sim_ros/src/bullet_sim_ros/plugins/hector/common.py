@@ -89,7 +89,7 @@ class HectorError(ErrorModel):
         known: dict[str, float] = {}
 
         def change(values: dict[str, float]) -> None:
-            if not known:  # the first call only tells what there is
+            if not known:  # the first call has the present values
                 known.update(values)
             else:
                 self._context.services.mailbox.post(lambda: self._set(values))

@@ -16,7 +16,7 @@ from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
-DARMSTADT = (49.9, 8.9)  # degrees, upstream's place where nobody names one
+DARMSTADT = (49.9, 8.9)  # degrees, upstream's default place
 SERVICES = {"SERVICE_GPS": NavSatStatus.SERVICE_GPS,
             "SERVICE_GLONASS": NavSatStatus.SERVICE_GLONASS,
             "SERVICE_COMPASS": NavSatStatus.SERVICE_COMPASS,
@@ -68,7 +68,7 @@ class HectorGpsPlugin(common.HectorSensor):
         known: list[bool] = []
 
         def change(values: dict[str, bool]) -> None:
-            if known:  # the first call only tells what there is
+            if known:  # the first call has the present values
                 self.context.services.mailbox.post(lambda: self._set_status(values))
             known.append(True)
 

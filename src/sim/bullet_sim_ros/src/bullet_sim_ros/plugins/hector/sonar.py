@@ -13,7 +13,7 @@ from bullet_sim_ros.plugins.hector import common
 
 @plugin("libhector_gazebo_ros_sonar.so")
 class HectorSonarPlugin(common.HectorSensor):
-    """Rate 10 Hz unless told, whatever the sensor's; what is nearer than range_max has errors."""
+    """10 Hz by default, whatever the sensor's rate; what is nearer than range_max has errors."""
 
     def __init__(self, context: PluginContext):
         self._finder = RangeFinder(context.world, context.link, context.sensor)
