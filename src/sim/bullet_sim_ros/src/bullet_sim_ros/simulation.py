@@ -77,7 +77,7 @@ class Simulation:
         return self._stop_requested or rospy.is_shutdown()
 
     def _wait(self) -> None:
-        """Answer calls until the next step is due by the wall clock; at least those that wait already."""
+        """Answer calls until the next step is due by the wall clock; at least those that wait."""
         if self.world.paused:
             self.mailbox.run_pending(IDLE)
             self._restart_pace()
@@ -101,7 +101,7 @@ class Simulation:
         return steps
 
     def step(self) -> None:
-        """One step and what is due then; the world is paused afterwards, and /clock has the time."""
+        """One step and what is due then; afterwards the world is paused, /clock published."""
         self.world.paused = False
         try:
             self._advance(1)

@@ -7,7 +7,7 @@ import functools
 import logging
 from pathlib import PurePosixPath
 
-from bullet_sim_ros.interface import read_interface, rows_by_name
+from bullet_sim_ros.interface import Row, read_interface, rows_by_name
 from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins.tags")
@@ -25,7 +25,8 @@ def warn_of_unread_tags(context: PluginContext) -> None:
     unread = [tag for tag in context.parameters.unread() if tag not in EVERY_PLUGIN]
     if not unread:
         return
-    known = _documented_tags(PurePosixPath(context.description.filename).name)
+    row = _documented().get(PurePosixPath(context.description.filename).name)
+    known = set(row.tags) if row else set()
     for tag in unread:
         if tag not in known:
             names = sorted(known | context.parameters.read)
@@ -36,6 +37,5 @@ def warn_of_unread_tags(context: PluginContext) -> None:
 
 
 @functools.cache
-def _documented_tags(library: str) -> frozenset[str]:
-    row = rows_by_name(read_interface()).get(library)
-    return frozenset(row.tags) if row else frozenset()
+def _documented() -> dict[str, Row]:
+    return rows_by_name(read_interface())
