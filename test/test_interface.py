@@ -28,7 +28,7 @@ ROWS = rows_by_name(SECTIONS)
 
 def registered() -> set[str]:
     """Library names that some plugin class takes."""
-    return {name for path in PLUGINS.glob("*.py")
+    return {name for path in PLUGINS.rglob("*.py")
             for block in REGISTERED.findall(path.read_text(encoding="utf-8"))
             for name in LIBRARY.findall(block)}
 

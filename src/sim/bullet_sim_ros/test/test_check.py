@@ -52,13 +52,14 @@ def test_an_unknown_plugin_is_named_with_what_is_lost(check, where, matters):
     assert f"NOT THERE     plugin p (libmy_own.so): not known here: {matters}" in said
 
 
-def test_a_known_plugin_works_and_a_tag_it_has_not_is_ignored(check):
+def test_a_known_plugin_works_and_a_tag_it_has_not_is_told(check):
     plugin = """<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so">
-      <bodyName>base</bodyName><topicName>t</topicName><typo>1</typo></plugin></gazebo>"""
-    code, said = check("robot.urdf", ROBOT.format(plugin), "--all")
+      <bodyName>base</bodyName><topicName>t</topicName><framName>1</framName></plugin></gazebo>"""
+    code, said = check("robot.urdf", ROBOT.format(plugin))
     assert code == 0
     assert "works         plugin p (libgazebo_ros_p3d.so)" in said
-    assert "ignored       plugin p (libgazebo_ros_p3d.so) <typo>" in said
+    assert ("(libgazebo_ros_p3d.so): <framName> is ignored, as by Gazebo: the plugin has no such "
+            "tag; did you mean <frameName>?") in said
 
 
 def test_a_missing_mesh_and_broken_xml_are_problems(check):

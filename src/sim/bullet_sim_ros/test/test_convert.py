@@ -48,10 +48,12 @@ def test_numbers_that_no_engine_can_take_are_found_at_any_depth(value, sane):
 def test_laser_keeps_infinities_and_spreads_the_angles():
     ranges = np.array([math.inf, 1.5, -math.inf], np.float32)
     msg = convert.laser_to_msg(
-        LaserReading(2.0, ranges, np.zeros(3, np.float32), 0.0, 6.28319, 0.12, 3.5), "base_scan")
+        LaserReading(2.0, ranges, np.zeros(3, np.float32), 0.0, 6.28319, 0.12, 3.5))
     assert msg.ranges == [math.inf, 1.5, -math.inf]
     assert msg.angle_increment == pytest.approx(6.28319 / 2)
-    assert (msg.header.frame_id, msg.header.stamp.secs, msg.time_increment) == ("base_scan", 2, 0)
+    assert (msg.time_increment, msg.intensities) == (0, [0, 0, 0])
+    header = convert.stamped(msg, 2.5, "base_scan").header
+    assert (header.frame_id, header.stamp.to_nsec()) == ("base_scan", 2_500_000_000)
 
 
 def test_odometry_has_the_covariances_of_upstream():
@@ -69,7 +71,7 @@ def test_joint_states_leave_efforts_empty():
 
 
 def test_imu_variance_is_on_the_diagonals():
-    msg = convert.imu_to_msg(ImuReading(0.0, (0, 0, 0, 1), (0, 0, 1), (0, 0, 0)), "imu_link", 0.04)
+    msg = convert.imu_to_msg(ImuReading(0.0, (0, 0, 0, 1), (0, 0, 1), (0, 0, 0)), 0.04)
     assert msg.angular_velocity_covariance == [0.04, 0, 0, 0, 0.04, 0, 0, 0, 0.04]
 
 

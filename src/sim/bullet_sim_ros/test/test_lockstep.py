@@ -18,7 +18,7 @@ class Waiting:
 
         def take():
             self.mailbox.post(lambda: self.commands.append(name))
-            self.lockstep.hear(topic, name)
+            self.lockstep.receive(topic, name)
         return take
 
     def goes_on(self):

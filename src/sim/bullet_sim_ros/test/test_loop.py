@@ -27,7 +27,7 @@ def test_however_slow_time_runs_the_loop_soon_sees_that_it_is_to_end(factor):
     simulation.world = SimpleNamespace(paused=False, time=0.0)
     simulation.pacer = Pacer(factor)
     simulation.mailbox = ImpatientMailbox(simulation)
-    simulation._told_to_stop = False
+    simulation._stop_requested = False
     simulation.pacer.ahead(0.0)
     simulation.world.time = 0.01
     simulation._wait()

@@ -27,7 +27,7 @@ class ArrayImage(Image):
 
     @property
     def data(self) -> bytes:
-        """The pixels, for whoever reads the message in this process."""
+        """The pixels, for readers in this process."""
         return self._pixels.tobytes()
 
     @data.setter

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 import rospy
@@ -24,8 +26,8 @@ from bullet_sim.twist import Twist
 from bullet_sim_ros.array_image import ArrayImage
 from bullet_sim_ros.cameras.encodings import encode
 
+Message = TypeVar("Message")  # with a header
 UNKNOWN_VARIANCE = 1e12
-DRIVE_VARIANCES = (1e-5, 1e-5, 1e-3)  # of x, y, yaw: what gazebo_ros_diff_drive says of itself
 # m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
 LARGEST = 1e6
 
@@ -33,6 +35,17 @@ LARGEST = 1e6
 def stamp(seconds: float) -> rospy.Time:
     """Simulated seconds to the nearest nanosecond (rospy.Time.from_sec truncates)."""
     return rospy.Time(0, round(seconds * 1e9))
+
+
+def stamped(message: Message, time: float, frame: str = "") -> Message:
+    """The message with its header filled in: simulated time (s) and frame."""
+    message.header.stamp, message.header.frame_id = stamp(time), frame
+    return message
+
+
+def diagonal(values: Sequence[float]) -> list[float]:
+    """A matrix with these on its diagonal and zeros elsewhere, row by row."""
+    return np.diag(values).ravel().tolist()
 
 
 def pose_to_msg(pose: Pose) -> PoseMsg:
@@ -69,21 +82,17 @@ def _numbers(message) -> list[float]:
 
 def transform_to_msg(pose: Pose, time: float, parent: str, child: str) -> TransformStamped:
     """`child` seen from `parent`."""
-    msg = TransformStamped()
-    msg.header.stamp, msg.header.frame_id, msg.child_frame_id = stamp(time), parent, child
+    msg = stamped(TransformStamped(child_frame_id=child), time, parent)
     msg.transform.translation = Vector3(*pose.position)
     msg.transform.rotation = QuaternionMsg(*pose.orientation)
     return msg
 
 
-def odometry_to_msg(reading: OdometryReading, frame: str, child: str,
-                    variances: tuple[float, float, float] = DRIVE_VARIANCES) -> Odometry:
-    """nav_msgs/Odometry; the variances are those of x, y (m^2) and yaw (rad^2)."""
-    msg = Odometry()
-    msg.header.stamp, msg.header.frame_id = stamp(reading.time), frame
-    msg.child_frame_id = child
+def odometry_to_msg(reading: OdometryReading, frame: str, child: str) -> Odometry:
+    """nav_msgs/Odometry, with the covariance of the pose that gazebo_ros_diff_drive gives."""
+    msg = stamped(Odometry(child_frame_id=child), reading.time, frame)
     msg.pose.pose = pose_to_msg(reading.pose)
-    msg.pose.covariance = planar_covariance(*variances)
+    msg.pose.covariance = DRIVE_COVARIANCE
     msg.twist.twist.linear.x = reading.forward
     msg.twist.twist.linear.y = reading.leftward
     msg.twist.twist.angular.z = reading.yaw_rate
@@ -91,44 +100,42 @@ def odometry_to_msg(reading: OdometryReading, frame: str, child: str,
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> list[float]:
-    """36 numbers, row by row, of something that knows nothing of height, roll and pitch."""
-    unknown = (UNKNOWN_VARIANCE,) * 3
-    return np.diag((x, y, *unknown, yaw)).ravel().tolist()
+    """6x6, row by row, of x, y (m^2) and yaw (rad^2); nothing is known of z, roll and pitch."""
+    return diagonal((x, y, *(UNKNOWN_VARIANCE,) * 3, yaw))
+
+
+DRIVE_COVARIANCE = planar_covariance(1e-5, 1e-5, 1e-3)
 
 
 def joints_to_msg(reading: JointReading, velocities: bool = True) -> JointState:
     """sensor_msgs/JointState; efforts stay empty."""
-    msg = JointState(name=list(reading.names), position=list(reading.positions))
-    msg.header.stamp = stamp(reading.time)
+    msg = stamped(JointState(name=list(reading.names), position=list(reading.positions)),
+                  reading.time)
     if velocities:
         msg.velocity = list(reading.velocities)
     return msg
 
 
-def laser_to_msg(reading: LaserReading, frame: str) -> LaserScan:
-    """sensor_msgs/LaserScan; the last beam of a row points to angle_max. Rows follow each other."""
-    msg = LaserScan()
-    msg.header.stamp, msg.header.frame_id = stamp(reading.time), frame
-    msg.angle_min, msg.angle_max = reading.angle_min, reading.angle_max
+def laser_to_msg(reading: LaserReading) -> LaserScan:
+    """sensor_msgs/LaserScan without header; the last beam of a row points to angle_max.
+
+    Rows follow each other.
+    """
     gaps = max(1, len(reading.ranges) // reading.rows - 1)
-    msg.angle_increment = (reading.angle_max - reading.angle_min) / gaps
-    msg.range_min, msg.range_max = reading.range_min, reading.range_max
-    msg.ranges, msg.intensities = reading.ranges.tolist(), reading.intensities.tolist()
-    return msg
+    return LaserScan(angle_min=reading.angle_min, angle_max=reading.angle_max,
+                     angle_increment=(reading.angle_max - reading.angle_min) / gaps,
+                     range_min=reading.range_min, range_max=reading.range_max,
+                     ranges=reading.ranges.tolist(), intensities=reading.intensities.tolist())
 
 
-def imu_to_msg(reading: ImuReading, frame: str, variance: float) -> Imu:
-    """sensor_msgs/Imu of a reading already in the axes that it is to be published in."""
-    msg = Imu()
-    msg.header.stamp, msg.header.frame_id = stamp(reading.time), frame
-    msg.orientation = QuaternionMsg(*reading.orientation)
-    msg.angular_velocity = Vector3(*reading.angular_velocity)
-    msg.linear_acceleration = Vector3(*reading.linear_acceleration)
-    diagonal = np.diag([variance] * 3).ravel().tolist()
-    msg.orientation_covariance = diagonal
-    msg.angular_velocity_covariance = diagonal
-    msg.linear_acceleration_covariance = diagonal
-    return msg
+def imu_to_msg(reading: ImuReading, variance: float) -> Imu:
+    """sensor_msgs/Imu without header, of a reading in the axes that it is to be published in."""
+    covariance = diagonal([variance] * 3)
+    return Imu(orientation=QuaternionMsg(*reading.orientation),
+               angular_velocity=Vector3(*reading.angular_velocity),
+               linear_acceleration=Vector3(*reading.linear_acceleration),
+               orientation_covariance=covariance, angular_velocity_covariance=covariance,
+               linear_acceleration_covariance=covariance)
 
 
 def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8",
@@ -147,9 +154,8 @@ def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) 
 
 def _image(array: np.ndarray, time: float, frame: str, encoding: str,
            profiler: Profiler | None = None) -> ArrayImage:
-    msg = ArrayImage(np.ascontiguousarray(array), profiler, encoding=encoding)
-    msg.header.stamp, msg.header.frame_id = stamp(time), frame
-    return msg
+    return stamped(ArrayImage(np.ascontiguousarray(array), profiler, encoding=encoding), time,
+                   frame)
 
 
 def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: float,
@@ -163,8 +169,8 @@ def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: flo
     cloud["x"], cloud["y"], cloud["z"] = depth * columns, depth * rows[:, None], depth
     channels = rgb.astype(np.uint32)
     cloud["rgb"] = channels[..., 0] << 16 | channels[..., 1] << 8 | channels[..., 2]
-    msg = PointCloud2(height=height, width=width, point_step=16, row_step=16 * width)
-    msg.header.stamp, msg.header.frame_id = stamp(time), frame
+    msg = stamped(PointCloud2(height=height, width=width, point_step=16, row_step=16 * width),
+                  time, frame)
     msg.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1)
                   for i, name in enumerate(("x", "y", "z", "rgb"))]
     msg.is_dense = not np.isnan(depth).any()
@@ -178,8 +184,8 @@ def camera_info_to_msg(camera: CameraDescription, time: float, frame: str, *, ce
     """sensor_msgs/CameraInfo; zeros stand for Gazebo's defaults, (width + 1) / 2 among them."""
     focal = focal_length or camera.width / (2 * math.tan(camera.horizontal_fov / 2))
     cx, cy = centre_x or (camera.width + 1) / 2, centre_y or (camera.height + 1) / 2
-    msg = CameraInfo(height=camera.height, width=camera.width, distortion_model="plumb_bob")
-    msg.header.stamp, msg.header.frame_id = stamp(time), frame
+    msg = stamped(CameraInfo(height=camera.height, width=camera.width,
+                             distortion_model="plumb_bob"), time, frame)
     msg.D = list(distortion)
     msg.K = [focal, 0, cx, 0, focal, cy, 0, 0, 1]
     msg.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]

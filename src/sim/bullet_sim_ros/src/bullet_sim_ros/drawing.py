@@ -24,17 +24,17 @@ class DrawingThread:
         self._executor = ThreadPoolExecutor(1, "drawing")
         self._last: Future | None = None
         self._renderer = self._executor.submit(open_renderer, profiler=profiler)
-        self._told = False
+        self._reported = False
 
     def renderer(self) -> Renderer:
         """The renderer, or the SimulationError that opening it ended with. For the loop's thread.
 
         Only that one logs: when it loads a body, it keeps PyBullet's chatter from the terminal, and
-        with it what another thread has to say.
+        with it what another thread logs.
         """
         renderer = self._renderer.result()
-        if not self._told:
-            self._told = True
+        if not self._reported:
+            self._reported = True
             rospy.loginfo("Cameras are drawn by %s", renderer.name)
         return renderer
 
@@ -46,7 +46,7 @@ class DrawingThread:
     def trim(self) -> None:
         """Give back the memory of pictures, now; only a renderer that is very slow does so later.
 
-        The world stands still meanwhile, so there is an end to the patience.
+        The simulation waits meanwhile, so the wait has a limit.
         """
         wait([self.submit(self.renderer().trim)], PATIENCE)
 

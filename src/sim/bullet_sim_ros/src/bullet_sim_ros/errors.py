@@ -1,4 +1,4 @@
-"""Errors of the ROS side, and what is said about any error."""
+"""Errors of the ROS side, and the log line of any error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""After each camera frame the world stands still until somebody has answered it."""
+"""After each camera frame the world waits until an answer to it has come."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import rospy
 from bullet_sim_ros.mailbox import Mailbox
 
 WARNING_PERIOD = 10.0  # s, wall
-LOOK = 0.1  # s, wall: how often to see whether the simulation has been told to stop
+LOOK = 0.1  # s, wall: how often to see whether the simulation is to stop
 
 
 class Lockstep:
     """Waits for one message on each of its topics; without topics it never waits.
 
-    A message is heard in the loop, behind the command that it carries: where a plugin takes the
-    same topic, its own subscription tells us after it has left its command in the mailbox.
+    A message is received in the loop, behind the command that it carries: where a plugin takes the
+    same topic, its own subscription calls `receive` after it has posted its command in the mailbox.
     """
 
     def __init__(self, topics: str, timeout: float, mailbox: Mailbox):
@@ -26,16 +26,16 @@ class Lockstep:
         self._mailbox = mailbox
         self._expected: set[str] = set()  # topics whose message is still to come
         self._next_warning = 0.0  # s, wall
-        # Of each topic the plugins that tell us, in the order in which they subscribed.
+        # Of each topic the plugins that call `receive`, in the order in which they subscribed.
         self._plugins: dict[str, list[object]] = {topic: [] for topic in self.topics}
         self._subscribers: dict[str, rospy.Subscriber] = {}  # where no plugin does
 
     def listen(self) -> None:
-        """Subscribe to topics that no plugin takes: before time begins, for answers miss nobody."""
+        """Subscribe to topics that no plugin takes, before time begins: no answer may be lost."""
         for topic, plugins in self._plugins.items():
             if not plugins and topic not in self._subscribers:
                 self._subscribers[topic] = rospy.Subscriber(
-                    topic, rospy.AnyMsg, lambda _msg, topic: self.hear(topic),
+                    topic, rospy.AnyMsg, lambda _msg, topic: self.receive(topic),
                     callback_args=topic, tcp_nodelay=True)
 
     def expect(self) -> None:
@@ -43,7 +43,7 @@ class Lockstep:
         self._expected = set(self.topics)
 
     def subscribe(self, topic: str, plugin: object) -> None:
-        """A plugin is about to subscribe; it will call `hear` after each message of the topic."""
+        """A plugin is about to subscribe; it will call `receive` after each message."""
         self._plugins[topic].append(plugin)
         if topic in self._subscribers:  # of another message type, and there is one per topic
             self._subscribers.pop(topic).unregister()
@@ -51,14 +51,14 @@ class Lockstep:
             self._mailbox.post(lambda: self._expected.discard(topic))
 
     def unsubscribe(self, topic: str, plugin: object) -> None:
-        """That plugin is gone."""
+        """That plugin has ended."""
         self._plugins[topic].remove(plugin)
         self.listen()
 
-    def hear(self, topic: str, plugin: object = None) -> None:
+    def receive(self, topic: str, plugin: object = None) -> None:
         """From any thread: a message came, to a plugin or to our own subscriber.
 
-        A robot may have two drives on one topic. rospy tells them in the order in which they
+        A robot may have two drives on one topic. rospy calls them in the order in which they
         subscribed, so with the last one all have left their commands.
         """
         if plugin is None or self._plugins[topic][-1:] == [plugin]:

@@ -14,7 +14,7 @@ log = logging.getLogger("bullet_sim.mailbox")
 
 
 class Closed(Exception):
-    """The loop has ended; nobody will answer any more."""
+    """The loop has ended: there will be no answer."""
 
 
 class Mailbox:
@@ -26,7 +26,10 @@ class Mailbox:
         self._closed = threading.Event()
 
     def call(self, function: Callable[[], Any]) -> Any:
-        """From any thread: run `function` in the loop and give back what it returns or raises."""
+        """From any thread: run `function` in the loop and give back what it returns or raises.
+
+        Closed if the simulator ends first.
+        """
         future: Future = Future()
         self._calls.put((function, future))
         while True:

@@ -34,7 +34,7 @@ class MetricsTopic:
         self._due = time.monotonic() + PERIOD
         simulation = self._simulation
         msg = PerformanceMetrics(real_time_factor=simulation.speed.real_time_factor)
-        msg.header.stamp = convert.stamp(simulation.world.time)
+        convert.stamped(msg, simulation.world.time)
         contexts = simulation.sensors()
         self._rates = {context: self._rates.get(context) or _Rates() for context in contexts}
         for context, rates in self._rates.items():

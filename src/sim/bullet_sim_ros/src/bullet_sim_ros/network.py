@@ -14,7 +14,7 @@ from bullet_sim_ros.state_topics import StateTopics
 
 
 def open_network(simulation: Simulation, resources: Resources, parameters: NodeParameters) -> None:
-    """All of them, unless the parameter `~enable_ros_network` says no."""
+    """All of them, unless the parameter `~enable_ros_network` is false."""
     if not parameters.enable_ros_network:
         rospy.loginfo("ROS gazebo topics/services are disabled")
         return

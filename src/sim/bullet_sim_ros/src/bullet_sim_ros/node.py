@@ -50,7 +50,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--physics", default="ode", help="accepted, no effect: Bullet computes")
     parser.add_argument("--seed", type=_seed, default=0, help="of everything random")
     parser.add_argument("--real-time-factor", type=_up_to(FASTEST), default=None,
-                        help="1: real time, 0: as fast as it goes; without it as the world says")
+                        help="1: real time, 0: as fast as it goes; without it, as in the world")
     parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
     parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
     parser.add_argument("--initial-sim-time", type=_up_to(LATEST), default=0.0, help="s")
@@ -113,7 +113,7 @@ def main() -> int:
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
     wait_for_master()
     send_promptly()
-    # Time is ours to tell: rospy must not wait for a /clock that this very node publishes.
+    # This node publishes /clock: rospy must not wait for a /clock that this very node publishes.
     # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
     rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
     rospy.rostime.set_rostime_initialized(True)

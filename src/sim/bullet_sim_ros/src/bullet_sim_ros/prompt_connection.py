@@ -42,7 +42,7 @@ class PromptConnection:
         return getattr(self._connection, name)
 
     def write_data(self, data: bytes) -> bool:
-        """Send a message, or queue it; what went wrong before is raised now."""
+        """Send a message, or queue it; TransportTerminated if the connection has failed before."""
         try:
             with self._changed:
                 self._take(memoryview(data))

@@ -38,15 +38,15 @@ class RealTimeFactorMonitor:
             self.real_time_factor = _factor(self._window, (now, simulated))
             self._window = (now, simulated)
         if now - self._report[0] >= REPORT_PERIOD:
-            self._tell(_factor(self._report, (now, simulated)), wanted)
+            self._log_factor(_factor(self._report, (now, simulated)), wanted)
             self._report, self._totals = (now, simulated), self._profiler.totals()
 
     def close(self) -> None:
         """At the end."""
         if self._profile:
-            self._tell_stages()
+            self._log_stages()
 
-    def _tell(self, factor: float, wanted: float) -> None:
+    def _log_factor(self, factor: float, wanted: float) -> None:
         if factor < SLOW * wanted:
             name, share, all_shares = self._costliest()
             others = "; most of the time other programs had the processor"
@@ -55,9 +55,9 @@ class RealTimeFactorMonitor:
                 "of each second%s", factor, wanted, name, share * 1e3,
                 others if all_shares < BUSY else "")
         if self._profile:
-            self._tell_stages()
+            self._log_stages()
 
-    def _tell_stages(self) -> None:
+    def _log_stages(self) -> None:
         elapsed = time.monotonic() - self._began
         rospy.loginfo("stages of the work in %.0f s\n%s", elapsed, self._profiler.table(elapsed))
 

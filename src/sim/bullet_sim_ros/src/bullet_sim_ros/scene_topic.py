@@ -20,7 +20,7 @@ class SceneTopic:
     def __init__(self, world: World):
         self._world = world
         self._publisher = rospy.Publisher(names.SCENE, String, queue_size=1, latch=True)
-        self._told: int | None = None  # version of the scene
+        self._sent_version: int | None = None  # version of the scene
         self._still: tuple[Pose, ...] = ()  # of all links, while paused
 
     def update(self) -> None:
@@ -28,9 +28,9 @@ class SceneTopic:
         if not self._publisher.get_num_connections():
             return
         still = self._poses() if self._world.paused else self._still
-        if self._told == self._world.scene.version and still == self._still:
+        if self._sent_version == self._world.scene.version and still == self._still:
             return
-        self._told, self._still = self._world.scene.version, still
+        self._sent_version, self._still = self._world.scene.version, still
         self._publisher.publish(String(scene_to_text(self._world.update_scene())))
 
     def _poses(self) -> tuple[Pose, ...]:

@@ -36,7 +36,7 @@ class Simulation:
         self.scheduler = Scheduler(world)
         self.pacer = Pacer()
         self.speed = RealTimeFactorMonitor(world.profiler, parameters.profile)
-        self._told_to_stop = False
+        self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
         self._services = SimServices(
@@ -66,18 +66,18 @@ class Simulation:
                     function()
                 if not self.world.paused and not self._stopped():
                     left -= self._advance(left)
-            except EngineError as error:  # of a topic that tells where things are
+            except EngineError as error:  # of a topic with poses
                 self.world.delete_lost_models(error)
 
     def stop(self) -> None:
         """From a signal handler: end the loop soon."""
-        self._told_to_stop = True
+        self._stop_requested = True
 
     def _stopped(self) -> bool:
-        return self._told_to_stop or rospy.is_shutdown()
+        return self._stop_requested or rospy.is_shutdown()
 
     def _wait(self) -> None:
-        """Answer calls until the wall clock says go on; at least those that have come already."""
+        """Answer calls until the next step is due by the wall clock; at least those that wait."""
         if self.world.paused:
             self.mailbox.run_pending(IDLE)
             self._restart_pace()
@@ -101,7 +101,7 @@ class Simulation:
         return steps
 
     def step(self) -> None:
-        """One step and what is due then; time stands still afterwards, and /clock has it."""
+        """One step and what is due then; afterwards the world is paused, /clock published."""
         self.world.paused = False
         try:
             self._advance(1)
@@ -153,7 +153,7 @@ class Simulation:
         self._lockstep.listen()
 
     def reset(self) -> None:
-        """Time and models back to the start; plugins are told."""
+        """Time and models back to the start; plugins are reset."""
         self._drawing.settle()  # no picture of the time before comes after it
         self._lockstep.cancel()
         self.world.reset_simulation()
@@ -174,7 +174,7 @@ class Simulation:
         ]
 
     def close(self) -> None:
-        """Answer whoever still waits; let go of renderer and engine."""
+        """Answer calls that still wait; release renderer and engine."""
         self.mailbox.close()
         self._drawing.close()
         self.speed.close()

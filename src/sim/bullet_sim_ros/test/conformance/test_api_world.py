@@ -92,7 +92,7 @@ def test_pause_stops_everything_but_services(bench):
     assert (len(clock), len(truth)) == count
     assert bench.call("/gazebo/get_world_properties").sim_time == pytest.approx(0.1)
     assert bench.call("/gazebo/get_physics_properties").pause is True
-    bench.simulation._told_to_stop = False
+    bench.simulation._stop_requested = False
     bench.call("/gazebo/unpause_physics")
     bench.run(0.1)
     assert len(truth) == 20

@@ -1,16 +1,22 @@
-"""One or two cameras of a sensor that take their pictures together, at a rate or when told to."""
+"""The cameras of a sensor, which take their pictures together, at a rate or on a trigger."""
 
 from __future__ import annotations
 
+import logging
 import math
+from collections.abc import Callable, Sequence
 
 from std_msgs.msg import Empty
 
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
-from bullet_sim_ros.cameras.topics import offer_rate
+from bullet_sim_ros.cameras.settings import CameraSettings
 from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.reconfigure_server import Value, offer_values
+
+log = logging.getLogger("bullet_sim.plugins")
 
 DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
+SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; upstream's imager_rate
 
 
 class CameraGroup:
@@ -19,19 +25,17 @@ class CameraGroup:
     For camera_info alone nothing is drawn (upstream draws).
     """
 
-    def __init__(self, context: PluginContext, cameras: list[CameraPublisher]):
+    def __init__(self, context: PluginContext, cameras: Sequence[CameraPublisher]):
         self._context = context
         self._cameras = cameras
-        self._told = False
+        self._triggered = False
 
-    def capture_at_rate(self) -> None:
-        """At the sensor's rate, thinned to the plugin's, while somebody listens."""
-        context, thinned_hz = self._context, self._cameras[0].settings.rate_hz
-        context.every(
-            pictures_rate(context.sensor.update_rate, thinned_hz), self._take, self._wanted
-        )
+    def capture_at_rate(self, sensor_hz: float, thinned_hz: float = 0.0) -> None:
+        """At the sensor's rate, thinned to another one (0: not), while somebody listens."""
+        context = self._context
+        context.every(pictures_rate(sensor_hz, thinned_hz), self._capture, self._wanted)
         for camera in self._cameras:
-            offer_rate(context, camera.settings, lambda rate_hz: context.change_rate(
+            _offer_rate(context, camera.settings, lambda rate_hz: context.change_rate(
                 pictures_rate(rate_hz, thinned_hz)))
 
     def capture_on_trigger(self) -> None:
@@ -41,32 +45,33 @@ class CameraGroup:
         """
         for camera in self._cameras:
             topic = camera.settings.topic("triggerTopicName", "image_trigger")
-            self._context.subscribe(topic, Empty, lambda _message: self._tell, queue_size=1)
-            offer_rate(self._context, camera.settings, lambda _rate_hz: None)
-        self._context.every(0.0, self._look_once, lambda: self._told)
+            self._context.subscribe(topic, Empty, lambda _message: self._trigger, queue_size=1)
+            _offer_rate(self._context, camera.settings, lambda _rate_hz: None)
+        self._context.every(0.0, self._capture_once, lambda: self._triggered)
 
-    def _tell(self) -> None:
-        self._told = True
+    def _trigger(self) -> None:
+        self._triggered = True
 
-    def _look_once(self) -> None:
-        self._told = False
+    def _capture_once(self) -> None:
+        self._triggered = False
         if self._wanted():
-            self._take()
+            self._capture()
 
     def _wanted(self) -> bool:
-        return any(camera.topics.wanted() for camera in self._cameras)
+        return any(camera.wanted() for camera in self._cameras)
 
-    def _take(self) -> None:
-        pictures = any(camera.topics.pictures_wanted() for camera in self._cameras)
+    def _capture(self) -> None:
+        """In the loop; pictures are drawn and sent by the drawing thread."""
+        pictures = any(camera.pictures_wanted() for camera in self._cameras)
         if pictures:
             self._context.expect_answer()
-        states = [camera.capture() for camera in self._cameras]
+        states = [camera.camera.capture() for camera in self._cameras]
 
-        def send() -> None:
+        def publish() -> None:
             for camera, state in zip(self._cameras, states, strict=True):
-                camera.send(state, pictures)
+                camera.publish(state, pictures)
 
-        self._context.draw(send)
+        self._context.draw(publish)
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
@@ -77,3 +82,25 @@ def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
     if sensor_hz > 0 and plugin_hz > 0:
         return sensor_hz / max(1, math.ceil(sensor_hz / plugin_hz - 1e-9))
     return max(sensor_hz, plugin_hz) or DEFAULT_RATE
+
+
+def _offer_rate(context: PluginContext, settings: CameraSettings,
+                change: Callable[[float], None]) -> None:
+    """dynamic_reconfigure's `imager_rate` (Hz); `change` is called in the loop's thread.
+
+    It begins as 2 whatever the sensor's rate is, and counts from the first change on, as upstream.
+    """
+    if not settings.camera_name:
+        log.warning("%s: without a <cameraName> there is no dynamic_reconfigure for %s",
+                    context.describe(), settings.image_topic)
+        return
+    begun: list[bool] = []
+
+    def changed(values: dict[str, float]) -> None:
+        """In a ROS thread; at once for the first time."""
+        if begun:
+            context.services.mailbox.post(lambda: change(values["imager_rate"]))
+        begun.append(True)
+
+    rate = Value(FIRST_RATE, SLOWEST, FASTEST, "Rate of the sensor, Hz")
+    offer_values(context, settings.namespace, {"imager_rate": rate}, changed)

@@ -1,14 +1,18 @@
-"""One camera of a sensor together with its topics."""
+"""One camera of a sensor: draws what somebody listens to and publishes it."""
 
 from __future__ import annotations
 
+import copy
 import time
 
 import rospy
+from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
 
 from bullet_sim.sensors.camera import Camera, CameraReading, CaptureState
+from bullet_sim_ros import convert, names
+from bullet_sim_ros.cameras.compressed import CompressedTopic
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.cameras.topics import CameraTopics
 from bullet_sim_ros.plugin_host.context import PluginContext
 
 TRIALS = 3
@@ -16,37 +20,74 @@ LONGEST_TRIAL = 0.2  # s, wall: a slow renderer is tried once
 
 
 class CameraPublisher:
-    """Draws and sends only what somebody listens to."""
+    """Image, its compressed twin, CameraInfo and set_camera_info.
+
+    What set_camera_info sets holds as long as the camera; it is not written to a file.
+    """
 
     def __init__(self, context: PluginContext, number: int = 0, suffix: str = "",
                  baseline: float | None = None):
         drawing = context.services.drawing
-        self._camera = Camera(context.world, context.link, context.sensor, drawing.renderer(),
-                              number, context.parameters.flag("borderCrop", True))
+        self.camera = Camera(context.world, context.link, context.sensor, drawing.renderer(),
+                             number, context.parameters.flag("borderCrop", True))
         context.on_close(drawing.trim)
-        self.settings = CameraSettings(context, self._camera.description, suffix, baseline)
-        self.topics = CameraTopics(context, self.settings)
-        _tell_frame_time(context, self._camera, self.settings.image_topic)
+        self.settings = settings = CameraSettings(context, self.camera.description, suffix,
+                                                  baseline)
+        self._profiler = context.world.profiler
+        self._info = settings.info()
+        self._images = context.advertise(settings.image_topic, Image, queue_size=2, latch=True)
+        self._compressed = CompressedTopic(context, settings.image_topic, latch=True)
+        self._infos = context.advertise(settings.info_topic, CameraInfo, queue_size=2)
+        context.serve(names.join(settings.namespace, "set_camera_info"), SetCameraInfo,
+                      self._set_info)
+        _log_frame_time(context, self.camera, settings.image_topic)
 
-    def capture(self) -> CaptureState:
-        """In the loop's thread."""
-        return self._camera.capture()
+    def pictures_wanted(self) -> bool:
+        """Whether anybody listens to images."""
+        return bool(self._images.get_num_connections()) or self._compressed.wanted()
 
-    def render(self, state: CaptureState, depth: bool = False) -> CameraReading:
-        """In the drawing thread."""
-        return self._camera.render(state, depth)
+    def wanted(self) -> bool:
+        """Whether anybody listens to images or camera_info."""
+        return self.pictures_wanted() or bool(self._infos.get_num_connections())
 
-    def send(self, state: CaptureState, picture: bool) -> None:
+    def publish(self, state: CaptureState, picture: bool) -> None:
         """A picture if asked for, and CameraInfo to those who listen; in the drawing thread."""
         if picture:
-            self.topics.publish(self.render(state))
-        self.topics.publish_info(state.time)
+            self.publish_picture(self.camera.render(state))
+        self.publish_info(state.time)
+
+    def publish_picture(self, reading: CameraReading) -> None:
+        """Send a picture on the image topic, and compressed if somebody wants that."""
+        settings = self.settings
+        with self._profiler.measure("send"):
+            self._images.publish(convert.image_to_msg(
+                reading.rgb, reading.time, settings.frame, settings.encoding, self._profiler))
+        if self._compressed.wanted():
+            with self._profiler.measure("compress"):
+                self._compressed.publish(reading.rgb, settings.encoding, reading.time,
+                                         settings.frame)
+
+    def publish_info(self, time: float) -> None:
+        """Send what belongs to a picture of that time (s) to those who listen."""
+        if self._infos.get_num_connections():
+            self._infos.publish(self.info(time))
+
+    def info(self, time: float) -> CameraInfo:
+        """The calibration with a stamp."""
+        info = copy.copy(self._info)
+        info.header = copy.copy(info.header)
+        return convert.stamped(info, time, self.settings.frame)
+
+    def _set_info(self, request) -> SetCameraInfoResponse:
+        """In a ROS thread."""
+        self._info = request.camera_info
+        return SetCameraInfoResponse(success=True)
 
 
-def _tell_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
+def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
     """Log what a picture of this camera costs to draw; by the drawing thread, before the first.
 
-    A camera that has gone meanwhile is not drawn.
+    A camera that was deleted meanwhile is not drawn.
     """
     state = camera.capture()
 

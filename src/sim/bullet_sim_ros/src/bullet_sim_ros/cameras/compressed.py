@@ -75,6 +75,5 @@ def compressed_to_msg(rgb: np.ndarray, encoding: str, time: float, frame: str, *
     options = {"jpeg": [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality],
                "png": [cv2.IMWRITE_PNG_COMPRESSION, png_level]}[format]
     _, data = cv2.imencode({"jpeg": ".jpg", "png": ".png"}[format], pixels, options)
-    msg = CompressedImage(format=f"{encoding}; {format} compressed {inside}", data=data.tobytes())
-    msg.header.stamp, msg.header.frame_id = convert.stamp(time), frame
-    return msg
+    return convert.stamped(CompressedImage(
+        format=f"{encoding}; {format} compressed {inside}", data=data.tobytes()), time, frame)

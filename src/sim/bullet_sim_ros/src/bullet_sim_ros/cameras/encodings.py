@@ -51,7 +51,7 @@ def _mosaic(rgb: np.ndarray, pattern: str) -> np.ndarray:
 
 
 def decode(msg: Image) -> np.ndarray:
-    """(h, w, 3) uint8 RGB of an Image; ValueError says what of it cannot be read."""
+    """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read."""
     shallow = _DEEP.get(msg.encoding, msg.encoding)
     if shallow not in _TO_RGB:
         known = ", ".join([*_TO_RGB, *_DEEP])

@@ -20,10 +20,10 @@ _SAME_DISTORTION = 1e-6  # many files write 1e-8 for none
 
 
 class CameraSettings:
-    """What a `<plugin>` says of one camera.
+    """The tags of a `<plugin>` about one camera.
 
     `suffix` is a camera's own part of the namespace in a pair, `baseline` (m) its distance from the
-    other one; without it `<hackBaseline>` counts. `<CxPrime>` is read by nobody, as upstream.
+    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, as upstream.
     """
 
     def __init__(self, context: PluginContext, description: CameraDescription, suffix: str = "",

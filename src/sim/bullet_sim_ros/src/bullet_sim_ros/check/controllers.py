@@ -18,7 +18,7 @@ def controller_findings(parameters: Mapping[str, object], spawned: Collection[st
     """One for each controller.
 
     Other things have types as well. A type of a package that is not named after controllers only
-    counts where a spawner was told the name, one of `spawned`.
+    counts where a spawner was given the name, one of `spawned`.
     """
     known = rows["controllers"].tags
     for name, kind in parameters.items():

@@ -1,4 +1,4 @@
-"""Robots and worlds in a simulation without a master: what the plugins say when they are made."""
+"""Robots and worlds in a simulation without a master: what the plugins log when they are made."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from bullet_sim_ros.simulation import Simulation
 
 STEPS = 10  # enough for what only shows when time passes
 LOGGERS = ("bullet_sim", "rosout")
-UNHEARD = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
-# Whose warnings are about what goes on otherwise; others' are about what is left out.
+NOT_CAPTURED = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
+# Their warnings are about what works otherwise; others' are about what is missing.
 GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.sensors",
          "bullet_sim.meshes.loading", "bullet_sim.formats.urdf.transmission")
 
@@ -43,7 +43,7 @@ class _Listener(logging.Handler):
         self.captured: list[LogLine] = []
 
     def emit(self, record: logging.LogRecord) -> None:
-        if record.name not in UNHEARD:
+        if record.name not in NOT_CAPTURED:
             self.captured.append(LogLine(record.getMessage(), _status(record)))
 
 
@@ -78,7 +78,7 @@ def try_model(description: ModelDescription, parameters: Mapping[str, object],
 
 
 def try_world(description: WorldDescription, parameters: Mapping[str, object]) -> None:
-    """A world with all that stands in it."""
+    """A world with all that is in it."""
     _try(World(description), parameters, lambda _simulation: None)
 
 

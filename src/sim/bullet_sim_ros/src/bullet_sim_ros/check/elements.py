@@ -10,7 +10,6 @@ from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, WORKS, Entry, Row
 from bullet_sim_ros.plugin_host.registry import NOT_NEEDED
 
-EVERY_PLUGIN = ("robotNamespace", "alwaysOn", "always_on", "update_rate", "visualize", "plugin")
 MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or tells is missing",
            "world": "what it does to the world is missing", "visual": "only what is seen differs"}
 LIGHTS = ("point", "spot", "directional")
@@ -79,9 +78,6 @@ class Lookup:
             tag = row.tags.get(child.tag) if isinstance(child.tag, str) else None
             if tag is not None and tag.status != WORKS:
                 yield Finding(self._where, f"{name} <{tag.name}>", tag.status, tag.how)
-            elif tag is None and row.tags and child.tag not in EVERY_PLUGIN:
-                yield Finding(self._where, f"{name} <{child.tag}>", "accepted",
-                              "the plugin has no such tag")
 
 
 def _label(element: Element, joints: set) -> str:

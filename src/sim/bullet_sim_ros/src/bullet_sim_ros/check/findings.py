@@ -1,4 +1,4 @@
-"""What the check has to say, one thing at a time, and the table made of it."""
+"""The findings of a check, and the table made of them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Finding:
 
 
 def table(findings: Iterable[Finding]) -> str:
-    """Lines, worst first within each file; the same thing said twice counts once."""
+    """Lines, worst first within each file; the same finding twice counts once."""
     lines, last = [], None
     unique = dict.fromkeys(findings)
     places = list(dict.fromkeys(finding.where for finding in unique))

@@ -22,7 +22,7 @@ class Topic:
     messages: list = field(default_factory=list)
     publishers: list = field(default_factory=list)
     subscribers: list = field(default_factory=list)
-    listeners: int = 0  # how many others listen, as get_num_connections tells
+    listeners: int = 0  # how many others listen, what get_num_connections returns
 
 
 class Graph:
@@ -129,7 +129,7 @@ def stand_ins(graph: Graph) -> dict[str, object]:
 
 @contextmanager
 def without_master(caller: str = "/gazebo") -> Iterator[Graph]:
-    """An empty graph in rospy's place meanwhile; `caller` is what ~ stands for."""
+    """An empty graph in rospy's place meanwhile; `caller` is the name that ~ is replaced by."""
     graph = Graph()
     places = [(rospy, name, stand_in) for name, stand_in in stand_ins(graph).items()]
     places += [(rospy.rostime, "_rostime_initialized", True),

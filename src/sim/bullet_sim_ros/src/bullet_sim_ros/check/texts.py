@@ -32,7 +32,7 @@ class TextChecker:
                    ) -> list[Finding]:
         """A .urdf, .xacro or .sdf file; xacro is expanded first.
 
-        `shown_only`: nobody has said that it is to be spawned.
+        `shown_only`: nothing asks for it to be spawned.
         """
         where = str(path)
         try:
@@ -92,7 +92,7 @@ class TextChecker:
             return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
         return [Finding(where, f"model {description.name} ({links})", WORKS),
-                *_not_failed(self._details(text, where, None), captured), *_told(captured, where)]
+                *_not_failed(self._details(text, where, None), captured), *_logged(captured, where)]
 
     def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
                    ) -> list[Finding]:
@@ -107,10 +107,10 @@ class TextChecker:
         name = f"world {description.name} ({len(description.models)} models)"
         text = path.read_text(encoding="utf-8-sig", errors="replace")
         details = _not_failed(self._details(text, where, path.parent), captured)
-        return [Finding(where, name, WORKS), *details, *_told(captured, where)]
+        return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
-        """Plugins and elements of the text, which stands in `folder`, and of what it includes."""
+        """Plugins and elements of the text, which is in `folder`, and of what it includes."""
         try:
             root = fromstring(text)
         except ParseError:
@@ -132,13 +132,13 @@ def _utf8(path: Path) -> str:
                           "the file as UTF-8") from None
 
 
-def _told(captured: list[LogLine], where: str) -> list[Finding]:
+def _logged(captured: list[LogLine], where: str) -> list[Finding]:
     return [Finding(where, "it says", each.status, " ".join(each.line.split()))
             for each in captured]
 
 
 def _not_failed(details: list[Finding], captured: list[LogLine]) -> list[Finding]:
-    """Without plugins that work by the table, and said here that they do not."""
+    """Without plugins that work by the table but were not loaded."""
     return [found for found in details
             if not any(f"{found.part} is not loaded" in each.line for each in captured)]
 

@@ -42,6 +42,7 @@ class ControllerContext:
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed
         self.tasks: list[tuple[Rate, Callable[[], None]]] = []
+        self.services = context.services
         self._hardware = hardware
         self._context = context
 
@@ -60,7 +61,7 @@ class ControllerContext:
         return self._hardware.joint_handle(name)
 
     def claim(self, interface: str, joint: str) -> CommandHandle:
-        """The command of a joint, for this controller alone while it runs."""
+        """The command of a joint, for this controller alone; PluginError if it has it already."""
         handle = self._hardware.command_handle(interface, joint)
         if joint in self.claims:
             raise PluginError(f"joint {joint!r} is named twice")
@@ -87,11 +88,11 @@ class ControllerContext:
 
     def in_loop(self, function: Callable):
         """From a ROS thread: run `function` in the loop and give back what it returns."""
-        return self._context.services.mailbox.call(function)
+        return self.services.mailbox.call(function)
 
     def post(self, function: Callable[[], None]) -> None:
         """From any thread: have `function` run in the loop, without waiting."""
-        self._context.services.mailbox.post(function)
+        self.services.mailbox.post(function)
 
     def action(self, name: str, spec: type, on_goal: Callable,
                on_cancel: Callable) -> LoopActionServer:

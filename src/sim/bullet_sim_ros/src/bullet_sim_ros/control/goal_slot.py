@@ -40,7 +40,7 @@ class GoalSlot:
         elif handle:
             handle.set_aborted(result, text)
 
-    def tell(self, feedback) -> None:
+    def publish_feedback(self, feedback) -> None:
         """How far it is."""
         if self._handle:
             self._handle.publish_feedback(feedback)

@@ -65,7 +65,7 @@ class ControllerManager:
                 action()
 
     def close(self) -> None:
-        """End all controllers and their topics; whoever waits is told."""
+        """End all controllers and their topics; who waits gets a Gone."""
         self._closed = True
         for loaded in self._loaded.values():
             loaded.context.close()
@@ -121,7 +121,7 @@ class ControllerManager:
         return WAITING if switch is not None and loaded in switch.start else loaded.state
 
     def load(self, name: str) -> None:
-        """Make a controller, as the parameters below its name say."""
+        """Make a controller, as the parameters below its name say; ManagerError if it cannot be."""
         with self._one_at_a_time:
             if name in self._loaded:
                 raise ManagerError(f"A controller named '{name}' was already loaded inside the "
@@ -166,7 +166,7 @@ class ControllerManager:
             ) from error
 
     def unload(self, name: str) -> None:
-        """Forget a controller that does not run."""
+        """Forget a controller; ManagerError if it runs, or is not there."""
         with self._one_at_a_time:
             loaded = self._loaded.get(name)
             if loaded is None:
@@ -181,7 +181,10 @@ class ControllerManager:
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
                timeout: float = 0.0) -> None:
-        """Start and stop at the next update; waits for it, at most `timeout` (s, wall; 0: ever)."""
+        """Start and stop at the next update; waits for it, at most `timeout` (s, wall; 0: ever).
+
+        ManagerError if that is refused or takes longer, Gone if the model is deleted meanwhile.
+        """
         with self._one_at_a_time:
             switch = plan(self._loaded, start, stop, strict)
             if not switch.start and not switch.stop:
@@ -191,7 +194,10 @@ class ControllerManager:
             self._wait(switch, timeout)
 
     def reload(self, force: bool) -> None:
-        """As upstream's reload of libraries: with `force` everything is stopped and unloaded."""
+        """As upstream's reload of libraries: with `force` everything is stopped and unloaded.
+
+        ManagerError if something runs, without `force`.
+        """
         names = list(self._loaded)
         if names and not force:
             raise ManagerError("Controller manager: Cannot reload controller libraries because "

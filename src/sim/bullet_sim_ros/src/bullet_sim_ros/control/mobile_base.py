@@ -7,8 +7,6 @@ from collections.abc import Callable
 
 import rospy
 from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
-from tf2_msgs.msg import TFMessage
 
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
@@ -17,6 +15,7 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 
 log = logging.getLogger("bullet_sim.control")
 
@@ -28,17 +27,15 @@ class MobileBaseController(Controller):
         super().__init__(context)
         p = context.parameters
         self.base = base
-        self.enable_odom_tf = p.flag("enable_odom_tf", True)
         self.set_publish_rate(p.number("publish_rate", 50.0))
         self._running = False
         self._complained: set[str] = set()
         self._alone = not p.flag("allow_multiple_cmd_vel_publishers", True)
-        self._base_frame = p.text("base_frame_id", "base_link")
-        self._odom_frame = p.text("odom_frame_id", "odom")
-        self._pose_covariance = _diagonal(p.numbers("pose_covariance_diagonal", 6))
-        self._twist_covariance = _diagonal(p.numbers("twist_covariance_diagonal", 6))
-        self._odometry = context.advertise("odom", Odometry, queue_size=100)
-        self._transforms = context.advertise("/tf", TFMessage, queue_size=100)
+        self.odometry = OdometryOutput(
+            context, "odom", p.text("odom_frame_id", "odom"), p.text("base_frame_id", "base_link"),
+            transform=p.flag("enable_odom_tf", True), queue_size=100,
+            pose_covariance=convert.diagonal(p.numbers("pose_covariance_diagonal", 6)),
+            twist_covariance=convert.diagonal(p.numbers("twist_covariance_diagonal", 6)))
         self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
 
     def set_publish_rate(self, rate_hz: float) -> None:
@@ -46,26 +43,26 @@ class MobileBaseController(Controller):
         self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,
-                  give: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
-        """`give(message)` makes a command for the loop of a message; refused while stopped."""
+                  command: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
+        """`command(message)` returns what the loop is to do; messages are refused while stopped."""
         def take(message) -> Callable[[], None] | None:
             if not self._running:
                 self._complain(f"{topic}: Can't accept new commands. Controller is not running.")
                 return None
-            return give(message)
+            return command(message)
 
         return self.context.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
 
     def start(self, time: float) -> None:
-        """Stand still and listen."""
+        """Take commands, from standstill."""
         self.base.start(time)
         self._running, self._complained = True, set()
 
     def update(self, time: float, period: float) -> None:
         """Drive, and publish when it is time to."""
         self.base.update(time, period)
-        if self._pace.due(time):
-            self._publish()
+        if self._pace.due(time) and self.odometry.wanted():
+            self.odometry.publish(self.base.odometry.sample())
 
     def stop(self, time: float) -> None:
         """Brake."""
@@ -73,7 +70,7 @@ class MobileBaseController(Controller):
         self.base.stop()
 
     def refuse(self, what: str) -> None:
-        """A command that is no command."""
+        """Warn of a command that cannot be used."""
         log.warning("%s: a command that is %s is ignored", self.context.describe(), what)
 
     def _complain(self, what: str) -> None:
@@ -91,23 +88,11 @@ class MobileBaseController(Controller):
             self._complain(f"{senders} publishers of cmd_vel, but allow_multiple_cmd_vel_publishers"
                            " is false: it brakes")
             return lambda: self.base.command(self.context.world_time(), 0.0, 0.0)
-        return lambda: self.give(msg)
+        return lambda: self.apply_command(msg)
 
-    def give(self, msg: Twist) -> None:
-        """Hand a good command to the drive; in the loop."""
+    def apply_command(self, msg: Twist) -> None:
+        """Hand a checked command to the drive; in the loop."""
         self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z)
-
-    def _publish(self) -> None:
-        tf_wanted = self.enable_odom_tf and self._transforms.get_num_connections()
-        if not tf_wanted and not self._odometry.get_num_connections():
-            return
-        reading = self.base.odometry.sample()
-        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame)
-        msg.pose.covariance, msg.twist.covariance = self._pose_covariance, self._twist_covariance
-        self._odometry.publish(msg)
-        if tf_wanted:
-            self._transforms.publish(TFMessage([convert.transform_to_msg(
-                reading.pose, reading.time, self._odom_frame, self._base_frame)]))
 
 
 def read_options(parameters: ControllerParameters) -> BaseOptions:
@@ -128,9 +113,3 @@ def read_limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
         return parameters.number(f"{group}/min_{quantity}", -greatest), greatest
 
     return SpeedLimits(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
-
-
-def _diagonal(values: list[float]) -> list[float]:
-    """A 6 by 6 matrix, row by row."""
-    return [value if row == column else 0.0
-            for row, value in enumerate(values) for column in range(6)]

@@ -12,7 +12,10 @@ REQUIRED = object()  # a default that means: there is none
 
 
 class ControllerParameters:
-    """All parameters below a namespace, read once. Names may be paths such as `pid/p`."""
+    """All parameters below a namespace, read once. Names may be paths such as `pid/p`.
+
+    What is of the wrong kind, or not set and without a default, is a PluginError.
+    """
 
     def __init__(self, namespace: str, values: Any = REQUIRED):
         self.namespace = namespace
@@ -24,7 +27,7 @@ class ControllerParameters:
         return self._find(name) is not None
 
     def value(self, name: str, default: Any = REQUIRED) -> Any:
-        """As the parameter server has it."""
+        """As the parameter server has it; PluginError if it is not set and has no default."""
         found = self._find(name)
         if found is not None:
             return found
@@ -35,19 +38,19 @@ class ControllerParameters:
         return default
 
     def text(self, name: str, default: Any = REQUIRED) -> str:
-        """A text."""
+        """A text; else a PluginError."""
         return self._checked(name, default, lambda v: isinstance(v, str) and v, "a name")
 
     def flag(self, name: str, default: Any = REQUIRED) -> bool:
-        """true or false."""
+        """true or false; else a PluginError."""
         return self._checked(name, default, lambda v: isinstance(v, bool), "true or false")
 
     def number(self, name: str, default: Any = REQUIRED) -> float:
-        """A finite number."""
+        """A finite number; else a PluginError."""
         return float(self._checked(name, default, _is_number, "a number"))
 
     def texts(self, name: str, default: Any = REQUIRED) -> list[str]:
-        """A list of names with at least one; a single name counts as one."""
+        """A list of at least one name, or a single name; else a PluginError."""
         def good(value) -> bool:
             return bool(value) and all(isinstance(item, str) and item for item in value)
 
@@ -58,7 +61,7 @@ class ControllerParameters:
                                   "a list of names"))
 
     def numbers(self, name: str, count: int, default: Any = REQUIRED) -> list[float]:
-        """A list of so many finite numbers."""
+        """A list of so many finite numbers; else a PluginError."""
         def good(value) -> bool:
             return isinstance(value, list | tuple) and len(value) == count and all(
                 map(_is_number, value))

@@ -48,7 +48,7 @@ class PidTopic:
         self._publisher = context.advertise(f"{group}/state", PidState, queue_size=1)
 
     def publish(self, time: float, period: float) -> None:
-        """Tell whoever listens; time and period in s."""
+        """Publish if somebody listens; time and period in s."""
         if not self._publisher.get_num_connections():
             return
         pid, gains = self._pid, self._pid.gains
@@ -56,5 +56,5 @@ class PidTopic:
                        error_dot=pid.error_rate, p_error=pid.error, i_error=pid.error_integral,
                        d_error=pid.error_rate, p_term=gains.p, i_term=gains.i, d_term=gains.d,
                        i_max=gains.i_clamp_max, i_min=gains.i_clamp_min, output=pid.output)
-        msg.header.stamp = convert.stamp(time)
+        convert.stamped(msg, time)
         self._publisher.publish(msg)

@@ -73,7 +73,7 @@ def offer(context: PluginContext, manager: ControllerManager, namespace: str) ->
 
 
 def state_of(loaded: Loaded, state: str) -> ControllerState:
-    """A controller as list_controllers tells it."""
+    """A controller as list_controllers describes it."""
     claimed: dict[str, list[str]] = {}
     for joint, handle in sorted(loaded.context.claims.items()):
         claimed.setdefault(INTERFACE_NAMES[handle.interface], []).append(joint)
@@ -84,7 +84,7 @@ def state_of(loaded: Loaded, state: str) -> ControllerState:
 
 
 def _answer(act: Callable, response: type) -> Callable:
-    """A handler that says ok, or why not on the terminal."""
+    """A handler that answers ok, or logs why not."""
     def handle(request):
         try:
             act(request)

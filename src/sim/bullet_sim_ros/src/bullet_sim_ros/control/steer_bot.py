@@ -14,7 +14,10 @@ NAMESPACE = "steer_bot_hardware_gazebo"
 
 
 def open_steer_bot(model: Model, namespace: str, robot: RobotFacts) -> SteerBotHardware:
-    """Upstream's parameters; lengths that are not set are those of the URDF."""
+    """Upstream's parameters; lengths that are not set are those of the URDF.
+
+    PluginError if a parameter is missing or of the wrong kind.
+    """
     p = ControllerParameters(names.join(namespace, NAMESPACE))
     wheels, steers = _pair(p, "virtual_rear_wheels"), _pair(p, "virtual_front_steers")
     geometry = SteerBotGeometry(

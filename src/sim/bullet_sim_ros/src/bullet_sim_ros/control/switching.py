@@ -19,7 +19,7 @@ class ManagerError(SimulationError):
 
 
 class Gone(ManagerError):
-    """The simulation or the model ended while somebody waited."""
+    """The simulation or the model ended during a wait."""
 
 
 @dataclass
@@ -49,7 +49,7 @@ class Switch:
 
 def plan(loaded: Mapping[str, Loaded], start: Sequence[str], stop: Sequence[str],
          strict: bool) -> Switch:
-    """Refuses what contradicts itself; what is only needless or unknown, where it is strict."""
+    """ManagerError if it contradicts itself; where it is strict, also if needless or unknown."""
     stops = _known(loaded, stop, "stop", strict)
     starts = _known(loaded, start, "start", strict)
     for one in starts:

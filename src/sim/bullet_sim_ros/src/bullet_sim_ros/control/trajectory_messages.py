@@ -40,7 +40,10 @@ def read_tolerances(parameters: ControllerParameters, joints: Sequence[str]) -> 
 
 
 def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) -> GoalTolerances:
-    """The controller's, as far as the goal does not say otherwise."""
+    """The controller's, as far as the goal does not say otherwise.
+
+    InvalidTrajectory if the goal names a joint that the controller has not.
+    """
     return GoalTolerances(_replaced(default.path, goal.path_tolerance),
                           _replaced(default.goal, goal.goal_tolerance),
                           default.replaced_time(goal.goal_time_tolerance.to_sec()))
@@ -60,7 +63,7 @@ def _replaced(default: dict[str, Tolerance],
 
 def fill_state(msg, follower: TrajectoryFollower, time: float):
     """header, joint_names, desired, actual and error of a state or a feedback."""
-    msg.header.stamp = convert.stamp(time)
+    convert.stamped(msg, time)
     msg.joint_names = follower.names
     msg.desired = _point(follower.desired)
     msg.actual = _point(follower.actual)
@@ -69,7 +72,7 @@ def fill_state(msg, follower: TrajectoryFollower, time: float):
 
 
 def _point(waypoints: Sequence[Waypoint]) -> JointTrajectoryPoint:
-    """Accelerations are left out where nobody knows them."""
+    """Accelerations are left out where they are unknown."""
     known = all(waypoint.acceleration is not None for waypoint in waypoints)
     return JointTrajectoryPoint(
         positions=[waypoint.position for waypoint in waypoints],

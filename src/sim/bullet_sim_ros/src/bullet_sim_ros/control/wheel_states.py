@@ -38,7 +38,7 @@ class WheelStates:
                  period: float) -> JointTrajectoryControllerState:
         joints = [handle.joint for handle in self._handles]
         msg = JointTrajectoryControllerState(joint_names=[joint.name for joint in joints])
-        msg.header.stamp = convert.stamp(time)
+        convert.stamped(msg, time)
         msg.desired = JointTrajectoryPoint(
             positions=self._positions, velocities=wanted,
             accelerations=_rates(wanted, self._wanted, period), effort=[math.nan] * len(joints))

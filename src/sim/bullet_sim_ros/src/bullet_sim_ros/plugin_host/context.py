@@ -53,7 +53,7 @@ class PluginContext(PluginScope):
 
     def every(self, rate_hz: float, action: Callable[[], None],
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
-        """Call `action` at a rate of simulated time, while `wanted` says so; 0: every step.
+        """Call `action` at a rate of simulated time, while `wanted` is true; 0: every step.
 
         `whole_steps` is for plugins that count the period from the last time (see `TickRate`). As
         upstream has it, a rate below zero is none, too.
@@ -120,7 +120,7 @@ class PluginContext(PluginScope):
         self._drawn = self.services.drawing.submit(job)
 
     def expect_answer(self) -> None:
-        """A frame is about to go to somebody: in lockstep the world then waits for the answer."""
+        """A frame is about to be sent: in lockstep the world then waits for the answer."""
         self._expects_answers = True
         self.services.lockstep.expect()
 
@@ -138,13 +138,16 @@ class PluginContext(PluginScope):
     # --- ROS
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the plugin."""
+        """A publisher that lives as long as the plugin; PluginError if that is no topic's name."""
         publisher = rospy.Publisher(_legal(topic), kind, **options)
         self._closers.append(publisher.unregister)
         return publisher
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
-        """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        """A subscriber; `take(message)` returns what the loop is to do, or None.
+
+        PluginError if that is no topic's name.
+        """
         lockstep = self.services.lockstep
         resolved = rospy.resolve_name(_legal(topic))
         answers = resolved in lockstep.topics
@@ -154,7 +157,7 @@ class PluginContext(PluginScope):
             if function is not None:
                 self.services.mailbox.post(function)
             if answers:
-                lockstep.hear(resolved, self)
+                lockstep.receive(resolved, self)
 
         if answers:
             lockstep.subscribe(resolved, self)

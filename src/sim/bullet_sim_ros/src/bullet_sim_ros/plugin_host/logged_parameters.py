@@ -1,4 +1,4 @@
-"""The tags of plugins that tell of each one that is missing, as upstream's helper class does."""
+"""The tags of plugins that warn of each one that is missing, as upstream's helper class does."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ class LoggedParameters:
 
     def text(self, tag: str, default: str) -> str:
         """Trimmed text."""
-        self._tell(tag, default)
+        self._warn_if_missing(tag, default)
         return self._parameters.text(tag, default)
 
     def number(self, tag: str, default: float) -> float:
         """A float."""
-        self._tell(tag, f"{default:g}")
+        self._warn_if_missing(tag, f"{default:g}")
         return self._parameters.number(tag, default)
 
     def flag(self, tag: str, default: bool) -> bool:
         """A truth value."""
-        self._tell(tag, str(default).lower())
+        self._warn_if_missing(tag, str(default).lower())
         return self._parameters.flag(tag, default)
 
     def choice(self, tag: str, words: Sequence[str]) -> str:
@@ -45,6 +45,6 @@ class LoggedParameters:
             return words[0]
         return word
 
-    def _tell(self, tag: str, default: str) -> None:
+    def _warn_if_missing(self, tag: str, default: str) -> None:
         if not self._parameters.has(tag):
             defaults.warning("%s: missing <%s> default is %s", self.label, tag, default)

@@ -1,56 +1,82 @@
-"""What the drives publish about where they are: a topic and a transform."""
+"""What drives publish about where they are: a topic and a transform."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 
+from bullet_sim.joint import Joint
+from bullet_sim.model import Model
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
+from bullet_sim_ros.plugin_host.parameters import PluginParameters
 
 
 class OdometryOutput:
-    """Odometry of a plugin; the topic's height may be left at 0 while the transform has it."""
+    """nav_msgs/Odometry and the transform of the same pose, to those who listen.
 
-    def __init__(
-        self,
-        context: PluginContext,
-        namespace: str,
-        base_frame: str = "base_footprint",
-        *,
-        transform: bool = True,
-        flat: bool = False,
-        variances: tuple[float, float, float] = convert.DRIVE_VARIANCES,
-        twist_variances: tuple[float, float, float] | None = None,
-    ):
-        p = context.parameters
-        self.prefix = params.tf_prefix(namespace)
+    `flat`: the topic's height is 0 while the transform has it. Covariances are 6x6, row by row.
+    """
+
+    def __init__(self, context: PluginContext, topic: str, odom_frame: str, base_frame: str, *,
+                 transform: bool = True, flat: bool = False,
+                 pose_covariance: Sequence[float] = convert.DRIVE_COVARIANCE,
+                 twist_covariance: Sequence[float] | None = None, queue_size: int = 1):
         self._services = context.services
-        self._odom_frame = names.frame(self.prefix, p.text("odometryFrame", "odom"))
-        self._base_frame = names.frame(self.prefix, p.text("robotBaseFrame", base_frame))
-        self._transform, self._flat = transform, flat
-        self.variances, self.twist_variances = variances, twist_variances
-        self._topic = context.advertise(names.join(namespace, p.text("odometryTopic", "odom")),
-                                        Odometry, queue_size=1)
-        if transform:
-            context.services.announce_transforms()
+        self._odom_frame, self._base_frame, self._flat = odom_frame, base_frame, flat
+        self.pose_covariance, self.twist_covariance = pose_covariance, twist_covariance
+        self._topic = context.advertise(topic, Odometry, queue_size=queue_size)
+        self.set_transform(transform)
+
+    def set_transform(self, wanted: bool) -> None:
+        """Whether the transform is sent."""
+        self._transform = wanted
+        if wanted:
+            self._services.announce_transforms()
 
     def wanted(self) -> bool:
         """Whether anybody listens."""
         return bool(self._topic.get_num_connections()) or self._services.transforms_wanted()
 
-    def publish(self, reading: OdometryReading, others: tuple[TransformStamped, ...] = ()) -> None:
+    def publish(self, reading: OdometryReading, others: Sequence[TransformStamped] = ()) -> None:
         """Send topic and transform, and other transforms with it."""
-        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame, self.variances)
+        if self._topic.get_num_connections():
+            self._topic.publish(self._message(reading))
+        transforms = [*others]
+        if self._transform:
+            transforms.insert(0, convert.transform_to_msg(
+                reading.pose, reading.time, self._odom_frame, self._base_frame))
+        if transforms and self._services.transforms_wanted():
+            self._services.send_transforms(transforms)
+
+    def _message(self, reading: OdometryReading) -> Odometry:
+        msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame)
+        msg.pose.covariance = self.pose_covariance
+        if self.twist_covariance is not None:
+            msg.twist.covariance = self.twist_covariance
         if self._flat:
             msg.pose.pose.position.z = 0.0
-        if self.twist_variances:
-            msg.twist.covariance = convert.planar_covariance(*self.twist_variances)
-        self._topic.publish(msg)
-        transforms = list(others)
-        if self._transform:
-            transforms.append(convert.transform_to_msg(
-                reading.pose, reading.time, self._odom_frame, self._base_frame))
-        if transforms:
-            self._services.send_transforms(transforms)
+        return msg
+
+
+def open_odometry(context: PluginContext, namespace: str, base_frame: str = "base_footprint",
+                  tags: LoggedParameters | PluginParameters | None = None,
+                  **options) -> OdometryOutput:
+    """By `<odometryTopic>`, `<odometryFrame>` and `<robotBaseFrame>`; options of OdometryOutput."""
+    p, prefix = tags or context.parameters, params.tf_prefix(namespace)
+    return OdometryOutput(
+        context, names.join(namespace, p.text("odometryTopic", "odom")),
+        names.frame(prefix, p.text("odometryFrame", "odom")),
+        names.frame(prefix, p.text("robotBaseFrame", base_frame)), **options)
+
+
+def wheel_transform(model: Model, joint: Joint, time: float, prefix: str,
+                    frame: str) -> TransformStamped:
+    """The wheel seen from the model, with the joint's parent link as header frame, as upstream."""
+    pose = model.pose.inverse() * model.links[joint.description.child].pose
+    return convert.transform_to_msg(pose, time, names.frame(prefix, joint.description.parent),
+                                    names.frame(prefix, frame))

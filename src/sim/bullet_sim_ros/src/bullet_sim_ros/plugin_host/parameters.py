@@ -45,32 +45,40 @@ class PluginParameters:
         self._model = model
         self._plugin = description.name
         self._element = description.element
+        self.read: set[str] = set()  # tags that were asked for
+
+    def unread(self) -> list[str]:
+        """Tags that are there and were not asked for, each once; those of other namespaces not."""
+        found = dict.fromkeys(child.tag for child in self._element if isinstance(child.tag, str))
+        return [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
 
     def has(self, tag: str) -> bool:
         """Whether the tag is there, empty or not."""
+        self.read.add(tag)
         return self._element.find(tag) is not None
 
     def text(self, tag: str, default: str = "") -> str:
         """Trimmed text of the first such tag; the default if it is absent or empty."""
+        self.read.add(tag)
         found = self._element.findtext(tag)
         return found.strip() if found and found.strip() else default
 
     def required(self, tag: str) -> str:
-        """Trimmed text of a tag that has to be there."""
+        """Trimmed text of a tag; PluginError if it is not there or empty."""
         found = self.text(tag)
         if not found:
             raise PluginError(f"it needs a <{tag}>")
         return found
 
     def number(self, tag: str, default: float) -> float:
-        """A finite number."""
+        """A finite number; PluginError if it is none."""
         value = self.bound(tag, default)
         if self.text(tag) and math.isinf(value):
             raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
         return value
 
     def bound(self, tag: str, default: float) -> float:
-        """A number that may be infinite: there is no such bound."""
+        """A number that may be infinite: there is no such bound. PluginError if it is no number."""
         text = self.text(tag)
         if not text:
             return default
@@ -80,7 +88,7 @@ class PluginParameters:
         return values[0]
 
     def deviation(self, tag: str) -> float:
-        """A standard deviation; 0 if absent."""
+        """A standard deviation; 0 if absent, PluginError if it is negative or no number."""
         value = self.number(tag, 0.0)
         if value < 0:
             raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")
@@ -104,7 +112,7 @@ class PluginParameters:
         return default
 
     def vector(self, tag: str) -> tuple[float, float, float]:
-        """Three numbers; zeros if absent."""
+        """Three numbers; zeros if absent, PluginError if they are not three finite ones."""
         text = self.text(tag, "0 0 0")
         values = self._leading(tag, text, 3)
         if len(values) != 3 or not all(map(math.isfinite, values)):
@@ -112,7 +120,7 @@ class PluginParameters:
         return (values[0], values[1], values[2])
 
     def _leading(self, tag: str, text: str, count: int) -> list[float]:
-        """The first `count` numbers; what stands behind them is a warning."""
+        """The first `count` numbers; what follows them is a warning."""
         values, whole = read_numbers(text, count)
         if len(values) == count and not whole:
             self._warn_of_rest(tag, text, " ".join(f"{value:g}" for value in values))

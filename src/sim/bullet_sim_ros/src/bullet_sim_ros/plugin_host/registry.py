@@ -12,6 +12,7 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.sensor_types import warn_of_sensor
 from bullet_sim_ros.plugin_host.services import SimServices
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
+from bullet_sim_ros.plugin_host.unread_tags import warn_of_unread_tags
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -21,7 +22,10 @@ NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 
 
 def plugin(*filenames: str) -> Callable[[type], type]:
-    """Register a class under the library names that model files use."""
+    """Register a class under the library names that model files use.
+
+    It is made with a PluginContext; a PluginError then, of a wrong tag, is one line of the log.
+    """
     def register(made: type) -> type:
         for filename in filenames:
             _registry[filename] = made
@@ -47,14 +51,14 @@ def load_plugins(services: SimServices, model: Model) -> list[PluginContext]:
 
 
 def load_world_plugins(services: SimServices) -> list[PluginContext]:
-    """The plugins that stand in the `<world>` itself."""
+    """The plugins of the `<world>` itself."""
     contexts = [PluginContext(services, None, description)
                 for description in services.world.description.plugins]
     return [context for context in contexts if _load(context)]
 
 
 def _load(context: PluginContext) -> bool:
-    """Make the plugin, which tells its host what to call when."""
+    """Make the plugin, which registers with its context what to call when."""
     filename = PurePosixPath(context.description.filename).name
     if filename in NOT_NEEDED:
         return False
@@ -68,4 +72,5 @@ def _load(context: PluginContext) -> bool:
         log.error("%s is not loaded: %s", context.describe(), format_error(error))
         context.close()
         return False
+    warn_of_unread_tags(context)
     return True

@@ -1,4 +1,4 @@
-"""Where a plugin stands: in the world, a model, a sensor or a visual."""
+"""Where a plugin is: in the world, a model, a sensor or a visual."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class PluginScope:
 
     @property
     def model(self) -> Model:
-        """The model that the plugin is in."""
+        """The model that the plugin is in; PluginError if it is in the world."""
         if self._model is None:
             raise PluginError("it belongs inside a <model>, not in the world")
         return self._model
@@ -46,24 +46,29 @@ class PluginScope:
 
     @property
     def visual(self) -> Visual:
-        """The visual that the plugin is in; `link` is the one that it is on."""
+        """The visual that the plugin is in; PluginError if it is in none."""
         if self._visual is None:
             raise PluginError("it belongs inside a <visual>")
         return self._visual
 
     @property
     def sensor(self) -> SensorDescription:
-        """The sensor that the plugin is in."""
+        """The sensor that the plugin is in; PluginError if it is in none."""
         if self._sensor is None:
             raise PluginError("it belongs inside a <sensor>, not in the model")
         return self._sensor
 
     @property
     def link(self) -> Link:
-        """The link that the sensor is on."""
+        """The link that the sensor or visual is on; PluginError if the plugin is in none."""
         if self._link is None:
             raise PluginError("it belongs inside a <sensor>, not in the model")
         return self._link
+
+    @property
+    def sensor_name(self) -> str:
+        """`model::link::sensor`."""
+        return f"{self.link.scoped_name}::{self.sensor.name}"
 
     def describe(self) -> str:
         """Model, sensor or visual, and plugin, for log lines."""

@@ -1,4 +1,4 @@
-"""What is said about a sensor that nothing here reads."""
+"""The warning about a sensor that nothing here reads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GAZEBO_ONLY = ("logical_camera", "rfid", "rfidtag", "sonar", "wireless_receiver"
 
 
 def warn_of_sensor(model: str, sensor: SensorDescription) -> None:
-    """One line for a sensor whose type is not simulated, unless a plugin speaks for it."""
+    """One line for a sensor whose type is not simulated, unless a plugin simulates it."""
     if sensor.type in READ or (sensor.type in GAZEBO_ONLY and sensor.plugins):
         return
     if sensor.type in GAZEBO_ONLY:

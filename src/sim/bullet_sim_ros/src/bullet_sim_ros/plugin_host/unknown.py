@@ -1,4 +1,4 @@
-"""What is said about a plugin that is not there: once, with what will be missing by it."""
+"""The warning about a plugin that is not there: once, with what will be missing."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins.unknown")
 
-# Beginnings of file names, and what a world without them lacks. Gazebo's own plugins speak its own
-# transport, so a ROS node has never heard of most of them.
+# Beginnings of file names, and what a world without them lacks. Gazebo's own plugins use its own
+# transport, so ROS nodes do not depend on most of them.
 CONSEQUENCES = {
     "libDiffDrivePlugin": "actuator: the wheels will not be driven; on ROS topics "
                           "libgazebo_ros_diff_drive.so does it",
@@ -47,7 +47,7 @@ def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str])
 
 
 def consequence(context: PluginContext, filename: str) -> str:
-    """What will be missing: by the name, else by the place the plugin stands in."""
+    """What will be missing: by the name, else by the element that the plugin is in."""
     for beginning, text in CONSEQUENCES.items():
         if filename.startswith(beginning):
             return text

@@ -7,13 +7,13 @@ from geometry_msgs.msg import Point32
 from sensor_msgs.msg import ChannelFloat32, PointCloud
 
 from bullet_sim.sensors.ray_fan import RayFan
-from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 
 @plugin("libgazebo_ros_block_laser.so")
-class BlockLaserPlugin:
+class BlockLaserPlugin(SensorPlugin):
     """Rays that meet nothing give points at range_max, without noise; the ray's own is not used.
 
     Points lie where the rays went: upstream mirrors them top to bottom, turns them by half a ray
@@ -22,27 +22,19 @@ class BlockLaserPlugin:
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._context = context
         self._fan = RayFan(context.world, context.link, context.sensor)
-        self._noise = p.deviation("gaussianNoise")
-        self._name = f"{context.link.scoped_name}::{context.sensor.name} points"
-        topic = p.topic("/world")
-        if not topic:
-            return
-        namespace = p.namespace(missing="/", empty="/")
-        self._frame = names.frame(params.own_tf_prefix(namespace), p.text("frameName", "/world"))
-        self._clouds = context.advertise(names.join(namespace, topic), PointCloud, queue_size=1)
-        context.every(context.sensor.update_rate, self._sweep, self._clouds.get_num_connections)
+        super().__init__(context, PointCloud, p.topic("/world"), p.text("frameName", "/world"),
+                         noise=f"{context.sensor_name} points")
+        self.publish_readings()
 
-    def _sweep(self) -> None:
+    def measure(self) -> PointCloud:
+        """One sweep; upstream gives the channel no name."""
         distances, retro = self._fan.cast()
         points = self._fan.directions * distances[..., None]
-        if self._noise:
-            random = self._context.world.random(self._name)
+        if self.noise:
+            random = self.random()
             met = (distances < self._fan.ray.range_max)[..., None]
-            points = points + random.normal(0.0, self._noise, points.shape) * met
-            retro = retro + random.normal(0.0, self._noise, retro.shape)
-        msg = PointCloud(points=[Point32(*point) for point in points.reshape(-1, 3).tolist()])
-        msg.header.stamp, msg.header.frame_id = convert.stamp(self._context.world.time), self._frame
-        msg.channels = [ChannelFloat32(values=np.ravel(retro).tolist())]  # upstream gives no name
-        self._clouds.publish(msg)
+            points = points + random.normal(0.0, self.noise, points.shape) * met
+            retro = retro + random.normal(0.0, self.noise, retro.shape)
+        return PointCloud(points=[Point32(*point) for point in points.reshape(-1, 3).tolist()],
+                          channels=[ChannelFloat32(values=np.ravel(retro).tolist())])

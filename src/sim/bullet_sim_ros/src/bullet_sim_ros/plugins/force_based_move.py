@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.force import ForceDrive, ForceGains
-from bullet_sim_ros import names
+from bullet_sim_ros import convert
+from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.odometry_output import open_odometry
 from bullet_sim_ros.plugin_host.registry import plugin
 
 VARIANCE = 1e-3  # m^2
@@ -46,7 +46,6 @@ class ForceBasedMovePlugin:
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._context = context
         family = FAMILIES[PurePosixPath(context.description.filename).name]
         namespace = p.namespace(missing="/", empty="/")
         gains = ForceGains(p.number("x_velocity_p_gain", family.gains.forward),
@@ -56,23 +55,21 @@ class ForceBasedMovePlugin:
                    else family.timeout)
         link = context.model.link(p.text("robotBaseFrame", "base_footprint"))
         self._drive = ForceDrive(context.world, link, gains, timeout)
-        self._output = OdometryOutput(
+        self._output = open_odometry(
             context, namespace, transform=p.flag("publishOdometryTf", family.transform))
-        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                          self._take_command, queue_size=1, tcp_nodelay=True)
+        subscribe_commands(context, namespace, p.text("commandTopic", "cmd_vel"), self._command)
         context.each_step(self._drive.update)
         rate_hz = p.number("odometryRate", 20.0)
         if rate_hz > 0:
             context.every(rate_hz, self._publish, self._output.wanted)
         context.on_reset(self._drive.reset)
 
-    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._context.refuses("command", msg):
-            return None
-        return lambda: self._drive.command(msg.linear.x, msg.linear.y, msg.angular.z)
+    def _command(self, msg: Twist) -> None:
+        self._drive.command(msg.linear.x, msg.linear.y, msg.angular.z)
 
     def _publish(self) -> None:
         reading = self._drive.odometry()
         yaw = YAW_VARIANCES[abs(reading.yaw_rate) >= STRAIGHT]
-        self._output.variances = self._output.twist_variances = (VARIANCE, VARIANCE, yaw)
+        covariance = convert.planar_covariance(VARIANCE, VARIANCE, yaw)
+        self._output.pose_covariance = self._output.twist_covariance = covariance
         self._output.publish(reading)

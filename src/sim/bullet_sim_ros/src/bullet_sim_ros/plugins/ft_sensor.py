@@ -3,65 +3,52 @@
 from __future__ import annotations
 
 import numpy as np
-from geometry_msgs.msg import Vector3, WrenchStamped
+from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 
 from bullet_sim.sensors.net_force import NetForce
-from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 
 @plugin("libgazebo_ros_ft_sensor.so")
-class FtSensorPlugin:
+class FtSensorPlugin(SensorPlugin):
     """The reaction in a joint, in the child link's frame; `provideFeedback` is not needed."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._world = context.world
         self._joint = context.model.joint(p.required("jointName"))
-        self._noise = p.deviation("gaussianNoise")
-        self._name = f"{context.model.name}::{self._joint.name} wrench"
-        namespace = p.namespace(missing="/", empty="/")
-        self._frame = names.frame(params.own_tf_prefix(namespace), self._joint.description.child)
-        topic = names.join(namespace, p.required("topicName"))
+        super().__init__(context, WrenchStamped, p.required("topicName"),
+                         self._joint.description.child,
+                         noise=f"{context.model.name}::{self._joint.name} wrench")
         self._joint.reaction()  # from now on it is measured
-        self._wrenches = context.advertise(topic, WrenchStamped, queue_size=1)
-        context.every(p.number("updateRate", 0.0), self._measure,
-                      self._wrenches.get_num_connections, whole_steps=True)
+        self.publish_at(p.number("updateRate", 0.0))
 
-    def _measure(self) -> None:
-        values = np.concatenate(self._joint.reaction())
-        if self._noise:
-            values = values + self._world.random(self._name).normal(0.0, self._noise, 6)
-        self._wrenches.publish(_message(values, self._world.time, self._frame))
+    def measure(self) -> WrenchStamped:
+        """What the parent does to the child."""
+        return _message(self.disturbed(np.concatenate(self._joint.reaction())))
 
 
 @plugin("libgazebo_ros_f3d.so")
-class F3dPlugin:
+class F3dPlugin(SensorPlugin):
     """What moves a link, gravity and contacts included: m a, in world axes. `frameName` is a label.
 
-    It says `world` whatever is written, as upstream intends; the tf_prefix goes before it.
+    The frame is `world` whatever is written, as upstream intends; the tf_prefix goes before it.
     """
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._world = context.world
         self._net = NetForce(context.world, context.model.link(p.required("bodyName")))
-        namespace = p.namespace(missing="/", empty="/")
-        self._frame = names.frame(params.own_tf_prefix(namespace), "world")
-        topic = names.join(namespace, p.required("topicName"))
-        self._wrenches = context.advertise(topic, WrenchStamped, queue_size=1)
-        context.every(0.0, self._measure, self._wrenches.get_num_connections)
+        super().__init__(context, WrenchStamped, p.required("topicName"), "world")
+        self.publish_at(0.0)
         context.on_reset(self._net.restart)
 
-    def _measure(self) -> None:
-        self._wrenches.publish(_message(self._net.sample(), self._world.time, self._frame))
+    def measure(self) -> WrenchStamped:
+        """Since the last step."""
+        return _message(self._net.sample())
 
 
-def _message(values: np.ndarray, time: float, frame: str) -> WrenchStamped:
+def _message(values: np.ndarray) -> WrenchStamped:
     """From force and torque, (6,)."""
-    msg = WrenchStamped()
-    msg.header.stamp, msg.header.frame_id = convert.stamp(time), frame
     numbers = values.tolist()
-    msg.wrench.force, msg.wrench.torque = Vector3(*numbers[:3]), Vector3(*numbers[3:])
-    return msg
+    return WrenchStamped(wrench=Wrench(Vector3(*numbers[:3]), Vector3(*numbers[3:])))

@@ -1,4 +1,4 @@
-"""libgazebo_ros_hand_of_god.so: a link follows a tf frame, and tells where it is."""
+"""libgazebo_ros_hand_of_god.so: a link follows a tf frame, and its pose is published."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""libgazebo_ros_harness.so: a model hangs on a winch until it is let go."""
+"""libgazebo_ros_harness.so: a model hangs on a winch until it is detached."""
 
 from __future__ import annotations
 

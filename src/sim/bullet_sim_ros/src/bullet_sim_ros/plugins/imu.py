@@ -15,10 +15,11 @@ from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 
 
 @plugin("libgazebo_ros_imu.so")
-class ImuPlugin:
+class ImuPlugin(SensorPlugin):
     """Rates and accelerations are in the link's axes (upstream turns them the wrong way round).
 
     `xyzOffset` moves nothing in upstream either. No tf_prefix.
@@ -26,26 +27,21 @@ class ImuPlugin:
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        namespace = p.namespace(missing="/", empty="/")
         link = _find_link(context, p.required("bodyName"))
-        self._world = context.world
         self._imu = LinkMotion(context.world, link)
-        self._frame = names.frame("", p.text("frameName", link.name))
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
-        self._noise = p.deviation("gaussianNoise")
-        self._random_name = f"{link.scoped_name}::{context.description.name}"
-        service = names.join(namespace, p.text("serviceName", "/default_imu"))
+        super().__init__(context, ImuMsg, p.topic("/default_imu"), p.text("frameName", link.name),
+                         tf_prefix=no_tf_prefix,
+                         noise=f"{link.scoped_name}::{context.description.name}")
+        service = names.join(self.namespace, p.text("serviceName", "/default_imu"))
         context.serve(service, Empty, lambda _request: EmptyResponse())
-        topic = p.topic("/default_imu")
-        if topic:
-            self._readings = context.advertise(names.join(namespace, topic), ImuMsg, queue_size=1)
-            context.every(p.number("updateRate", 0.0), self._measure,
-                          self._readings.get_num_connections, whole_steps=True)
-            context.on_reset(self._imu.restart)
+        self.publish_at(p.number("updateRate", 0.0))
+        context.on_reset(self._imu.restart)
 
-    def _measure(self) -> None:
+    def measure(self) -> ImuMsg:
+        """What the link does now."""
         reading = self._with_noise(self._in_link_axes(self._imu.sample()))
-        self._readings.publish(convert.imu_to_msg(reading, self._frame, self._noise ** 2))
+        return convert.imu_to_msg(reading, self.noise ** 2)
 
     def _in_link_axes(self, reading: LinkMotionReading) -> ImuReading:
         back = conjugate(reading.orientation)
@@ -57,9 +53,9 @@ class ImuPlugin:
         )
 
     def _with_noise(self, reading: ImuReading) -> ImuReading:
-        if not self._noise:
+        if not self.noise:
             return reading
-        noise = self._world.random(self._random_name).normal(0.0, self._noise, 6)
+        noise = self.random().normal(0.0, self.noise, 6)
         return dataclasses.replace(
             reading,
             angular_velocity=tuple(reading.angular_velocity + noise[:3]),

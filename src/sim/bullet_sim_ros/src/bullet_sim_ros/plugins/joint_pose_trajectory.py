@@ -1,4 +1,4 @@
-"""libgazebo_ros_joint_pose_trajectory.so: joints are put where a JointTrajectory says."""
+"""libgazebo_ros_joint_pose_trajectory.so: joints are moved along a JointTrajectory."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ INERTIAL = ("world", "/map", "map")
 
 @plugin("libgazebo_ros_joint_pose_trajectory.so")
 class JointPoseTrajectoryPlugin:
-    """While it plays, only its own model stands outside physics (upstream stops the world's).
+    """While it plays, only its own model is outside physics (upstream stops the world's).
 
     As upstream has it, each point's time_from_start is how long it is shown. The service is there,
     which upstream leaves out when it is built.

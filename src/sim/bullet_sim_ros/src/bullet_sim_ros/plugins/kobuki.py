@@ -14,6 +14,7 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.imu import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.kobuki_core import CoreTopic
@@ -57,10 +58,11 @@ class KobukiPlugin:
         context.on_reset(self._kobuki.reset)
 
     def _subscribe(self, base: str) -> None:
-        for name, kind, take in (("velocity", Twist, self._take_velocity),
-                                 ("motor_power", MotorPower, self._take_power),
+        commands = names.join(base, "commands")
+        subscribe_commands(self._context, commands, "velocity", self._command, queue_size=10)
+        for name, kind, take in (("motor_power", MotorPower, self._take_power),
                                  ("reset_odometry", Empty, self._take_reset)):
-            self._context.subscribe(names.join(base, f"commands/{name}"), kind, take, queue_size=10)
+            self._context.subscribe(names.join(commands, name), kind, take, queue_size=10)
 
     def _number(self, tag: str) -> float:
         self._context.parameters.required(tag)
@@ -80,10 +82,8 @@ class KobukiPlugin:
                               f"{', '.join(found) or 'none'}")
         return found[name]
 
-    def _take_velocity(self, msg: Twist) -> Callable[[], None] | None:
-        if self._context.refuses("command", msg):
-            return None
-        return lambda: self._kobuki.command(msg.linear.x, msg.angular.z)
+    def _command(self, msg: Twist) -> None:
+        self._kobuki.command(msg.linear.x, msg.angular.z)
 
     def _take_power(self, msg: MotorPower) -> Callable[[], None]:
         return lambda: self._kobuki.switch(msg.state == MotorPower.ON)

@@ -46,8 +46,7 @@ class CoreTopic:
             left_encoder=left, right_encoder=right, charger=SensorState.DISCHARGING,
             battery=BATTERY, bottom=[reading for _, reading in cliffs.values()],
             current=[0, 0], analog_input=[0, 0, 0, 0])
-        msg.header.stamp = convert.stamp(time)
-        self._topic.publish(msg)
+        self._topic.publish(convert.stamped(msg, time))
 
 
 def _bits(sides: Collection[str], bits: dict[str, int]) -> int:

@@ -1,4 +1,4 @@
-"""What a Kobuki base tells when it happens: a bumper is pressed, the floor ends, a wheel drops."""
+"""A Kobuki base's events: a bumper is pressed, the floor ends, a wheel drops."""
 
 from __future__ import annotations
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from sensor_msgs.msg import LaserScan
 
 from bullet_sim.sensors.laser import Laser
-from bullet_sim_ros import convert, names, params
+from bullet_sim_ros import convert, params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 
 @plugin("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
-class LaserPlugin:
+class LaserPlugin(SensorPlugin):
     """The rate is the sensor's `<update_rate>`; the plugin has none.
 
     Both see collision shapes (upstream's GPU twin sees visuals).
@@ -20,13 +21,11 @@ class LaserPlugin:
     def __init__(self, context: PluginContext):
         p = context.parameters
         self._laser = Laser(context.world, context.link, context.sensor)
-        topic = p.topic("/world")
-        if not topic:
-            return
-        namespace = p.namespace(missing="/", empty=context.model.name)
-        self._frame = names.frame(params.tf_prefix(namespace), p.text("frameName", "/world"))
-        self._scans = context.advertise(names.join(namespace, topic), LaserScan, queue_size=1)
-        context.every(context.sensor.update_rate, self._sweep, self._scans.get_num_connections)
+        super().__init__(context, LaserScan, p.topic("/world"), p.text("frameName", "/world"),
+                         namespace=p.namespace(missing="/", empty=context.model.name),
+                         tf_prefix=params.tf_prefix)
+        self.publish_readings()
 
-    def _sweep(self) -> None:
-        self._scans.publish(convert.laser_to_msg(self._laser.sample(), self._frame))
+    def measure(self) -> LaserScan:
+        """One sweep."""
+        return convert.laser_to_msg(self._laser.sample())

@@ -28,8 +28,8 @@ class LinkAttacherPlugin:
         self._held: dict[Ends, Weld] = {}
         for name, action in (("attach", self._attach), ("detach", self._detach)):
             context.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
-        context.on_close(self._let_go)
-        context.on_reset(self._let_go)
+        context.on_close(self._release_all)
+        context.on_reset(self._release_all)
 
     def _handler(self, name: str, action):
         def serve(request) -> AttachResponse:
@@ -59,6 +59,6 @@ class LinkAttacherPlugin:
         weld.release()
         return True
 
-    def _let_go(self) -> None:
+    def _release_all(self) -> None:
         while self._held:
             self._held.popitem()[1].release()

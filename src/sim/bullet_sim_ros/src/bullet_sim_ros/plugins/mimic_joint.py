@@ -33,7 +33,7 @@ class MimicJointPlugin:
     @staticmethod
     def _pid(context: PluginContext, joint: str) -> Pid | None:
         p = context.parameters
-        # In files of older versions the tag is empty: that it is there says it all.
+        # In files of older versions the tag is empty: its presence counts.
         if not p.has("hasPID") or not p.flag("hasPID", True):
             return None
         namespace = p.namespace(missing="/", empty="/")

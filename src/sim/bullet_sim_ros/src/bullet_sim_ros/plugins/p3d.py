@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
 from nav_msgs.msg import Odometry
 
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.ground_truth import GroundTruth
-from bullet_sim_ros import convert, names, params
+from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 INERTIAL = ("world", "/world", "map", "/map")
 
 
 @plugin("libgazebo_ros_p3d.so")
-class P3dPlugin:
+class P3dPlugin(SensorPlugin):
     """Seen from another link, the twist is truly that (upstream turns it the wrong way round).
 
     The offsets are in the link's axes, so that a lumped link's are right in any pose (upstream adds
@@ -24,37 +24,31 @@ class P3dPlugin:
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        namespace = p.namespace(missing="/", empty="/")
         link = context.model.link(p.required("bodyName"))
-        topic = names.join(namespace, p.required("topicName"))
-        frame = p.text("frameName", "world")
+        topic, frame = p.required("topicName"), p.text("frameName", "world")
         reference = None if frame in INERTIAL else context.model.link(frame)
         offset = Pose(p.vector("xyzOffset"), quaternion_from_rpy(*p.vector("rpyOffset")))
         self._truth = GroundTruth(context.world, link, offset, reference)
-        self._world, self._child = context.world, link.name
-        self._frame = names.frame(params.own_tf_prefix(namespace), frame)
-        self._noise = p.deviation("gaussianNoise")
-        self._random_name = f"{link.scoped_name}::{context.description.name}"
-        self._poses = context.advertise(topic, Odometry, queue_size=1)
-        context.every(p.number("updateRate", 0.0), self._measure, self._poses.get_num_connections,
-                      whole_steps=True)
+        self._child = link.name
+        super().__init__(context, Odometry, topic, frame,
+                         noise=f"{link.scoped_name}::{context.description.name}")
+        self.publish_at(p.number("updateRate", 0.0))
 
-    def _measure(self) -> None:
+    def measure(self) -> Odometry:
+        """Pose and twist now."""
         reading = self._truth.sample()
         msg = Odometry(child_frame_id=self._child)
-        msg.header.stamp, msg.header.frame_id = convert.stamp(reading.time), self._frame
         msg.pose.pose = convert.pose_to_msg(reading.pose)
         msg.twist.twist = convert.twist_to_msg(reading.twist)
-        if self._noise:
+        if self.noise:
             self._disturb(msg)
-        self._poses.publish(msg)
+        return msg
 
     def _disturb(self, msg: Odometry) -> None:
-        noise = self._world.random(self._random_name).normal(0.0, self._noise, 6).tolist()
+        noise = self.random().normal(0.0, self.noise, 6).tolist()
         linear, angular = msg.twist.twist.linear, msg.twist.twist.angular
         for vector, values in ((linear, noise[:3]), (angular, noise[3:])):
             vector.x, vector.y, vector.z = (
                 value + more for value, more in zip((vector.x, vector.y, vector.z), values,
                                                     strict=True))
-        variances = np.diag([self._noise ** 2] * 6).ravel().tolist()
-        msg.pose.covariance = msg.twist.covariance = variances
+        msg.pose.covariance = msg.twist.covariance = convert.diagonal([self.noise ** 2] * 6)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
-from bullet_sim_ros import names
+from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.odometry_output import open_odometry
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -25,9 +23,8 @@ class PlanarMovePlugin:
         self._odometry = PlanarOdometry(context.world, context.model)
         self._timeout = p.number("cmdTimeout", -1.0)  # s; below 0: never
         self._commanded = context.world.time
-        self._output = OdometryOutput(context, namespace, flat=True)
-        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                          self._take_command, queue_size=1, tcp_nodelay=True)
+        self._output = open_odometry(context, namespace, flat=True)
+        subscribe_commands(context, namespace, p.text("commandTopic", "cmd_vel"), self._command)
         context.each_step(self._move)
         rate_hz = p.number("odometryRate", 20.0)
         if rate_hz > 0:
@@ -39,11 +36,6 @@ class PlanarMovePlugin:
         timestep = self._context.world.timestep
         steps = int(1.0 / (rate_hz * timestep) + 1e-6) + 1
         return 1.0 / (steps * timestep)
-
-    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._context.refuses("command", msg):
-            return None
-        return lambda: self._command(msg)
 
     def _command(self, msg: Twist) -> None:
         self._commanded = self._context.world.time

@@ -67,8 +67,8 @@ class RosControlPlugin:
         wanted, step = self._control_period, self._timestep
         if not wanted or abs(wanted - step) < ROUNDING * step:
             return
-        say, how = (log.error, "faster") if wanted < step else (log.warning, "slower")
-        say("%s: Desired controller update period (%g s) is %s than the gazebo simulation period "
+        write, how = (log.error, "faster") if wanted < step else (log.warning, "slower")
+        write("%s: Desired controller update period (%g s) is %s than the gazebo simulation period "
             "(%g s).", self._context.describe(), wanted, how, step)
 
     def _begin(self, urdf: str) -> None:

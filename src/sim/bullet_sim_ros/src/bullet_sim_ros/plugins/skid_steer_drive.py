@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.skid_steer import SkidSteer
 from bullet_sim.sensors.odometry import true_odometry
-from bullet_sim_ros import names
+from bullet_sim_ros import convert
+from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.odometry_output import open_odometry
 from bullet_sim_ros.plugin_host.registry import plugin
 
 
@@ -27,20 +26,18 @@ class SkidSteerDrivePlugin:
              for place in ("Front", "Rear")] for side in ("left", "right"))
         self._drive = SkidSteer(left, right, p.number("wheelSeparation", 0.4),
                                 p.number("wheelDiameter", 0.15), p.number("torque", 5.0))
-        variances = (p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4),
-                     p.number("covariance_yaw", 1e-2))
-        self._output = OdometryOutput(
+        covariance = convert.planar_covariance(
+            p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4),
+            p.number("covariance_yaw", 1e-2))
+        self._output = open_odometry(
             context, namespace, transform=p.flag("broadcastTF", False), flat=True,
-            variances=variances, twist_variances=variances)
-        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                          self._take_command, queue_size=1, tcp_nodelay=True)
+            pose_covariance=covariance, twist_covariance=covariance)
+        subscribe_commands(context, namespace, p.text("commandTopic", "cmd_vel"), self._command)
         context.every(p.number("updateRate", 100.0), self._update)
         context.on_reset(self._drive.stop)
 
-    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._context.refuses("command", msg):
-            return None
-        return lambda: self._drive.command(msg.linear.x, msg.angular.z)
+    def _command(self, msg: Twist) -> None:
+        self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
         if self._output.wanted():

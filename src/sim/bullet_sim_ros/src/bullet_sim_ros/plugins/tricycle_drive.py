@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from geometry_msgs.msg import TransformStamped, Twist
+from geometry_msgs.msg import Twist
 from sensor_msgs.msg import JointState
 
 from bullet_sim.drives.tricycle import Tricycle, TricycleParameters
 from bullet_sim.joint import Joint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
-from bullet_sim_ros import convert, names
+from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.odometry_output import open_odometry, wheel_transform
 from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -47,9 +46,9 @@ class TricycleDrivePlugin:
         self._states = context.advertise(
             names.join(namespace, "joint_states"), JointState, queue_size=1000,
         ) if p.flag("publishWheelJointState", False) else None
-        self._output = OdometryOutput(context, namespace, "base_link")
-        context.subscribe(names.join(namespace, p.text("commandTopic", "cmd_vel")), Twist,
-                          self._take_command, queue_size=1, tcp_nodelay=True)
+        self._prefix = params.tf_prefix(namespace)
+        self._output = open_odometry(context, namespace, "base_link")
+        subscribe_commands(context, namespace, p.text("commandTopic", "cmd_vel"), self._command)
         context.every(p.number("updateRate", 100.0), self._update)
         context.on_reset(self._restart)
 
@@ -60,30 +59,21 @@ class TricycleDrivePlugin:
             ("encoderWheelLeftJoint", "left_wheel_joint"),
             ("encoderWheelRightJoint", "right_wheel_joint"))]
 
-    def _take_command(self, msg: Twist) -> Callable[[], None] | None:
-        if self._context.refuses("command", msg):
-            return None
-        return lambda: self._drive.command(msg.linear.x, msg.angular.z)
+    def _command(self, msg: Twist) -> None:
+        self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
         world = self._context.world
         if self._output.wanted():
-            self._output.publish(self._odometry_source.sample(), self._wheel_transforms())
+            # Upstream calls the wheels' frames by the joints' names.
+            wheels = self._joints if self._wheel_tf else ()
+            self._output.publish(self._odometry_source.sample(), [
+                wheel_transform(self._context.model, joint, world.time, self._prefix, joint.name)
+                for joint in wheels])
         if self._states and self._states.get_num_connections():
             self._publish_states()
         self._drive.update(world.time - self._updated)
         self._updated = world.time
-
-    def _wheel_transforms(self) -> tuple[TransformStamped, ...]:
-        """Upstream calls the frames by the joints' names and sees the links from the model."""
-        if not self._wheel_tf:
-            return ()
-        model, time, prefix = self._context.model, self._context.world.time, self._output.prefix
-        back = model.pose.inverse()
-        return tuple(convert.transform_to_msg(
-            back * model.links[joint.description.child].pose, time,
-            names.frame(prefix, joint.description.parent), names.frame(prefix, joint.name))
-                     for joint in self._joints)
 
     def _publish_states(self) -> None:
         msg = convert.joints_to_msg(sample_joints(self._context.world, self._joints))

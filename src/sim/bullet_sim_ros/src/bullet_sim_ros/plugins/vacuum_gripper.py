@@ -13,7 +13,7 @@ from bullet_sim_ros.plugin_host.registry import plugin
 
 @plugin("libgazebo_ros_vacuum_gripper.so")
 class VacuumGripperPlugin:
-    """A Bool at each step tells whether something is held."""
+    """Publishes at each step whether something is held."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -8,9 +8,10 @@ import numpy as np
 from sensor_msgs.msg import PointCloud2, PointField
 
 from bullet_sim.sensors.laser import Laser
-from bullet_sim_ros import convert, names, params
+from bullet_sim_ros import params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"),
                   ("ring", "<u2"), ("time", "<f4")])  # as velodyne_pointcloud lays points out
@@ -20,7 +21,7 @@ FIELDS = [PointField(name, POINT.fields[name][1], TYPES[POINT.fields[name][0].st
 
 
 @plugin("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
-class VelodynePlugin:
+class VelodynePlugin(SensorPlugin):
     """Points go column by column, the lowest ring first. A namespace other than / is the tf_prefix.
 
     Both see collision shapes (upstream's GPU twin sees visuals).
@@ -28,41 +29,32 @@ class VelodynePlugin:
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._context = context
         self._laser = Laser(context.world, context.link, context.sensor)
         self._nearest = max(p.bound("min_range", 0.0), self._laser.ray.range_min)
         self._farthest = min(p.bound("max_range", math.inf), self._laser.ray.range_max)
         self._faintest = p.bound("min_intensity", -math.inf)
-        self._noise = p.deviation("gaussianNoise")
-        self._name = f"{context.link.scoped_name}::{context.sensor.name} points"
         self._organised = p.flag("organize_cloud", False)
-        topic = p.topic("/points")
-        if not topic:
-            return
-        namespace = p.namespace(missing="/", empty="/")
-        prefix = namespace if namespace != "/" else params.own_tf_prefix(namespace)
-        self._frame = names.frame(prefix, p.text("frameName", "/world"))
-        self._clouds = context.advertise(names.join(namespace, topic), PointCloud2, queue_size=1)
-        context.every(context.sensor.update_rate, self._sweep, self._clouds.get_num_connections)
+        super().__init__(context, PointCloud2, p.topic("/points"), p.text("frameName", "/world"),
+                         tf_prefix=_tf_prefix, noise=f"{context.sensor_name} points")
+        self.publish_readings()
 
-    def _sweep(self) -> None:
+    def measure(self) -> PointCloud2:
+        """One turn."""
         points, seen = self._points()
         if not self._organised:
             points = points[seen][None]
         msg = PointCloud2(height=points.shape[0], width=points.shape[1], fields=FIELDS)
-        msg.header.stamp, msg.header.frame_id = convert.stamp(self._context.world.time), self._frame
         msg.point_step, msg.row_step = POINT.itemsize, POINT.itemsize * points.shape[1]
         msg.is_dense = not self._organised
         msg.data = points.tobytes()
-        self._clouds.publish(msg)
+        return msg
 
     def _points(self) -> tuple[np.ndarray, np.ndarray]:
         """POINTs (columns, rings), NaN where there is none, and where there is one."""
         ranges, retro = self._laser.measure()
         seen = self._within(ranges) & (retro >= self._faintest)
-        if self._noise:
-            ranges = ranges + self._context.world.random(self._name).normal(
-                0.0, self._noise, ranges.shape)
+        if self.noise:
+            ranges = self.disturbed(ranges)
             seen &= self._within(ranges)
         points = np.zeros(ranges.shape, POINT)
         places = self._laser.fan.directions * np.where(seen, ranges, np.nan)[..., None]
@@ -73,3 +65,7 @@ class VelodynePlugin:
 
     def _within(self, ranges: np.ndarray) -> np.ndarray:
         return (self._nearest < ranges) & (ranges < self._farthest)
+
+
+def _tf_prefix(namespace: str) -> str:
+    return namespace if namespace != "/" else params.own_tf_prefix(namespace)

@@ -13,7 +13,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_wheel_slip.so", "libWheelSlipPlugin.so")
 class WheelSlipPlugin:
-    """The engine knows no slip that grows with the force; one warning says so."""
+    """The engine has no slip that grows with the force; one warning."""
 
     def __init__(self, context: PluginContext):
         wheels = context.description.element.findall("wheel")

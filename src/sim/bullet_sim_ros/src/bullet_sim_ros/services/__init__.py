@@ -1,4 +1,7 @@
-"""The services of /gazebo: each handler runs in the loop, and turns an exception into a status."""
+"""The services of /gazebo: each handler runs in the loop, and turns an exception into a status.
+
+"Upstream" is gazebo_ros/src/gazebo_ros_api_plugin.cpp, in the function of the service's name.
+"""
 
 from __future__ import annotations
 

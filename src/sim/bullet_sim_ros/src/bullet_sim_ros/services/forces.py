@@ -28,7 +28,7 @@ def offer_force_services(simulation: Simulation) -> None:
 
 
 def apply_body_wrench(world: World, request, response) -> None:
-    """Force and torque on a link's centre of mass.
+    """Force and torque on a link's centre of mass; ServiceError if request or link are wrong.
 
     A reference frame turns them into the axes of the body, and the result is then taken along the
     axes of the world, as upstream does: with the body itself as frame nothing is turned.
@@ -50,7 +50,7 @@ def apply_body_wrench(world: World, request, response) -> None:
 
 
 def apply_joint_effort(world: World, request, response) -> None:
-    """Effort on a joint; one that is held fixed takes it without moving."""
+    """Effort on a joint; a fixed one takes it without moving. ServiceError if there is none."""
     model, _, joint = find_joint(world, request.joint_name, "ApplyJointEffort: joint not found")
     if not abs(request.effort) <= convert.LARGEST:
         raise ServiceError(

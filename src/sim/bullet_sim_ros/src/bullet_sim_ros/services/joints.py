@@ -26,7 +26,7 @@ def offer_joint_services(simulation: Simulation) -> None:
 
 
 def get_joint_properties(world: World, name: str, response) -> None:
-    """Position and rate; the type is always REVOLUTE and no damping is told, as upstream."""
+    """Position and rate; the type is always REVOLUTE and damping is left out, as upstream."""
     _, _, joint = find_joint(world, name, "GetJointProperties: joint not found")
     response.type = response.REVOLUTE
     response.position = [joint.position if joint else 0.0]
@@ -35,7 +35,10 @@ def get_joint_properties(world: World, name: str, response) -> None:
 
 
 def set_joint_properties(world: World, request, response) -> None:
-    """Empty arrays leave what is; of the others the first number counts, joints have one axis."""
+    """Empty arrays leave what is; of the others the first number counts, joints have one axis.
+
+    ServiceError if there is no such joint, or a number is impossible.
+    """
     _, _, joint = find_joint(world, request.joint_name, "SetJointProperties: joint not found")
     config = request.ode_joint_config
     _check(config)

@@ -28,7 +28,7 @@ def offer_light_services(simulation: Simulation) -> None:
 
 
 def get_light_properties(world: World, name: str, response) -> None:
-    """Diffuse colour and attenuation, which is all that the message has room for."""
+    """Diffuse colour and attenuation, all that the message has; ServiceError if it is unknown."""
     light = _light(world, name, "getLightProperties")
     response.diffuse = ColorRGBA(*light.diffuse)
     for term in ATTENUATION:
@@ -37,7 +37,10 @@ def get_light_properties(world: World, name: str, response) -> None:
 
 
 def set_light_properties(world: World, request, response) -> None:
-    """Writes every field, as upstream: what a request leaves out becomes 0."""
+    """Writes every field, as upstream: what a request leaves out becomes 0.
+
+    ServiceError if there is no such light, or a number is impossible.
+    """
     light = _light(world, request.light_name, "setLightProperties")
     terms = {term: getattr(request, f"attenuation_{term}") for term in ATTENUATION}
     if not (convert.is_sane(request.pose, request.direction, request.diffuse, request.specular)
@@ -58,7 +61,7 @@ def set_light_properties(world: World, request, response) -> None:
 
 
 def delete_light(world: World, name: str, response) -> None:
-    """A light that is not there is said to be a time-out, as upstream says it."""
+    """ServiceError if there is no such light: upstream's words for it name a time-out."""
     if name not in world.lights:
         raise ServiceError(f'DeleteLight: Timeout reached while removing light "{name}"')
     world.remove_light(name)

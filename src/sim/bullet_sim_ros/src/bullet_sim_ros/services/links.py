@@ -58,7 +58,10 @@ def get_link_state(world: World, request, response) -> None:
 
 
 def set_link_state(world: World, state: LinkState) -> None:
-    """Move a link; the twist is less that of the frame, which only a link can be (upstream)."""
+    """Move a link; the twist is less that of the frame, which only a link can be (upstream).
+
+    ServiceError if link or frame are not there, or a number is impossible.
+    """
     link = find_link(world, state.link_name, "SetLinkState: link does not exist")
     if not convert.is_sane(state.pose, state.twist):
         raise ServiceError(
@@ -71,7 +74,7 @@ def set_link_state(world: World, state: LinkState) -> None:
 
 
 def get_link_properties(world: World, name: str, response) -> None:
-    """Mass, centre of mass and inertia; the orientation of the latter's axes is not told."""
+    """Mass, centre of mass and inertia; the orientation of the latter's axes is left out."""
     link = find_link(world, name, f"GetLinkProperties: {LINK_UNKNOWN}").description
     response.com.position = Point(*link.inertial.pose.position)
     response.com.orientation = Quaternion(w=1.0)
@@ -83,7 +86,10 @@ def get_link_properties(world: World, name: str, response) -> None:
 
 
 def set_link_properties(world: World, request, response) -> None:
-    """Writes every field but the orientation of the inertia's axes."""
+    """Writes every field but the orientation of the inertia's axes.
+
+    ServiceError if there is no such link, or a number is impossible.
+    """
     link = find_link(world, request.link_name, f"SetLinkProperties: {LINK_UNKNOWN}")
     model = world.model(link.model.name)
     inertia = tuple(getattr(request, field) for field in INERTIA)

@@ -9,12 +9,32 @@ from bullet_sim.errors import UnknownName
 from bullet_sim.joint import Joint
 from bullet_sim.link import Link
 from bullet_sim.model import Model
+from bullet_sim.nested import NestedModel, find_nested_model
 from bullet_sim.pose import Pose
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 from bullet_sim_ros.services.answers import ServiceError
 
 LINK_UNKNOWN = "link not found, did you forget to scope the link by model name?"
+
+
+def find_model(world: World, name: str, missing: str) -> Model:
+    """The model of that name; ServiceError(`missing`) if there is none. Nested ones are not meant.
+
+    As upstream, only the services that read take nested models: see `find_part`.
+    """
+    part = find_part(world, name, missing)
+    if part.name:
+        raise ServiceError(missing)
+    return part.model
+
+
+def find_part(world: World, name: str, missing: str) -> NestedModel:
+    """A model, or one nested in a model, by name; ServiceError(`missing`) if there is none."""
+    part = find_nested_model(world.models.values(), name)
+    if part is None:
+        raise ServiceError(missing)
+    return part
 
 
 def find_link(world: World, name: str, missing: str) -> Link:
@@ -41,7 +61,10 @@ def find_frame(world: World, name: str, missing: str) -> tuple[Pose, Twist]:
 
 def find_joint(world: World, name: str, missing: str) -> tuple[Model, JointDescription,
                                                                 Joint | None]:
-    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed."""
+    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed.
+
+    ServiceError(`missing`) if there is none.
+    """
     for model, description in _joints(world):
         if name in (description.name, f"{model.name}::{description.name}"):
             return model, description, model.joints.get(description.name)

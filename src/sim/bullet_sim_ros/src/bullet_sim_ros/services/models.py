@@ -15,6 +15,7 @@ from bullet_sim.formats import Resources, load_light, load_model
 from bullet_sim.pose import IDENTITY
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer
+from bullet_sim_ros.services.lookup import find_model
 from bullet_sim_ros.services.states import is_turnless, spawn_pose
 
 SPAWNED = "SpawnModel: Successfully spawned entity"
@@ -57,9 +58,9 @@ def offer_model_services(simulation, resources: Resources) -> None:
             raise
 
     def delete(request, response):
-        if request.model_name not in simulation.world.models:
-            raise ServiceError("DeleteModel: model does not exist")
-        simulation.delete(request.model_name)
+        model = find_model(simulation.world, request.model_name,
+                           "DeleteModel: model does not exist")
+        simulation.delete(model.name)
         done(response, "DeleteModel: successfully deleted model")
 
     offer(simulation.mailbox, names.SPAWN_URDF_MODEL, SpawnModel, spawn_urdf)

@@ -46,7 +46,7 @@ def get_physics_properties(simulation: Simulation, response) -> None:
 
 
 def set_physics_properties(simulation: Simulation, request, response) -> None:
-    """Writes every field, as upstream: get first, change, then set."""
+    """Writes every field, as upstream: get first, then set. ServiceError if one is impossible."""
     if not convert.is_sane(request.gravity):
         raise ServiceError("SetPhysicsProperties: gravity is not finite")
     gravity = (request.gravity.x, request.gravity.y, request.gravity.z)

@@ -34,7 +34,7 @@ UNUSED = -1.0  # of what the world has no number for
 
 
 class PhysicsReconfigure:
-    """Writes only what somebody changed, so that what set_physics_properties set meanwhile stays.
+    """Writes only what was changed, so that what set_physics_properties set meanwhile stays.
 
     Upstream writes all of its numbers, those that are out of date among them.
     """

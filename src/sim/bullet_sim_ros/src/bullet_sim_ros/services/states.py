@@ -8,13 +8,12 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
 from geometry_msgs.msg import Pose as PoseMsg
 
-from bullet_sim.nested import find_nested_model
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import Twist, twist_difference, twist_in
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.services.answers import ServiceError, done, offer
-from bullet_sim_ros.services.lookup import find_frame
+from bullet_sim_ros.services.lookup import find_frame, find_model, find_part
 
 
 def offer_state_services(simulation) -> None:
@@ -41,11 +40,8 @@ def offer_state_services(simulation) -> None:
 
 def get_model_state(world: World, request, response) -> None:
     """Pose and twist of a model, in the world or relative to another entity."""
-    response.header.stamp = convert.stamp(world.time)
-    response.header.frame_id = request.relative_entity_name
-    model = find_nested_model(world.models.values(), request.model_name)
-    if model is None:
-        raise ServiceError("GetModelState: model does not exist")
+    convert.stamped(response, world.time, request.relative_entity_name)
+    model = find_part(world, request.model_name, "GetModelState: model does not exist")
     frame, frame_twist = find_frame(
         world, request.relative_entity_name,
         "GetModelState: reference relative_entity_name not found, did you forget to scope the "
@@ -57,13 +53,14 @@ def get_model_state(world: World, request, response) -> None:
 
 
 def set_model_state(world: World, state: ModelState) -> None:
-    """Move a model and set its velocity; both are in the axes of the reference entity."""
-    if state.model_name not in world.models:
-        raise ServiceError("SetModelState: model does not exist")
+    """Move a model and set its velocity; both are in the axes of the reference entity.
+
+    ServiceError if model or entity are not there, or a number is impossible.
+    """
+    model = find_model(world, state.model_name, "SetModelState: model does not exist")
     if not convert.is_sane(state.pose, state.twist):
         raise ServiceError(
             f"SetModelState: pose and twist must be finite and not beyond {convert.LARGEST:g}")
-    model = world.models[state.model_name]
     frame, _ = find_frame(world, state.reference_frame,
                           "SetModelState: specified reference frame entity does not exist")
     twist = convert.twist_from_msg(state.twist)
@@ -73,23 +70,24 @@ def set_model_state(world: World, state: ModelState) -> None:
 
 
 def set_model_configuration(world: World, request) -> None:
-    """Joint positions at once; unknown joints are ignored, as upstream does."""
-    if request.model_name not in world.models:
-        raise ServiceError("SetModelConfiguration: model does not exist")
+    """Joint positions at once; unknown joints are ignored, as upstream does.
+
+    ServiceError if there is no such model, or the positions are impossible.
+    """
+    model = find_model(world, request.model_name, "SetModelConfiguration: model does not exist")
     if len(request.joint_names) != len(request.joint_positions):
         raise ServiceError(
             "SetModelConfiguration: joint name and position list have different lengths")
     if not all(abs(position) <= convert.LARGEST for position in request.joint_positions):
         raise ServiceError("SetModelConfiguration: joint_positions must be finite and not beyond "
                            f"{convert.LARGEST:g}")
-    joints = world.models[request.model_name].joints
     for name, position in zip(request.joint_names, request.joint_positions, strict=True):
-        if name in joints:
-            joints[name].reset(position)
+        if name in model.joints:
+            model.joints[name].reset(position)
 
 
 def spawn_pose(world: World, request) -> Pose:
-    """The wanted pose of a spawn request, in the world."""
+    """The wanted pose of a spawn request, in the world; ServiceError if it is impossible."""
     if not convert.is_sane(request.initial_pose):
         raise ServiceError(
             f"SpawnModel: initial_pose must be finite and not beyond {convert.LARGEST:g}")
@@ -102,7 +100,7 @@ def spawn_pose(world: World, request) -> Pose:
 
 
 def is_turnless(pose: PoseMsg) -> bool:
-    """Whether the orientation is (0, 0, 0, 0), as in a message that nobody filled in.
+    """Whether the orientation is (0, 0, 0, 0), as in a message that was not filled in.
 
     In the arithmetic of upstream's spawn services such a turn makes all others vanish: that of the
     reference frame, and the model's own pose.

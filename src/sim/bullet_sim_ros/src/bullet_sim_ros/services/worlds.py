@@ -5,10 +5,10 @@ from __future__ import annotations
 from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
-from bullet_sim.nested import find_nested_model
 from bullet_sim.world import World
 from bullet_sim_ros import names
-from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.answers import done, offer
+from bullet_sim_ros.services.lookup import find_part
 
 
 def offer_world_services(simulation) -> None:
@@ -45,9 +45,7 @@ def get_world_properties(world: World, response) -> None:
 
 def get_model_properties(world: World, name: str, response) -> None:
     """Names of what a model consists of, unscoped."""
-    part = find_nested_model(world.models.values(), name)
-    if part is None:
-        raise ServiceError("GetModelProperties: model does not exist")
+    part = find_part(world, name, "GetModelProperties: model does not exist")
     response.parent_model_name = part.parent_name
     response.body_names = [part.unscoped(link.name) for link in part.links()]
     response.geom_names = [collision.name for link in part.links()

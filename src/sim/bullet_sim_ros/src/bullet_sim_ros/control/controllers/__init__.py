@@ -1,4 +1,7 @@
-"""Joint controllers by type. A file here with `@controller(...)` is all it takes."""
+"""Joint controllers by type. A file here with `@controller(...)` is all it takes.
+
+"Upstream" is the package of the type's name in ros_controllers.
+"""
 
 import importlib
 import pkgutil

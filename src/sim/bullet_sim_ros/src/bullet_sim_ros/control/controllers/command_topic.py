@@ -32,15 +32,15 @@ def command_timeout(context: ControllerContext) -> float:
     return seconds
 
 
-class _Complaints:
-    """What one controller says of bad commands: at most one line in COMPLAINT_PERIOD."""
+class _LimitedLog:
+    """The log of bad commands of one controller: at most one line in COMPLAINT_PERIOD."""
 
     def __init__(self, context: ControllerContext):
         self._context = context
         self._next = 0.0  # s, wall
 
-    def say(self, level: int, text: str, *values: object) -> None:
-        """By the wall clock: simulated time may stand still, or run fast."""
+    def write(self, level: int, text: str, *values: object) -> None:
+        """By the wall clock: simulated time may be paused, or fast."""
         now = time.monotonic()
         if now >= self._next:
             self._next = now + COMPLAINT_PERIOD
@@ -49,7 +49,7 @@ class _Complaints:
 
 def subscribe_one(context: ControllerContext, commands: Commands) -> None:
     """`command` is a Float64."""
-    complaints = _Complaints(context)
+    complaints = _LimitedLog(context)
 
     def take(msg: Float64) -> Callable[[], None] | None:
         return _checked(complaints, commands, (msg.data,))
@@ -59,11 +59,11 @@ def subscribe_one(context: ControllerContext, commands: Commands) -> None:
 
 def subscribe_all(context: ControllerContext, commands: Commands, count: int) -> None:
     """`command` is a Float64MultiArray with a number for each joint."""
-    complaints = _Complaints(context)
+    complaints = _LimitedLog(context)
 
     def take(msg: Float64MultiArray) -> Callable[[], None] | None:
         if len(msg.data) != count:
-            complaints.say(logging.ERROR, "Dimension of command (%d) does not match number of "
+            complaints.write(logging.ERROR, "Dimension of command (%d) does not match number of "
                            "joints (%d)! Not executing!", len(msg.data), count)
             return None
         return _checked(complaints, commands, msg.data)
@@ -71,10 +71,10 @@ def subscribe_all(context: ControllerContext, commands: Commands, count: int) ->
     context.subscribe("command", Float64MultiArray, take, queue_size=1, tcp_nodelay=True)
 
 
-def _checked(complaints: _Complaints, commands: Commands,
+def _checked(complaints: _LimitedLog, commands: Commands,
              values: Sequence[float]) -> Callable[[], None] | None:
     if all(abs(value) <= LARGEST for value in values):
         return lambda: commands.take(values)
-    complaints.say(logging.WARNING, "a command that is not finite, or beyond %g, is ignored",
+    complaints.write(logging.WARNING, "a command that is not finite, or beyond %g, is ignored",
                    LARGEST)
     return None

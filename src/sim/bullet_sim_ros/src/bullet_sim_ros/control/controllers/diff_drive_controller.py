@@ -51,7 +51,7 @@ class DiffDriveController(MobileBaseController):
         super().update(time, period)
         if self._limited and self._limited.get_num_connections():
             msg = TwistStamped()
-            msg.header.stamp = convert.stamp(time)
+            convert.stamped(msg, time)
             msg.twist.linear.x, msg.twist.angular.z = self._drive.limited
             self._limited.publish(msg)
         if self._wheels:
@@ -69,13 +69,14 @@ class DiffDriveController(MobileBaseController):
                   for name, now in multipliers.items()}
         values["publish_rate"] = Value(context.parameters.number("publish_rate", 50.0), *RATES,
                                        "odometry and transforms a second")
-        values["enable_odom_tf"] = Value(self.enable_odom_tf, False, True, "publish the transform")
+        values["enable_odom_tf"] = Value(
+            context.parameters.flag("enable_odom_tf", True), False, True, "publish the transform")
         offer_values(context, context.namespace, values,
                      lambda new: context.post(lambda: self._change(new)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
         self._drive.geometry = self._geometry(values)
-        self.enable_odom_tf = values["enable_odom_tf"]
+        self.odometry.set_transform(values["enable_odom_tf"])
         self.set_publish_rate(values["publish_rate"])
 
 

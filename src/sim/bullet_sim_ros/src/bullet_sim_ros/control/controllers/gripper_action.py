@@ -26,7 +26,7 @@ log = logging.getLogger("bullet_sim.control")
 
 
 class GripperActionController(Controller):
-    """Stalled is aborted, as upstream has it; the joint goes on pressing."""
+    """Stalled is aborted, as upstream has it; the joint keeps its effort."""
 
     interface = ""
 
@@ -49,12 +49,12 @@ class GripperActionController(Controller):
         self._running = True
 
     def update(self, time: float, period: float) -> None:
-        """Move, and tell how far it is."""
+        """Move, and publish how far it is."""
         outcome = self._gripper.update(time, period)
         if outcome:
             self._goal.finish(outcome.reached_goal, _filled(GripperCommandResult(), outcome))
         elif self._goal.occupied and self._pace.due(time):
-            self._goal.tell(_filled(GripperCommandFeedback(), self._gripper.state()))
+            self._goal.publish_feedback(_filled(GripperCommandFeedback(), self._gripper.state()))
 
     def stop(self, time: float) -> None:
         """Nobody pursues the goal any more."""

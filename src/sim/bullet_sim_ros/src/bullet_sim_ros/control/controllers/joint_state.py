@@ -47,8 +47,7 @@ class JointStateController(Controller):
             position=[joint.position for joint in joints] + [row[1] for row in extra],
             velocity=[joint.velocity for joint in joints] + [row[2] for row in extra],
             effort=[joint.effort for joint in joints] + [row[3] for row in extra])
-        msg.header.stamp = convert.stamp(time)
-        return msg
+        return convert.stamped(msg, time)
 
 
 def _extra(context: ControllerContext, item) -> tuple[str, float, float, float]:

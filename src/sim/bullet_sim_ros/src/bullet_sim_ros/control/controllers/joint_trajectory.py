@@ -46,7 +46,10 @@ CODES = {
 
 
 class JointTrajectoryController(Controller):
-    """After a violated tolerance the trajectory goes on, as upstream has it; only the goal ends."""
+    """After a violated tolerance the trajectory goes on, as upstream has it; only the goal ends.
+
+    PluginError of parameters that are missing or wrong.
+    """
 
     interface = ""
 
@@ -90,13 +93,14 @@ class JointTrajectoryController(Controller):
         self._running, self._time = True, time
 
     def update(self, time: float, period: float) -> None:
-        """Follow, and tell how well."""
+        """Follow, and publish how well."""
         self._time = time
         outcome = self._follower.update(time, period)
         if outcome:
             self._finish(outcome)
         if self._goal.occupied and self._goal_pace.due(time):
-            self._goal.tell(fill_state(FollowJointTrajectoryFeedback(), self._follower, time))
+            self._goal.publish_feedback(
+                fill_state(FollowJointTrajectoryFeedback(), self._follower, time))
         if self._state_pace.due(time) and self._state.get_num_connections():
             self._state.publish(fill_state(JointTrajectoryControllerState(), self._follower, time))
 

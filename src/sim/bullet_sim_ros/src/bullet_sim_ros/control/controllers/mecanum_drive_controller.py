@@ -32,13 +32,13 @@ class MecanumDriveController(MobileBaseController):
                         "forward and turn, but do not go sideways; a base without rollers is moved "
                         "by libgazebo_ros_planar_move.so", context.describe())
 
-    def give(self, msg: Twist) -> None:
+    def apply_command(self, msg: Twist) -> None:
         """Hand a good command to the drive; in the loop."""
         self._drive.command(self.context.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
 
 
 def _joint(context: ControllerContext, corner: str) -> str:
-    """Of the wheel; some forks say rear, not back."""
+    """Of the wheel; some forks call it rear, not back."""
     p = context.parameters
     other = f"{corner.replace('back', 'rear')}_wheel_joint"
     return p.text(other) if p.has(other) else p.text(f"{corner}_wheel_joint")

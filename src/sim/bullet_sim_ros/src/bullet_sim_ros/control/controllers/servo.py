@@ -19,7 +19,7 @@ STATE_EVERY = 10  # updates
 
 
 class ServoController(Controller):
-    """One joint, parameters `joint` and `pid/...`; `state` tells target, value and command."""
+    """One joint, parameters `joint` and `pid/...`; topic `state` has target, value and command."""
 
     interface = "effort"
     law: type[Servo] = PositionServo
@@ -50,7 +50,7 @@ class ServoController(Controller):
         self._updates = 0
 
     def update(self, time: float, period: float) -> None:
-        """Write the command; every tenth time tell the state."""
+        """Write the command; publish the state every tenth time."""
         self._servos.update(time, period)
         if self._updates % STATE_EVERY == 0 and self._state.get_num_connections():
             self._state.publish(self._message(time, period))
@@ -66,8 +66,7 @@ class ServoController(Controller):
             i_clamp=gains.i_clamp_max, antiwindup=gains.antiwindup)
         if self.law is PositionServo:
             msg.process_value_dot = servo.handle.joint.velocity
-        msg.header.stamp = convert.stamp(time)
-        return msg
+        return convert.stamped(msg, time)
 
 
 @controller("effort_controllers/JointPositionController")
@@ -89,7 +88,7 @@ class VelocityPosition(ServoController):
 
 @controller("effort_controllers/JointGroupPositionController")
 class EffortGroupPosition(ServoController):
-    """rad or m for each of `joints`, by effort; gains in `<joint>/pid`. It tells no state."""
+    """rad or m for each of `joints`, by effort; gains in `<joint>/pid`. It publishes no state."""
 
     def __init__(self, context: ControllerContext):
         Controller.__init__(self, context)

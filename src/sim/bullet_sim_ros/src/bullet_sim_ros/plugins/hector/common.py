@@ -11,6 +11,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.parameters import PluginParameters, read_numbers
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
@@ -24,7 +25,7 @@ TELLS = {"gaussian_noise": "Standard deviation of the white noise",
 
 
 def find_link(context: PluginContext) -> Link:
-    """The link that `bodyName` names, else the model's first."""
+    """The link that `bodyName` names, else the model's first; PluginError if there is none."""
     name = context.parameters.text("bodyName")
     links = context.model.description.links
     if not name and not links:
@@ -32,13 +33,45 @@ def find_link(context: PluginContext) -> Link:
     return context.model.link(name or links[0].name)
 
 
-def update_rate(p: PluginParameters, default: float) -> float:
-    """Hz, by `updateRate`, or by `updatePeriod` in s, which wins; 0: every step."""
-    rate = p.number("updateRate", default)
-    if p.text("updatePeriod"):
-        period = p.number("updatePeriod", 0.0)
-        rate = 1.0 / period if period > 0 else 0.0
-    return rate
+class HectorSensor(SensorPlugin):
+    """Frame by `<frameId>`, without tf_prefix; errors that drift whether or not anybody listens."""
+
+    def __init__(self, context: PluginContext, kind: type, topic: str, frame: str,
+                 queue_size: int = 10):
+        """`topic` and `frame` are those without tags."""
+        p = context.parameters
+        self._errors: list[HectorError] = []
+        self._stopwatch = Stopwatch(context)
+        self.topic = p.topic(topic)
+        super().__init__(context, kind, self.topic, p.text("frameId", frame),
+                         tf_prefix=no_tf_prefix, queue_size=queue_size)
+
+    def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
+        """An error of the sensor with this many components; see HectorError."""
+        self._errors.append(HectorError(self.context, name, size, *prefixes))
+        return self._errors[-1]
+
+    def offer(self, error: HectorError, name: str = "") -> None:
+        """Let the error be reconfigured, below the topic if there is one."""
+        if self.topic:
+            error.offer(names.join(names.join(self.namespace, self.topic), name))
+
+    def elapsed(self) -> float:
+        """Since the last call, s."""
+        return self._stopwatch.lap()
+
+    def begin(self, default_hz: float) -> None:
+        """Measure by `updateRate`, or by `updatePeriod` in s, which wins; 0: every step."""
+        p = self.context.parameters
+        rate_hz = p.number("updateRate", default_hz)
+        if p.text("updatePeriod"):
+            period = p.number("updatePeriod", 0.0)
+            rate_hz = 1.0 / period if period > 0 else 0.0
+        self.publish_at(rate_hz, whole_steps=False)
+
+    def wanted(self) -> bool:
+        """A drift goes on whether or not anybody listens."""
+        return any(error.drifts for error in self._errors) or super().wanted()
 
 
 class HectorError(ErrorModel):
@@ -56,7 +89,7 @@ class HectorError(ErrorModel):
         known: dict[str, float] = {}
 
         def change(values: dict[str, float]) -> None:
-            if not known:  # the first call only tells what there is
+            if not known:  # the first call has the present values
                 known.update(values)
             else:
                 self._context.services.mailbox.post(lambda: self._set(values))
@@ -77,7 +110,10 @@ def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:
 
 
 def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> ErrorParameters:
-    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one."""
+    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one.
+
+    PluginError if a tag has the wrong number of numbers, or a negative one where none can be.
+    """
     values = vars(ErrorParameters.none(size))
     for prefix in prefixes:
         for name, tag in TAGS.items():
@@ -119,14 +155,3 @@ class Stopwatch:
         elapsed = now - self._last if self._last is not None else 0.0
         self._last = now
         return max(0.0, elapsed)
-
-
-def topic_of(context: PluginContext, default: str, tag: str = "topicName") -> str:
-    """Full name of a topic, empty where the tag is empty."""
-    name = context.parameters.topic(default, tag)
-    return names.join(namespace_of(context), name) if name else ""
-
-
-def namespace_of(context: PluginContext) -> str:
-    """Root without `robotNamespace`, and where it is empty."""
-    return context.parameters.namespace(missing="/", empty="/")

@@ -16,7 +16,7 @@ from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
-DARMSTADT = (49.9, 8.9)  # degrees, upstream's place where nobody names one
+DARMSTADT = (49.9, 8.9)  # degrees, upstream's default place
 SERVICES = {"SERVICE_GPS": NavSatStatus.SERVICE_GPS,
             "SERVICE_GLONASS": NavSatStatus.SERVICE_GLONASS,
             "SERVICE_COMPASS": NavSatStatus.SERVICE_COMPASS,
@@ -31,33 +31,29 @@ def world_heading(spherical: SphericalDescription) -> float:
 
 
 @plugin("libhector_gazebo_ros_gps.so")
-class HectorGpsPlugin:
+class HectorGpsPlugin(common.HectorSensor):
     """The world's `<spherical_coordinates>` count unless `useWorldSphericalCoordinates` is false.
 
     Releases of upstream differ there. A drift of the velocity moves the position, too.
     """
 
     def __init__(self, context: PluginContext):
-        p = context.parameters
-        self._context, self._link = context, common.find_link(context)
-        self._frame = names.frame("", p.text("frameId", "/world"))
+        p, self._link = context.parameters, common.find_link(context)
+        super().__init__(context, NavSatFix, "fix", "/world")
         self._reference = self._read_reference()
-        self._position = common.HectorError(context, "position", 3)
-        self._velocity = common.HectorError(context, "velocity", 3, "velocity")
-        self._stopwatch = common.Stopwatch(context)
+        self._position = self.add_error("position", 3)
+        self._velocity = self.add_error("velocity", 3, "velocity")
         self._status = NavSatStatus(status=int(p.number("status", NavSatStatus.STATUS_FIX)),
                                     service=int(p.number("service", 0)))
-        fix, velocity = (common.topic_of(context, "fix"),
-                         common.topic_of(context, "fix_velocity", "velocityTopicName"))
-        self._fixes = context.advertise(fix, NavSatFix, queue_size=10)
-        self._velocities = context.advertise(velocity, Vector3Stamped, queue_size=10)
-        self._position.offer(f"{fix}/position")
-        self._velocity.offer(f"{fix}/velocity")
-        self._offer_status(f"{fix}/status")
-        context.every(common.update_rate(p, 4.0), self._measure, self._wanted)
+        self._velocities = self.advertise(
+            Vector3Stamped, p.topic("fix_velocity", "velocityTopicName"), queue_size=10)
+        self.offer(self._position, "position")
+        self.offer(self._velocity, "velocity")
+        self._offer_status(names.join(names.join(self.namespace, self.topic), "status"))
+        self.begin(4.0)
 
     def _read_reference(self) -> GeoReference:
-        p, spherical = self._context.parameters, self._context.world.description.spherical
+        p, spherical = self.context.parameters, self.world.description.spherical
         place = (*DARMSTADT, 0.0, 0.0)
         if p.flag("useWorldSphericalCoordinates", spherical is not None):
             spherical = spherical or SphericalDescription()
@@ -72,12 +68,12 @@ class HectorGpsPlugin:
         known: list[bool] = []
 
         def change(values: dict[str, bool]) -> None:
-            if known:  # the first call only tells what there is
-                self._context.services.mailbox.post(lambda: self._set_status(values))
+            if known:  # the first call has the present values
+                self.context.services.mailbox.post(lambda: self._set_status(values))
             known.append(True)
 
         usual = {"STATUS_FIX": True, **dict.fromkeys(FIXES, False), **dict.fromkeys(SERVICES, True)}
-        offer_values(self._context, namespace, {
+        offer_values(self.context, namespace, {
             name: Value(now, False, True, name) for name, now in usual.items()}, change)
 
     def _set_status(self, values: dict[str, bool]) -> None:
@@ -85,26 +81,18 @@ class HectorGpsPlugin:
         self._status.status = fix if values["STATUS_FIX"] else NavSatStatus.STATUS_NO_FIX
         self._status.service = sum(SERVICES[name] for name in SERVICES if values[name])
 
-    def _wanted(self) -> bool:
-        """A drift goes on whether or not anybody listens."""
-        return (self._position.drifts or self._velocity.drifts
-                or bool(self._fixes.get_num_connections())
-                or bool(self._velocities.get_num_connections()))
-
-    def _measure(self) -> None:
-        elapsed, place = self._stopwatch.lap(), self._reference
+    def measure(self) -> NavSatFix:
+        """The position now; sends the velocity, too."""
+        elapsed, place = self.elapsed(), self._reference
         velocity = self._velocity.apply(np.array(self._link.twist.linear), elapsed)
         position = self._position.apply(np.array(self._link.pose.position), elapsed)
         self._position.set_drift(self._position.drift + elapsed * self._velocity.drift)
-        fix = NavSatFix(status=self._status)
-        fix.header.stamp = convert.stamp(self._context.world.time)
-        fix.header.frame_id = self._frame
-        fix.latitude, fix.longitude, fix.altitude = place.geodetic(tuple(position.tolist()))
+        if self._velocities:
+            moving = Vector3(*place.north_west_up(tuple(velocity.tolist())))
+            self._velocities.publish(self.stamped(Vector3Stamped(vector=moving)))
+        latitude, longitude, altitude = place.geodetic(tuple(position.tolist()))
         errors = self._position.parameters
         variances = np.square(errors.drift) + np.square(errors.gaussian_noise)
-        fix.position_covariance = np.diag(variances).ravel().tolist()
-        fix.position_covariance_type = NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN
-        moving = Vector3Stamped(header=fix.header)
-        moving.vector = Vector3(*place.north_west_up(tuple(velocity.tolist())))
-        self._fixes.publish(fix)
-        self._velocities.publish(moving)
+        return NavSatFix(status=self._status, latitude=latitude, longitude=longitude,
+                         altitude=altitude, position_covariance=convert.diagonal(variances),
+                         position_covariance_type=NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN)

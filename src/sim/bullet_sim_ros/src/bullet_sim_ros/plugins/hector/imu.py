@@ -20,35 +20,28 @@ from bullet_sim_ros.plugins.hector import common
 
 
 @plugin("libhector_gazebo_ros_imu.so")
-class HectorImuPlugin:
+class HectorImuPlugin(common.HectorSensor):
     """In the link's axes; the accelerometer's bias tilts the orientation, yaw's turns it.
 
     `heading...` tags, of older releases, mean what `yaw...` mean. `randomEngineSeed` is not needed.
     """
 
     def __init__(self, context: PluginContext):
-        p = context.parameters
-        self._world = context.world
-        link = common.find_link(context)
+        p, link = context.parameters, common.find_link(context)
         self._imu = LinkMotion(context.world, link)
-        self._frame = names.frame("", p.text("frameId", link.name))
+        super().__init__(context, ImuMsg, "imu", link.name)
         self._offset = quaternion_from_rpy(*p.vector("rpyOffset"))
-        self._accel = common.HectorError(context, "accel", 3, "accel")
-        self._rate = common.HectorError(context, "rate", 3, "rate")
-        self._yaw = common.HectorError(context, "yaw", 1, "heading", "yaw")
+        self._accel = self.add_error("accel", 3, "accel")
+        self._rate = self.add_error("rate", 3, "rate")
+        self._yaw = self.add_error("yaw", 1, "heading", "yaw")
         self._set_common_noise(p.deviation("gaussianNoise"))
-        self._stopwatch = common.Stopwatch(context)
-        topic = common.topic_of(context, "imu")
-        self._readings = self._biases = None
-        if topic:
-            self._readings = context.advertise(topic, ImuMsg, queue_size=10)
-            bias = common.topic_of(context, f"{topic}/bias", "biasTopicName")
-            if bias:
-                self._biases = context.advertise(bias, ImuMsg, queue_size=10)
+        if self.topic:
+            self._biases = self.advertise(
+                ImuMsg, p.topic(f"{self.topic}/bias", "biasTopicName"), queue_size=10)
             for name, error in (("accel", self._accel), ("rate", self._rate), ("yaw", self._yaw)):
-                error.offer(f"{topic}/{name}")
-            self._serve(context, topic)
-            context.every(common.update_rate(p, 0.0), self._measure, self._wanted)
+                self.offer(error, name)
+            self._serve(context, names.join(self.namespace, self.topic))
+            self.begin(0.0)
             context.on_reset(self._imu.restart)
 
     def _set_common_noise(self, noise: float) -> None:
@@ -70,24 +63,16 @@ class HectorImuPlugin:
             context.services.mailbox.call(lambda: self._rate.set_drift(np.zeros(3)))
             return EmptyResponse()
 
-        calibration = common.topic_of(context, f"{topic}/calibrate", "serviceName")
+        calibration = context.parameters.topic(f"{topic}/calibrate", "serviceName")
         if calibration:
-            context.serve(calibration, Empty, calibrate)
+            context.serve(names.join(self.namespace, calibration), Empty, calibrate)
         context.serve(f"{topic}/set_accel_bias", SetBias, setter(self._accel))
         context.serve(f"{topic}/set_rate_bias", SetBias, setter(self._rate))
 
-    def _wanted(self) -> bool:
-        """A drift goes on whether or not anybody listens."""
-        return (any(error.drifts for error in (self._accel, self._rate, self._yaw))
-                or self._heard(self._readings) or self._heard(self._biases))
-
-    @staticmethod
-    def _heard(publisher) -> bool:
-        return publisher is not None and bool(publisher.get_num_connections())
-
-    def _measure(self) -> None:
-        reading, elapsed = self._imu.sample(), self._stopwatch.lap()
-        gravity = np.array(self._world.description.gravity)
+    def measure(self) -> ImuMsg:
+        """What the sensor feels now; sends its bias, too."""
+        reading, elapsed = self._imu.sample(), self.elapsed()
+        gravity = np.array(self.world.description.gravity)
         orientation = multiply(self._offset, reading.orientation)
         felt = rotate(conjugate(orientation), reading.world_acceleration - gravity)
         body_rate = rotate(conjugate(reading.orientation), reading.world_angular_velocity)
@@ -98,27 +83,20 @@ class HectorImuPlugin:
         error = attitude_error(np.array(rotate(reading.orientation, self._accel.bias)),
                                float(self._yaw.bias[0]), strength)
         msg = _message(multiply(error, orientation), rate, acceleration)
-        msg.header.stamp, msg.header.frame_id = convert.stamp(reading.time), self._frame
         self._fill_covariances(msg, strength)
-        if self._heard(self._readings):
-            self._readings.publish(msg)
-        if self._heard(self._biases):
-            bias = _message(error, self._rate.bias, self._accel.bias)
-            bias.header = msg.header
-            self._biases.publish(bias)
+        if self._biases:
+            self._biases.publish(self.stamped(
+                _message(error, self._rate.bias, self._accel.bias)))
+        return msg
 
     def _fill_covariances(self, msg: ImuMsg, gravity: float) -> None:
         rates, accelerations, (yaw,) = (
             [value ** 2 for value in error.parameters.gaussian_noise]
             for error in (self._rate, self._accel, self._yaw))
         level = [value / gravity ** 2 if gravity else -1.0 for value in accelerations[:2]]
-        msg.orientation_covariance = _diagonal(*level, yaw)
-        msg.angular_velocity_covariance = _diagonal(*rates)
-        msg.linear_acceleration_covariance = _diagonal(*accelerations)
-
-
-def _diagonal(x: float, y: float, z: float) -> list[float]:
-    return [x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z]
+        msg.orientation_covariance = convert.diagonal((*level, yaw))
+        msg.angular_velocity_covariance = convert.diagonal(rates)
+        msg.linear_acceleration_covariance = convert.diagonal(accelerations)
 
 
 def _message(orientation, rate: np.ndarray, acceleration: np.ndarray) -> ImuMsg:

@@ -1,0 +1,121 @@
+"""The camera plugins: single, triggered, in pairs, streaming prosilica, and depth cameras."""
+
+from __future__ import annotations
+
+import logging
+
+from bullet_sim_ros import params
+from bullet_sim_ros.cameras.camera_group import CameraGroup
+from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
+from bullet_sim_ros.cameras.depth_camera_publisher import FARTHEST, DepthCameraPublisher
+from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host.registry import plugin
+
+log = logging.getLogger("bullet_sim.plugins")
+
+KINECT_FAR = 5.0  # m, where <pointCloudCutoffMax> is absent
+STREAMING, POLLED = "streaming", "polled"
+
+
+@plugin("libgazebo_ros_camera.so")
+class CameraPlugin:
+    """Also of sensors of type wideanglecamera."""
+
+    def __init__(self, context: PluginContext):
+        _capture_at_rate(context, [CameraPublisher(context)])
+
+
+@plugin("libgazebo_ros_triggered_camera.so")
+class TriggeredCameraPlugin:
+    """A picture for each message on `triggerTopicName`."""
+
+    def __init__(self, context: PluginContext):
+        CameraGroup(context, [CameraPublisher(context)]).capture_on_trigger()
+
+
+@plugin("libgazebo_ros_multicamera.so")
+class MulticameraPlugin:
+    """Both take their pictures at once and share a frame."""
+
+    def __init__(self, context: PluginContext):
+        _capture_at_rate(context, _pair(context))
+
+
+@plugin("libgazebo_ros_triggered_multicamera.so")
+class TriggeredMulticameraPlugin:
+    """Each has a trigger topic; either gives a picture of both."""
+
+    def __init__(self, context: PluginContext):
+        CameraGroup(context, _pair(context)).capture_on_trigger()
+
+
+@plugin("libgazebo_ros_prosilica.so")
+class ProsilicaPlugin:
+    """A camera that streams; being asked for single pictures is absent.
+
+    `trigger_mode` is searched for upwards from the camera's namespace, once.
+    """
+
+    def __init__(self, context: PluginContext):
+        camera = CameraPublisher(context)
+        name = params.find_upwards(camera.settings.namespace, "trigger_mode")
+        mode = str(params.below(name)) if name else STREAMING
+        if mode == POLLED:
+            log.warning("%s: %s is %s, and polled_camera/GetPolledImage is not offered here: there "
+                        "will be no pictures; set it to %s", context.describe(), name, POLLED,
+                        STREAMING)
+            return
+        if mode != STREAMING:
+            log.error("%s: %s is %r; there are %s and %s; %s is used", context.describe(), name,
+                      mode, STREAMING, POLLED, STREAMING)
+        _capture_at_rate(context, [camera])
+
+
+@plugin("libgazebo_ros_openni_kinect.so")
+class OpenniKinectPlugin:
+    """Colour, depth and points of one depth sensor, up to `pointCloudCutoffMax`."""
+
+    def __init__(self, context: PluginContext):
+        _capture_depth(context, context.parameters.number("pointCloudCutoffMax", KINECT_FAR))
+
+
+@plugin("libgazebo_ros_depth_camera.so")
+class DepthCameraPlugin:
+    """A Kinect without an upper limit for depth.
+
+    Sends both camera_info topics (upstream advertises them and never sends any).
+    """
+
+    def __init__(self, context: PluginContext):
+        _capture_depth(context, FARTHEST)
+
+
+def _capture_at_rate(context: PluginContext, cameras: list[CameraPublisher]) -> None:
+    CameraGroup(context, cameras).capture_at_rate(context.sensor.update_rate,
+                                                  cameras[0].settings.rate_hz)
+
+
+def _capture_depth(context: PluginContext, far: float) -> None:
+    """The plugin's rate counts only where the sensor has none (upstream: as fast as it can)."""
+    camera = DepthCameraPublisher(context, far)
+    CameraGroup(context, [camera]).capture_at_rate(
+        context.sensor.update_rate or camera.settings.rate_hz)
+
+
+def _pair(context: PluginContext) -> list[CameraPublisher]:
+    """The cameras whose names have `left` or `right` in them; only the right one has a baseline."""
+    cameras = []
+    for number, camera in enumerate(context.sensor.cameras):
+        if "left" in camera.name:
+            cameras.append(CameraPublisher(context, number, "/left", 0.0))
+        elif "right" in camera.name:
+            cameras.append(CameraPublisher(context, number, "/right",
+                                           context.parameters.number("hackBaseline", 0.0)))
+        else:
+            log.warning("%s: camera %r is left out: its name has neither left nor right in it",
+                        context.describe(), camera.name)
+    if not cameras:
+        raise PluginError(
+            f"sensor {context.sensor.name} needs a <camera> with left or right in its name")
+    return cameras
