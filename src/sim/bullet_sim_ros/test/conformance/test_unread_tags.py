@@ -55,6 +55,7 @@ def test_tags_that_public_robots_carry_are_no_warning(bench, caplog, model):
     # conforms: tag that nobody reads
     bench.spawn(model, namespace="/bot_1")
     assert warnings(caplog) == []
+    bench.delete("bot")  # ends the thread that waits for the robot's description
 
 
 def test_a_plugin_that_cannot_load_says_only_that(bench, caplog):

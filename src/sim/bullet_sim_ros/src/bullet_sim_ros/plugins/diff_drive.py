@@ -28,16 +28,14 @@ class DiffDrivePlugin:
 
     def __init__(self, context: PluginContext):
         self._context = context
-        namespace = context.parameters.namespace(
-            missing=context.model.name, empty=context.model.name
-        )
+        name = context.model.name
+        namespace = context.parameters.namespace(missing=name, empty=name)
         p = LoggedParameters(context.parameters, "DiffDrive", namespace)
-        self._joints = self._wheels(p.text("leftJoint", "left_joint"),
-                                    p.text("rightJoint", "right_joint"))
+        self._joints = tuple(context.model.joint(joint) for joint in (
+            p.text("leftJoint", "left_joint"), p.text("rightJoint", "right_joint")))
         geometry = DiffDriveParameters(
             p.number("wheelSeparation", 0.34), p.number("wheelDiameter", 0.15),
-            p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0),
-        )
+            p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0))
         driven = self._as_driven(p.label, geometry)
         self._drive = DiffDrive(*driven, geometry)
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
@@ -62,9 +60,6 @@ class DiffDrivePlugin:
         ) if p.flag("publishWheelJointState", False) else None
         context.every(p.number("updateRate", 100.0), self._update)
         context.on_reset(self._restart)
-
-    def _wheels(self, left: str, right: str) -> tuple[Joint, Joint]:
-        return self._context.model.joint(left), self._context.model.joint(right)
 
     def _as_driven(self, label: str, geometry: DiffDriveParameters) -> tuple[Joint, Joint]:
         """The wheels as left and right of the law: swapped for files from before Melodic.

@@ -40,12 +40,7 @@ class ElevatorPlugin:
             log.error("%s: %r is no floor; a whole number is", self._context.describe(), msg.data)
             return None
         if not self._bottom <= floor <= self._top:
-            log.error(
-                "%s: there is no floor %d; there are %g to %g",
-                self._context.describe(),
-                floor,
-                self._bottom,
-                self._top,
-            )
+            log.error("%s: there is no floor %d; there are %g to %g", self._context.describe(),
+                      floor, self._bottom, self._top)
             return None
         return lambda: self._elevator.go(floor)

@@ -44,14 +44,9 @@ class HarnessPlugin:
         if name in joints:
             return joints[name]
         first = next(iter(joints))
-        log.warning(
-            "%s: <%s> is %r; there are: %s; %s is used",
-            self._context.describe(),
-            path,
-            name,
-            ", ".join(filter(None, joints)) or "joints without a name",
-            first or "the first joint",
-        )
+        log.warning("%s: <%s> is %r; there are: %s; %s is used", self._context.describe(), path,
+                    name, ", ".join(filter(None, joints)) or "joints without a name",
+                    first or "the first joint")
         return joints[first]
 
     @staticmethod

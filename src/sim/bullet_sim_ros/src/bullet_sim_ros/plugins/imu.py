@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
@@ -53,14 +54,10 @@ class ImuPlugin(SensorPlugin):
         )
 
     def _with_noise(self, reading: ImuReading) -> ImuReading:
-        if not self.noise:
-            return reading
-        noise = self.random().normal(0.0, self.noise, 6)
-        return dataclasses.replace(
-            reading,
-            angular_velocity=tuple(reading.angular_velocity + noise[:3]),
-            linear_acceleration=tuple(reading.linear_acceleration + noise[3:]),
-        )
+        values = self.disturbed(
+            np.concatenate([reading.angular_velocity, reading.linear_acceleration])).tolist()
+        return dataclasses.replace(reading, angular_velocity=tuple(values[:3]),
+                                   linear_acceleration=tuple(values[3:]))
 
 
 def _find_link(context: PluginContext, name: str) -> Link:

@@ -9,35 +9,33 @@ from sensor_msgs.msg import JointState
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint, PassiveJoint
 from bullet_sim.sensors.joint_states import sample_joints
-from bullet_sim_ros import convert, names
+from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 
 log = logging.getLogger("bullet_sim.plugins")
 
 
 @plugin("libgazebo_ros_joint_state_publisher.so")
-class JointStatePublisherPlugin:
+class JointStatePublisherPlugin(SensorPlugin):
     """A name that is no joint is left out with an error line (upstream crashes on it).
 
     Without `jointName` the messages are empty, as upstream's are.
     """
 
     def __init__(self, context: PluginContext):
-        p = context.parameters
-        self._world = context.world
-        namespace = p.namespace(missing=context.model.name, empty=context.model.name)
-        wanted = p.text("jointName").replace(" ", "").split(",")
-        found = [_find_joint(context, name.strip()) for name in wanted if name.strip()]
+        p, model = context.parameters, context.model.name
+        super().__init__(context, JointState, "joint_states", "", tf_prefix=no_tf_prefix,
+                         namespace=p.namespace(missing=model, empty=model), queue_size=1000)
+        names = p.text("jointName").replace(" ", "").split(",")
+        found = [_find_joint(context, name.strip()) for name in names if name.strip()]
         self._joints = [joint for joint in found if joint is not None]
-        self._states = context.advertise(names.join(namespace, "joint_states"), JointState,
-                                         queue_size=1000)
-        context.every(
-            p.number("updateRate", 100.0), self._publish, self._states.get_num_connections
-        )
+        self.publish_at(p.number("updateRate", 100.0), whole_steps=False)
 
-    def _publish(self) -> None:
-        self._states.publish(convert.joints_to_msg(sample_joints(self._world, self._joints)))
+    def measure(self) -> JointState:
+        """Positions and rates now."""
+        return convert.joints_to_msg(sample_joints(self.world, self._joints))
 
 
 def _find_joint(context: PluginContext, name: str) -> Joint | PassiveJoint | None:

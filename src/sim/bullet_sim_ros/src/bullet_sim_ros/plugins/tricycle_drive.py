@@ -27,9 +27,8 @@ class TricycleDrivePlugin:
 
     def __init__(self, context: PluginContext):
         self._context = context
-        namespace = context.parameters.namespace(
-            missing=context.model.name, empty=context.model.name
-        )
+        name = context.model.name
+        namespace = context.parameters.namespace(missing=name, empty=name)
         p = LoggedParameters(context.parameters, "TricycleDrive", namespace)
         self._joints = self._find_joints(p)
         acceleration = p.number("wheelAcceleration", 0.0)

@@ -77,16 +77,11 @@ def with_namespace(description: ModelDescription, namespace: str) -> ModelDescri
         SubElement(element, "robotNamespace").text = namespace
         return dataclasses.replace(plugin, element=element)
 
-    def in_link(link):
-        sensors = tuple(
-            dataclasses.replace(sensor, plugins=tuple(map(named, sensor.plugins)))
-            for sensor in link.sensors
-        )
-        visuals = tuple(
-            dataclasses.replace(visual, plugins=tuple(map(named, visual.plugins)))
-            for visual in link.visuals
-        )
-        return dataclasses.replace(link, sensors=sensors, visuals=visuals)
+    def inside(element):
+        return dataclasses.replace(element, plugins=tuple(map(named, element.plugins)))
 
-    return dataclasses.replace(description, plugins=tuple(map(named, description.plugins)),
-                               links=tuple(map(in_link, description.links)))
+    def in_link(link):
+        return dataclasses.replace(link, sensors=tuple(map(inside, link.sensors)),
+                                   visuals=tuple(map(inside, link.visuals)))
+
+    return dataclasses.replace(inside(description), links=tuple(map(in_link, description.links)))

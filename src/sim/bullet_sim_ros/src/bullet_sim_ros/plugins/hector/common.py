@@ -41,7 +41,8 @@ class HectorSensor(SensorPlugin):
         """`topic` and `frame` are those without tags."""
         p = context.parameters
         self._errors: list[HectorError] = []
-        self._stopwatch = Stopwatch(context)
+        self._measured: float | None = None  # s, when it was last
+        context.on_reset(self._restart)
         self.topic = p.topic(topic)
         super().__init__(context, kind, self.topic, p.text("frameId", frame),
                          tf_prefix=no_tf_prefix, queue_size=queue_size)
@@ -57,8 +58,13 @@ class HectorSensor(SensorPlugin):
             error.offer(names.join(names.join(self.namespace, self.topic), name))
 
     def elapsed(self) -> float:
-        """Since the last call, s."""
-        return self._stopwatch.lap()
+        """Since the last call, s; 0 at the first."""
+        now, before = self.world.time, self._measured
+        self._measured = now
+        return 0.0 if before is None else max(0.0, now - before)
+
+    def _restart(self) -> None:
+        self._measured = None
 
     def begin(self, default_hz: float) -> None:
         """Measure by `updateRate`, or by `updatePeriod` in s, which wins; 0: every step."""
@@ -135,23 +141,3 @@ def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tu
     if not tag.lower().endswith("offset") and min(values) < 0:
         raise PluginError(f"<{tag}> is {p.text(tag)!r}, and that cannot be negative")
     return values
-
-
-class Stopwatch:
-    """Time between a plugin's updates, s; 0 at the first."""
-
-    def __init__(self, context: PluginContext):
-        self._world = context.world
-        self.restart()
-        context.on_reset(self.restart)
-
-    def restart(self) -> None:
-        """The next update is the first."""
-        self._last: float | None = None
-
-    def lap(self) -> float:
-        """Since the last call."""
-        now = self._world.time
-        elapsed = now - self._last if self._last is not None else 0.0
-        self._last = now
-        return max(0.0, elapsed)
