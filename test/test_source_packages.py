@@ -1,5 +1,6 @@
 """What setup builds from source is kept for the next clone; pip is a stand-in here."""
 
+import os
 import subprocess
 from pathlib import Path
 
@@ -18,6 +19,7 @@ pip() {
   if [ "$1" = install ]; then cat "${@: -1}"; return; fi
   case "$CXXFLAGS $CFLAGS" in *-O2*-Wno-error=incompatible-pointer-types) ;; *) return 1 ;; esac
   [ -z "${STOPPED:-}" ] || { touch "$TMPDIR/half"; return 1; }
+  [ -z "${MEANWHILE:-}" ] || eval "$MEANWHILE"
   mkdir -p "${@: -1}"; echo "wheel of $root" >"${@: -1}/pybullet-3.2.7-cp313-x.whl"
 }
 . "$parts/source_packages.sh"
@@ -33,7 +35,7 @@ def clone(tmp_path):
         root.mkdir(exist_ok=True)
         return subprocess.run(
             ["bash", "-euo", "pipefail", "-c", SETUP], capture_output=True, text=True, check=False,
-            env={"PATH": "/usr/bin:/bin", "XDG_CACHE_HOME": str(tmp_path / "cache"),
+            cwd=root, env={"PATH": "/usr/bin:/bin", "XDG_CACHE_HOME": str(tmp_path / "cache"),
                  "root": str(root), "parts": str(ROOT / "scripts/setup"), **environment})
     return run
 
@@ -61,6 +63,56 @@ def test_a_damaged_wheel_is_built_again(clone, tmp_path):
     wheels(tmp_path)[0].write_text("half")
     assert clone("two").stdout.endswith(f"wheel of {tmp_path}/two\n")
     assert "as built before" in clone("three").stdout
+
+
+def test_a_wheel_that_others_may_change_is_built_again(clone, tmp_path):
+    clone("one")
+    wheels(tmp_path)[0].chmod(0o666)
+    assert clone("two").stdout.endswith(f"wheel of {tmp_path}/two\n")
+    kept = wheels(tmp_path)[0].parent.parent
+    kept.chmod(0o777)
+    assert "as built before" in clone("three").stdout
+    assert not kept.stat().st_mode & 0o022
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root makes another user's file")
+def test_another_users_wheel_is_not_installed(clone, tmp_path):
+    clone("one")
+    os.chown(wheels(tmp_path)[0], 54321, 54321)
+    assert clone("two").stdout.endswith(f"wheel of {tmp_path}/two\n")
+
+
+def test_a_wheel_that_was_not_built_here_is_not_installed(clone, tmp_path):
+    clone("one")
+    wheels(tmp_path)[0].with_name("zlib-1.whl").write_text("not ours\n")
+    assert clone("two").stdout.endswith(f"wheel of {tmp_path}/two\n")
+    assert len(wheels(tmp_path)) == 1
+
+
+def test_a_wheel_kept_under_a_lax_umask_is_the_users_alone(clone, tmp_path):
+    clone("one", MEANWHILE="umask 000")
+    folder = wheels(tmp_path)[0].parent
+    assert not [path for path in (wheels(tmp_path)[0], folder, folder.parent)
+                if path.stat().st_mode & 0o022]
+
+
+def test_what_another_clone_has_kept_meanwhile_stays(clone, tmp_path):
+    first = (f'cd "{tmp_path}" && mkdir -p one && (unset MEANWHILE; root={tmp_path}/one '
+             'bash -euo pipefail -c "$SETUP" >/dev/null); cd "$root"')
+    assert clone("two", MEANWHILE=first, SETUP=SETUP).stdout.endswith(f"wheel of {tmp_path}/one\n")
+
+
+@pytest.mark.parametrize("places", [{"XDG_CACHE_HOME": "relative"}, {"XDG_CACHE_HOME": ""}])
+def test_without_a_folder_for_caches_the_wheel_stays_in_the_clone(clone, tmp_path, places):
+    clone("one", **places)
+    assert "as built before" in clone("one", **places).stdout
+    assert {path.name for path in (tmp_path / "one").iterdir()} == {".setup", "lists"}
+    assert list((tmp_path / "one/.setup/cache").rglob("*.whl"))
+
+
+def test_a_relative_cache_folder_counts_as_none(clone, tmp_path):
+    clone("one", XDG_CACHE_HOME="relative", HOME=str(tmp_path / "home"))
+    assert list((tmp_path / "home/.cache").rglob("*.whl"))
 
 
 def test_an_interrupted_build_starts_again(clone, tmp_path):

@@ -7,9 +7,11 @@ build_flags="-O2 -g0 -DNDEBUG -fno-strict-overflow"
 c_flags="$build_flags -Wno-error=incompatible-pointer-types"  # an error since GCC 14, and PyBullet 3.2.7 has such code
 
 source_packages() {
-  local list=$lists/requirements-source.txt names cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache} wheels
+  local list=$lists/requirements-source.txt names cache wheels
+  cache=$(cache_folder)
   names=$(awk -F == '/^[A-Za-z]/ {split($2, version, " "); print $1, version[1]}' "$list" | paste -sd , | sed 's/,/, /g')
   wheels=$cache/ros1-driving-courses/wheels/$(wheels_key "$list")
+  chmod go-w "$cache/ros1-driving-courses" "${wheels%/*}" 2>/dev/null || true
   if whole "$wheels"; then
     step 4 "installing $names as built before ($wheels)"
   else
@@ -20,11 +22,21 @@ source_packages() {
   logged pip pip install --no-user --no-index --force-reinstall "$wheels"/*.whl || pip_failed install
   rm -rf "$state/wheels"
 }
+# The user's; a relative XDG_CACHE_HOME counts as none. Who has no home keeps the wheels in this clone.
+cache_folder() {
+  case "${XDG_CACHE_HOME:-}" in /*) echo "$XDG_CACHE_HOME"; return ;; esac
+  case "${HOME:-}" in /*) echo "$HOME/.cache" ;; *) echo "$state/cache" ;; esac
+}
 # What a wheel depends on: the source, how it is compiled, the release, and the NumPy whose headers it is compiled with.
 wheels_key() {
   { echo "$platform $c_flags"; cat "$1"; grep -A 1 '^numpy==' "$lists/requirements.txt"; } | sha256sum | cut -c 1-16
 }
-whole() { (cd "$1" && sha256sum --status -c SHA256SUMS) 2>/dev/null; }
+# All that was built and nothing else, by this user, and nobody else may change it.
+whole() {
+  [ -z "$(find "${1%/*}" -maxdepth 0 \( ! -user "$(id -u)" -o -perm /022 \) 2>&1)" ] &&
+    [ -z "$(find "$1" \( ! -user "$(id -u)" -o -perm /022 -o -type l \) 2>&1)" ] &&
+    (cd "$1" && cmp -s <(printf '%s\n' *.whl) <(cut -c 67- SHA256SUMS) && sha256sum --status -c SHA256SUMS) 2>/dev/null
+}
 # Without pip's cache, where a wheel may lie that was built with other flags.
 build_wheels() {
   local made=$state/wheel-build free
@@ -38,11 +50,12 @@ build_wheels() {
   (cd "$state/wheels" && sha256sum -- *.whl >SHA256SUMS)
   rm -rf "$made"
 }
-# The folder appears whole or not at all, though two clones may build at once.
+# The folder appears whole or not at all, though two clones may build at once; what another clone has kept meanwhile stays.
 keep_wheels() {
-  local part=$1.$$
-  if mkdir -p "${1%/*}" 2>/dev/null && cp -r "$state/wheels" "$part" 2>/dev/null && whole "$part" &&
-    rm -rf "$1" && mv -T "$part" "$1" 2>/dev/null; then return 0; fi
+  local part=$1.$$ above=${1%/*}
+  if mkdir -p "$above" 2>/dev/null && chmod go-w "${above%/*}" "$above" 2>/dev/null &&
+    { whole "$1" || { cp -r "$state/wheels" "$part" 2>/dev/null && chmod -R go-w "$part" && whole "$part" &&
+      rm -rf "$1" 2>/dev/null && mv -T "$part" "$1" 2>/dev/null; }; }; then return 0; fi
   rm -rf "$part"
   say "  The built wheel cannot be kept in ${1%/*}: another clone will build it again."
   return 1
