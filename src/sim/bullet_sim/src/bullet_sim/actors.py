@@ -15,7 +15,7 @@ PERIOD = 1 / 30  # s, simulated: as often as Gazebo moves them
 
 
 class Actor:
-    """One actor. What it walks into is not its concern: it is put where its script has it."""
+    """One actor. Collisions do not stop it: its pose is that of its script."""
 
     def __init__(self, model: Model, trajectory: Trajectory):
         self.model = model

@@ -1,4 +1,4 @@
-"""Looks at a file that a model names before it is opened: a pipe would keep its reader for ever."""
+"""Checks a file that a model names before it is opened: reading a pipe would block."""
 
 from __future__ import annotations
 

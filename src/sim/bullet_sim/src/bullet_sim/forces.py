@@ -48,7 +48,7 @@ class Effort:
 
 
 class Forces:
-    """All that act or are to act, in the order in which they were asked for."""
+    """All that act or are to act, in the order of the requests."""
 
     def __init__(self):
         self.wrenches: list[Wrench] = []
@@ -60,7 +60,7 @@ class Forces:
     def apply(self, time: float, timestep: float) -> None:
         """Have the step that ends at `time` feel them; those that are over are forgotten.
 
-        Of several wrenches on one link the last is felt, as in Gazebo, which sets and does not add;
+        Of several wrenches on one link the last acts, as in Gazebo, which sets and does not add;
         efforts on one joint add up.
         """
         slack = timestep / 1000  # of what a sum of seconds may be off

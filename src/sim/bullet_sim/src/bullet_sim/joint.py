@@ -45,7 +45,7 @@ class Joint:
         self._touched()
 
     def drive_velocity(self, velocity: float, effort: float) -> None:
-        """Hold a rate with at most `effort` (N m or N), until told otherwise."""
+        """Hold a rate with at most `effort` (N m or N), until the next command."""
         self._body.drive_velocity(self.name, velocity, effort)
 
     def drive_effort(self, effort: float) -> None:
@@ -56,7 +56,7 @@ class Joint:
         self._body.drive_effort(self.name, self._within_limit(effort))
 
     def add_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step, beside what drives it; cut to the limit."""
+        """Effort (N m or N) during the next step, added to its drive; cut to the limit."""
         self._body.add_effort(self.name, self._within_limit(effort))
 
     def _within_limit(self, effort: float) -> float:
@@ -70,7 +70,7 @@ class Joint:
 
     @property
     def motor(self) -> tuple[float, float]:
-        """The rate that it is held at, and the effort at most for it."""
+        """The motor's rate, and its greatest effort."""
         return self._body.motor(self.name)
 
     def release(self) -> None:
@@ -182,7 +182,7 @@ class LoopJoint(PassiveJoint):
         return child - parent
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
-        """No effect: where the links are decides, and the loop's other joints put them there."""
+        """No effect: its links' poses decide, and the loop's other joints set those."""
 
     def drive_effort(self, effort: float) -> None:
         """Effort (N m or N) during the next step."""
@@ -198,7 +198,7 @@ class LoopJoint(PassiveJoint):
     add_effort = drive_effort
 
     def reaction(self) -> tuple[Vector3, Vector3]:
-        """Zeros: the engine does not say what a loop's last joint bears."""
+        """Zeros: the engine does not report the load of a loop's last joint."""
         return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 

@@ -1,6 +1,6 @@
-"""Putting a link that joints hold to the world: it goes as far as its own joint lets it.
+"""Placing a link that joints hold to the world: it moves as far as its own joint allows.
 
-In Gazebo such a link stands anywhere for one step; then its joints pull it back to what they allow.
+In Gazebo such a link keeps any pose for one step; then its joints pull it back.
 """
 
 from __future__ import annotations

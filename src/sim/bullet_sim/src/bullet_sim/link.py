@@ -1,4 +1,4 @@
-"""A link in the world: where it is, how it moves, and what pulls at it."""
+"""A link in the world: pose, twist, and forces on it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Link:
         return self.model.link_states()[self.name][1]
 
     def attach(self, other: Link | None = None) -> Weld:
-        """Hold it where it is now, on another model's link or in the world, until released."""
+        """Weld it at its present pose to another model's link or the world, until released."""
         if other is None:
             return Weld(self.body, self.name)
         return Weld(self.body, self.name, other.body, other.name)

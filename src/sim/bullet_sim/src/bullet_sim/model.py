@@ -1,4 +1,4 @@
-"""A model in the world: a whole of links and joints, which go by name."""
+"""A model in the world: links and joints by name."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class Model(ModelState):
             link.apply_steady_force(gravity_compensation(link.description, gravity))
 
     def link(self, name: str) -> Link:
-        """The link, or the one that took it in when fixed joints were lumped.
+        """The link, or the one that it was lumped into over a fixed joint.
 
         UnknownName without it.
         """
@@ -201,6 +201,6 @@ class Model(ModelState):
         return [group for group in groups if group.names]
 
     def remove(self) -> None:
-        """Take its bodies out of the engine."""
+        """Unload its bodies."""
         for body in self.bodies:
             body.remove()

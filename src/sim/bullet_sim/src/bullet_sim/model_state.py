@@ -25,7 +25,7 @@ class ModelState:
         self._link_states: dict[str, tuple[Pose, Twist]] | None = None
 
     def forget(self) -> None:
-        """What was read of the engine is out of date."""
+        """Drop the cached link states."""
         self._link_states = None
 
     def link_states(self) -> dict[str, tuple[Pose, Twist]]:

@@ -1,4 +1,4 @@
-"""What happens when a motion is no number any more: the model starts again, the world goes on.
+"""Recovery when a model's state is no longer finite: the model is reset, the world continues.
 
 In the engine one body without a place (NaN) takes the ground from all others: they fall through.
 """

@@ -14,7 +14,7 @@ Quaternion = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a frame stands in another one; `pose_a_b * pose_b_c` is `pose_a_c`."""
+    """Pose of a frame in another one; `pose_a_b * pose_b_c` is `pose_a_c`."""
 
     position: Vector3 = (0.0, 0.0, 0.0)  # m
     orientation: Quaternion = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w; unit length

@@ -36,7 +36,7 @@ class Profiler:
 
     @contextmanager
     def measure(self, name: str) -> Iterator[None]:
-        """Time what stands in the `with` block, less what is measured by itself inside it."""
+        """Time the `with` block, less what is measured separately inside it."""
         outer = getattr(self._thread, "inside", 0.0)
         self._thread.inside = 0.0  # s, of this thread, measured inside the present block
         start = time.perf_counter()

@@ -41,7 +41,7 @@ class World:
         self.description = replace(description, physics=possible_physics(description.physics))
         self.seed = seed
         self._initial_time = initial_time
-        # A saved world goes on when it was saved; a reset takes it to the beginning.
+        # A saved world starts at its saved time; a reset sets the initial time.
         self.tick = round((self.description.sim_time or initial_time) / self.timestep)
         self.paused = False
         self.models: dict[str, Model] = {}
@@ -50,7 +50,7 @@ class World:
         self.forces = Forces()
         self.profiler = Profiler()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
-        self.each_removal: list[Callable[[str], None]] = []  # with the name of a model that went
+        self.each_removal: list[Callable[[str], None]] = []  # with the name of a removed model
         self._moving: list[Model] = []
         self._actors: dict[str, Actor] = {}
         self._told: set[str] = set()  # errors of the engine that nothing could be done about
@@ -78,7 +78,7 @@ class World:
         return self.tick * self.timestep
 
     def step(self, count: int = 1) -> None:
-        """So many steps forward; while paused, time stands still."""
+        """So many steps forward; while paused, time does not advance."""
         if self.paused or count < 1:
             return
         if self.is_at_rest and not (self.each_step or self.forces or self._actors):
@@ -116,7 +116,7 @@ class World:
             function()
 
     def delete_lost_models(self, error: EngineError) -> None:
-        """After an error of the engine: models that it has lost are taken out; the rest goes on."""
+        """After an error of the engine: models that it has lost are deleted; the rest is kept."""
         for name in lost_models(self.models.values(), error, self._told):
             self.delete(name)
 
@@ -132,7 +132,7 @@ class World:
 
     def spawn(self, description: ModelDescription, pose: Pose = IDENTITY,
               name: str | None = None) -> Model:
-        """Put a model in: its own pose is kept as an offset to `pose`, as Gazebo does.
+        """Add a model: its own pose is kept as an offset to `pose`, as Gazebo does.
 
         NameTaken if there is a model of that name; SimulationError if the engine cannot
         hold it.
@@ -163,7 +163,7 @@ class World:
                                        pose=link.pose * light.pose))
 
     def delete(self, name: str) -> None:
-        """Take a model out. UnknownName without one of that name."""
+        """Remove a model. UnknownName without one of that name."""
         model = self.model(name)
         del self.models[name]
         self._actors.pop(name, None)
@@ -198,7 +198,7 @@ class World:
         return find_frame(self.models, name)
 
     def add_light(self, light: LightDescription) -> None:
-        """Switch a light on. NameTaken if there is one of that name."""
+        """Add a light. NameTaken if there is one of that name."""
         if light.name in self.lights:
             raise NameTaken(f"a light named {light.name!r} is already there")
         self.lights[light.name] = light
@@ -213,7 +213,7 @@ class World:
         self.add_light(light)
 
     def remove_light(self, name: str) -> None:
-        """Switch a light off for good. UnknownName without one of that name."""
+        """Remove a light. UnknownName without one of that name."""
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
@@ -222,7 +222,7 @@ class World:
     # --- reset
 
     def reset_models(self) -> None:
-        """Every model back to where it was spawned; time goes on (Gazebo's reset_world)."""
+        """Every model back to where it was spawned; time is kept (Gazebo's reset_world)."""
         for model in self.models.values():
             model.reset()
 
@@ -264,5 +264,5 @@ class World:
         self.description = replace(self.description, physics=physics, gravity=gravity)
 
     def close(self) -> None:
-        """Let go of the engine."""
+        """Disconnect from the engine."""
         self._client.close()

@@ -1,4 +1,4 @@
-"""What a controller holds of a joint: its state to read, and a command to write."""
+"""A controller's access to a joint: its state to read, and a command to write."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class JointHandle:
 
 
 class CommandHandle:
-    """What a joint is told to do; the hardware reads it at every step, within the limits."""
+    """A joint's command; the hardware applies it at every step, within the limits."""
 
     __slots__ = ("joint", "interface", "command")
 

@@ -89,7 +89,7 @@ class RobotHardware:
             self._held = []
 
     def reset(self) -> None:
-        """Joints were put somewhere else: forget what led there."""
+        """After a reset of joints: forget earlier states."""
         for drive in self._drives:
             drive.reset()
 

@@ -31,7 +31,7 @@ class EffortDrive:
         return effort
 
     def reset(self) -> None:
-        """The joint was put somewhere else."""
+        """After a reset of the joint."""
         self.limiter.reset()
 
 
@@ -56,7 +56,7 @@ class PidDrive(EffortDrive):
         return effort
 
     def reset(self) -> None:
-        """The joint was put somewhere else."""
+        """After a reset of the joint."""
         super().reset()
         self.pid.reset()
 
@@ -75,7 +75,7 @@ class VelocityMotor:
         self._joint.drive_velocity(self.limiter.apply(self.handle.command, period), self._strength)
 
     def reset(self) -> None:
-        """The joint was put somewhere else."""
+        """After a reset of the joint."""
         self.limiter.reset()
 
 
@@ -83,7 +83,7 @@ class PositionMotor(VelocityMotor):
     """A position command without gains: at the end of the next step the joint is there.
 
     Gazebo puts it there without asking for forces; we move it there, at the velocity limit at most,
-    with a motor that nothing can hold, so that its rate is true and what it carries feels it.
+    with a motor that nothing can hold, so that its rate is true and moves what it carries.
     """
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):

@@ -37,7 +37,7 @@ class JointLimits:
 
 
 class JointState(Protocol):
-    """What limits look at."""
+    """The state that limits depend on."""
 
     position: float
     velocity: float
@@ -57,7 +57,7 @@ class Limiter:
         self.reset()
 
     def reset(self) -> None:
-        """The joint was put somewhere else, or stands still: forget the command before."""
+        """After a reset of the joint, or a stop: forget the command before."""
         self._last: float | None = None
 
     def apply(self, command: float, period: float) -> float:

@@ -1,4 +1,4 @@
-"""Says when something that has a rate is due, for controllers that are told the time."""
+"""When something that has a rate is due, in simulated seconds."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Rate:
         self._count = 0
 
     def due(self, time: float) -> bool:
-        """Whether it is time again (s, simulated); to be asked at each update.
+        """Whether it is due (`time` in s, simulated); to be called at each update.
 
-        The first time it is. Time that went back, or stood still for long, begins the count anew.
+        The first time it is. Time that went back, or a long pause, restarts the count.
         """
         if time + ROUNDING < self._next:
             if self._next - time <= self._period + ROUNDING:

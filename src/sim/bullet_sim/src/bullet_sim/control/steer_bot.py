@@ -1,6 +1,6 @@
 """A car as a bicycle: one virtual rear wheel and one virtual steering joint move its real ones.
 
-What steer_bot_hardware_gazebo does for ackermann_steering_controller, which knows one joint each.
+As steer_bot_hardware_gazebo for ackermann_steering_controller, which takes one joint each.
 Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear ones differ and the
 front ones roll, so that the car drives the circle that its odometry counts.
 """

@@ -1,4 +1,4 @@
-"""What a model or world file says, as plain data: no mesh is opened here and no physics is known.
+"""The content of model and world files as plain data: no mesh is opened, no physics is imported.
 
 All lengths in m, angles in rad, masses in kg. Link poses are in the model frame with every joint at
 zero. This is the package's face: others import from here, not from the files by subject.

@@ -1,4 +1,4 @@
-"""What a file says of a plugin, unread."""
+"""A plugin's element as the file has it, not interpreted."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 @dataclass(frozen=True)
 class LightDescription:
-    """A lamp; poses in the world, or in the frame of the link that bears it."""
+    """A lamp; poses in the world, or in the frame of the link that carries it."""
 
     name: str
     type: str = "point"  # point, directional, spot

@@ -16,7 +16,7 @@ class Noise:
     type: str = "none"  # none, gaussian or gaussian_quantized
     mean: float = 0.0
     stddev: float = 0.0
-    bias_mean: float = 0.0  # of an error drawn once; it may come out with either sign
+    bias_mean: float = 0.0  # of an error drawn once; its sign is drawn, too
     bias_stddev: float = 0.0
     precision: float = 0.0  # gaussian_quantized: readings are multiples of it
 
@@ -48,7 +48,7 @@ class CameraDescription:
     noise: Noise = Noise()
     distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0)  # k1 k2 p1 p2 k3
     distortion_centre: tuple[float, float] = (0.5, 0.5)  # in parts of width and height
-    lens: Lens = Lens()  # only wide-angle cameras look through it
+    lens: Lens = Lens()  # used by wide-angle cameras only
     name: str = ""
     pose: Pose = IDENTITY  # in the sensor's frame
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Pose
 
-# kobuki's: contacts lower than this are the floor, higher ones are what stands on the base
+# kobuki's: contacts lower than this are the floor, higher ones are parts on the base
 LOWEST, HIGHEST = 0.01, 0.13  # m above the model frame
 SECTORS = {"left": (math.pi / 6, math.pi / 2), "center": (-math.pi / 6, math.pi / 6),
            "right": (-math.pi / 2, -math.pi / 6)}  # rad from straight ahead, counter-clockwise

@@ -30,7 +30,7 @@ class ForceDrive:
     """
 
     def __init__(self, world: World, link: Link, gains: ForceGains, timeout: float):
-        """`timeout` (s) is how long a command stands; infinite: until the next one."""
+        """`timeout` (s) is how long a command is valid; infinite: until the next one."""
         self._world, self._link, self._gains = world, link, gains
         self._timeout = timeout
         self.reset()

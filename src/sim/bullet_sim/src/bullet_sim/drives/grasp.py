@@ -103,7 +103,7 @@ class Grasp:
                                         math.dist(point, middle)))
 
     def _let_go_if_open(self) -> None:
-        """Fingers lose touch in motion: only those that have moved away let go."""
+        """Fingers lose touch in motion: only those that have moved away release."""
         grips = self._grips.get(self.held.scoped_name, 0)
         if grips <= self._parameters.enough_grips and self._moved_off():
             self.release()

@@ -1,4 +1,4 @@
-"""A winch that holds a link in the air, raises or lowers it, and lets go once."""
+"""A winch that holds a link in the air, raises or lowers it, and releases it once."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Harness:
         self._speed = speed
 
     def detach(self) -> None:
-        """Let go for good."""
+        """Release the link; it cannot be attached again."""
         self._speed = 0.0
         self._hook.release()
 

@@ -1,4 +1,4 @@
-"""Plays a list of joint positions by putting the joints there, while one link stands still."""
+"""Plays a list of joint positions by resetting the joints, while one link keeps its pose."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class JointPoses:
 
     def play(self, model: Model, names: Sequence[str], points: Sequence[JointPose],
              start: float, held: Link | None = None) -> None:
-        """From `start` on (s, simulated; now if that is over). `held`: what stands still meanwhile.
+        """From `start` on (s, simulated; now if that is over). `held` keeps its pose.
 
         Joints that the model does not have are left out.
         """

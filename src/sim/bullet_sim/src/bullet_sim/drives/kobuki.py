@@ -70,13 +70,13 @@ class Kobuki:
             joint.drive_velocity(speed / self._radius, self._torque)
 
     def odometry(self) -> OdometryReading:
-        """The estimate as it stands."""
+        """The present estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         return OdometryReading(self._updated, pose, self._forward, 0.0,
                                self.imu_reading().angular_velocity[2])
 
     def imu_reading(self) -> ImuReading:
-        """What the gyroscope and the accelerometer said in the last step."""
+        """The IMU's reading of the last step."""
         if self._reading is None:
             self._reading = self._imu.sample()
         return self._reading

@@ -9,7 +9,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
 
 GREATEST_ANGLE = math.pi / 2  # rad, of the steering
-PLACED = 1e-4  # rad: a joint this near to its angle need not be put there again
+PLACED = 1e-4  # rad: a joint this near to its angle is not reset again
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class TricycleParameters:
     acceleration: float = 0.0  # rad/s^2 of the wheel; 0: immediate
     deceleration: float = 0.0  # rad/s^2 of the wheel
     speed_tolerance: float = 0.01  # rad/s: nearer to the target than this, the command jumps to it
-    steering_speed: float = 0.0  # rad/s; 0: the joint is put at its angle at once
+    steering_speed: float = 0.0  # rad/s; 0: the joint is reset to its angle
     angle_tolerance: float = 0.01  # rad: nearer to the target than this, the steering stops
 
 

@@ -16,8 +16,8 @@ class VacuumParameters:
     """Distances are between the origins of the links; defaults of gazebo_ros_vacuum_gripper."""
 
     max_force: float = 20.0  # N
-    max_distance: float = 0.05  # m: farther things are not felt
-    min_distance: float = 0.01  # m: nearer things are put at the cup's origin
+    max_distance: float = 0.05  # m: farther things are not attracted
+    min_distance: float = 0.01  # m: nearer things are moved to the cup's origin
 
 
 class Vacuum:

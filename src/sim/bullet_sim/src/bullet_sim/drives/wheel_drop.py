@@ -1,4 +1,4 @@
-"""Which wheels of a base hang in the air, from what touches them."""
+"""Which wheels of a base have no ground contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The materials that Gazebo knows by name, such as `Gazebo/Grey`, read from a table in data/."""
+"""Gazebo's named materials, such as `Gazebo/Grey`, read from a table in data/."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads a model, light or world from its text: URDF or SDF, told apart by the root element."""
+"""Reads a model, light or world from its text: URDF or SDF, by the root element."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def to_material(
 
 
 def _texture_name(values: dict[str, list[str]]) -> str | None:
-    """Name of the image; a material that inherits may put another one in by its alias."""
+    """Name of the image; a material that inherits may replace it by its alias."""
     alias, substitute = values.get("texture_alias"), values.get("set_texture_alias", [])
     if len(substitute) > 1 and (alias is None or alias[0] == substitute[0]):
         return substitute[1]

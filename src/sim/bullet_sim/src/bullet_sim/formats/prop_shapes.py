@@ -68,7 +68,7 @@ def _scale(element: Element) -> Vector3:
 
 
 def _prop_of(element: Element, source: Source) -> Path | None:
-    """The model file whose shapes are to stand for the mesh, if they are."""
+    """The model file whose shapes replace the mesh, if there is one."""
     uri = child_text(element, "geometry/mesh/uri")
     named = MODEL_FILE.search(uri)
     if named is None or 0.0 in _scale(element):

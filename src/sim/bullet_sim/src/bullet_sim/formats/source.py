@@ -1,4 +1,4 @@
-"""Where the text being read comes from, and what has already been said about it."""
+"""The source of a text that is being read, and which warnings were already given."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Source:
 
     resources: Resources
     version: tuple[int, int] = NEWEST_SDF
-    folder: Path | None = None  # of the file the text stands in
+    folder: Path | None = None  # of the text's file
     said: set[str] = field(default_factory=set)
     scripts: dict = field(default_factory=dict)  # material script path -> parsed materials
     including: tuple[Path, ...] = ()  # files being read, outermost first

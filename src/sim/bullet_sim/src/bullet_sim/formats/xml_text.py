@@ -16,7 +16,7 @@ LARGEST_TEXT = 32 * 2**20  # bytes; elements of it take about ten times that of 
 MOST_ELEMENTS = 300_000
 DEEPEST = 200  # levels; reading nested models takes a few of Python's own for each
 DECLARED = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([\w.-]+)["']""")
-# Its version is not looked at: robots of PyBullet's own say 0.0, which Expat 2.9 refuses.
+# Its version is ignored: robots of PyBullet's own have 0.0, which Expat 2.9 refuses.
 DECLARATION = re.compile(r"<\?xml\s[^<>]*\?>")
 BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
@@ -75,7 +75,7 @@ def decoded(content: bytes) -> str:
         try:
             return content.decode(declared[1].decode("ascii"))
         except (LookupError, UnicodeError):
-            pass  # a declaration that was copied along says nothing of this file
+            pass  # a copied declaration need not be that of this file
     return content.decode("utf-8", errors="replace")
 
 

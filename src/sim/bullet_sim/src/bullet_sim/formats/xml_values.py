@@ -143,7 +143,7 @@ def _whole(values: Sequence[float], where: str) -> Sequence[float]:
 
 
 def flag(parent: Element, path: str, default: bool) -> bool:
-    """A truth value at `path`: SDF knows `true`, `1` and everything else."""
+    """A truth value at `path`: `true` and `1`; everything else is false, as in SDF."""
     text = child_text(parent, path).lower()
     return text in TRUE_WORDS if text else default
 

@@ -27,7 +27,7 @@ MOST_TRIANGLES = 4_000_000
 
 
 def read_collada(path: Path, split: bool) -> list[NamedPart]:
-    """One part per primitive, named after the scene node it hangs on.
+    """One part per primitive, named after its scene node.
 
     FormatError for more than MOST_NODES nodes or MOST_TRIANGLES triangles.
     """

@@ -24,7 +24,7 @@ PRISM_FACES = np.array([
 
 
 def polyline_part(shape: Polyline) -> MeshPart:
-    """The outlines as a solid that stands on z = 0."""
+    """The outlines as a solid on z = 0."""
     return _prisms(trapezoids(shape.outlines), shape.height)
 
 

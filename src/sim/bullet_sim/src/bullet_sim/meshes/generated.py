@@ -1,4 +1,4 @@
-"""Triangles of the shapes that no mesh file holds: made when first asked for, then kept."""
+"""Triangles of the shapes that no mesh file holds: generated at first use, then cached."""
 
 from __future__ import annotations
 

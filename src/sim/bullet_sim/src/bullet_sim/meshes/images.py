@@ -1,4 +1,4 @@
-"""Reads image files that a model names, after a look at how large they are once unpacked."""
+"""Reads image files that a model names, after a check of their unpacked size."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ log = logging.getLogger(__name__)
 
 LARGEST_FILE = 100 * 10**6  # bytes
 MOST_PIXELS = 100 * 10**6  # 10 000 x 10 000: 300 MB while it is read
-SILENT = 0  # OpenCV's log level: what it would say comes in our own line
-HEADER_BYTES = 2**16  # JPEG's size may stand behind a preview
+SILENT = 0  # OpenCV's log level: our own line replaces its messages
+HEADER_BYTES = 2**16  # JPEG's size may follow a preview
 PNG = b"\x89PNG\r\n\x1a\n"
 JPEG = b"\xff\xd8"
 # Its name up to OpenCV 4.12 or so, and the later one; both return the level before.

@@ -24,7 +24,7 @@ from bullet_sim.meshes.wavefront import read_wavefront
 __all__ = ["MeshPart", "collision_mesh", "load_mesh"]
 
 LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times that of memory
-MOST_DRAWN = 300_000  # triangles of one file; more hold the camera up
+MOST_DRAWN = 300_000  # triangles of one file; more make the camera slow
 MOST_COLLIDING = 60_000  # triangles of one file; with a million the engine takes ten seconds
 
 _log = logging.getLogger(__name__)
@@ -84,7 +84,7 @@ def _load(version: _FileVersion) -> tuple[MeshPart, ...]:
 
 
 def _read(path: Path, submesh: str | None) -> list[NamedPart]:
-    """Named parts of a file; whatever the parser stumbles over becomes one FormatError."""
+    """Named parts of a file; any error of the parser becomes one FormatError."""
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         known = ", ".join(sorted(_READERS))

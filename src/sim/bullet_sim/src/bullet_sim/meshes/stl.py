@@ -41,7 +41,7 @@ def read_stl(path: Path, split: bool) -> list[NamedPart]:
 
 
 def _binary_corners(content: bytes) -> np.ndarray | None:
-    """Corners (n * 3, 3) if the length is what the header says; many start with `solid`, too."""
+    """Corners (n * 3, 3) if the length agrees with the header; many start with `solid`, too."""
     if len(content) < _HEADER_BYTES:
         return None
     count = int.from_bytes(content[_HEADER_BYTES - 4:_HEADER_BYTES], "little")

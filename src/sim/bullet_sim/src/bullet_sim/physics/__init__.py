@@ -1,1 +1,1 @@
-"""The only room that knows PyBullet's integers: a client, and bodies made of descriptions."""
+"""The only package that uses PyBullet's integers: a client, and bodies built of descriptions."""

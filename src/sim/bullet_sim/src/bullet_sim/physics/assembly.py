@@ -24,9 +24,9 @@ WORLD = "world"
 Member = tuple[LinkDescription, JointDescription | None]  # None: nothing carries the link
 # A welded shape needs some mass to count as movable for the collision filter; this is no load.
 WELD_INERTIAL = Inertial(mass=1e-6, inertia=(1e-9, 0.0, 0.0, 1e-9, 0.0, 1e-9))
-NO_DIRECTION = (0.0, 0.0, 0.0)  # <fdir1> when nothing is said
+NO_DIRECTION = (0.0, 0.0, 0.0)  # the default of <fdir1>
 MASSLESS = Inertial(mass=0.0, inertia=(0.0,) * 6)
-MOST_LINKS = 128  # of a tree, in PyBullet; of a larger one it tells nothing
+MOST_LINKS = 128  # of a tree, in PyBullet; of a larger one it reports nothing
 
 
 @dataclass
@@ -58,7 +58,7 @@ class Tree:
 
     @property
     def fixed_base(self) -> bool:
-        """Whether the base stands still for ever."""
+        """Whether the base is fixed to the world."""
         return self.fixed and not self.kinematic
 
 

@@ -12,13 +12,13 @@ import math
 from collections import deque
 from typing import Protocol
 
-REST_SPEED = 2e-4  # m/s; contacts alone leave a standing robot creeping at 1.5e-5 (measured)
+REST_SPEED = 2e-4  # m/s; by contacts alone a robot at rest creeps at 1.5e-5 (measured)
 REST_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
 FAST_SPEED = 0.05  # m/s; slower things are driven exactly
 FAST_RATE = 0.5  # rad/s
 SAMPLE_PERIOD = 0.05  # s, simulated
 SAMPLES = 10  # in a row that have to find everything still
-GROWTH = 1.5  # over these looks: more than that is the beginning of a fall
+GROWTH = 1.5  # over these samples: more than that is the beginning of a fall
 NOTHING = 1e-3  # of what counts as still; below it growth is only that of rounding errors
 
 
@@ -34,7 +34,7 @@ class Restable(Protocol):
         ...
 
     def keep_feedback(self) -> None:
-        """Note what its joints bore in the last step before the rest."""
+        """Record the loads of its joints in the last step before the rest."""
         ...
 
 
@@ -62,16 +62,16 @@ class AutoDisable:
 
     @property
     def nearly_disabled(self) -> bool:
-        """Whether only one more look has to find everything still; `sample_steps` steps long."""
+        """Whether one more sample without motion, of `sample_steps` steps, disables all."""
         return len(self._motions) >= SAMPLES - 1 and not self.disabled
 
     @property
     def is_sampling(self) -> bool:
-        """Whether this step is one that ends in a look."""
+        """Whether a sample is taken after this step."""
         return self._steps % self.sample_steps == 0
 
     def step_needed(self) -> bool:
-        """Whether the next step would do anything; to be asked before each."""
+        """Whether the next step would do anything; to be called before each."""
         if self.disabled:
             return False
         self._steps += 1

@@ -1,4 +1,4 @@
-"""One engine body: made of a tree, changed by being made anew, taken out again."""
+"""One engine body: loaded from a tree, rebuilt for changes, unloaded."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Body(BodyLinks, BodyJoints):
         """Give links of these names other masses, or joints other stops, in full motion.
 
         The engine can move no centre of mass and add no stop: it gets the body anew. Poses, rates
-        and motors stay; whoever keeps the body's number has to ask for it again.
+        and motors stay; the body's number changes.
         """
         frame, base = self.base_frame(), self.tree.links[0].described
         at, twist = self.link_states()[base]
@@ -112,7 +112,7 @@ class Body(BodyLinks, BodyJoints):
             attachment.attach()
 
     def unload(self) -> None:
-        """Take it out of the engine, with its attachments; `load` puts it back."""
+        """Unload it, with its attachments; `load` is the inverse."""
         for attachment in self.attached:
             attachment.detach()
         self._destroy()

@@ -1,4 +1,4 @@
-"""The joints of an engine body, by name: read, put, driven, sprung."""
+"""The joints of an engine body, by name: read, reset, driven."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class BodyJoints(EngineHandle):
         return None if each is None or each.joint.type == "ball" else each
 
     def described_parent(self, link: PhysicsLink) -> str:
-        """The described link that an engine's link hangs on."""
+        """The described link that is the parent of an engine's link."""
         return next(each.described for each in self.tree.links if each.name == link.parent)
 
     def joint_index(self, joint: str) -> int:
@@ -63,16 +63,16 @@ class BodyJoints(EngineHandle):
         return self._joint_index[joint]
 
     def enable_feedback(self, index: int) -> None:
-        """Have the engine keep what the joint of that number bears."""
+        """Enable the engine's force and torque sensor of the joint of that number."""
         if index not in self._feedback:
             self._feedback[index] = deque()
             self.change(pybullet.enableJointForceTorqueSensor, index, 1)
 
     def joint_effort(self, index: int) -> JointWrench:
-        """What a joint's motor did in the last step, and the six numbers of what it bore.
+        """A joint's motor effort in the last step, and its load as six numbers.
 
-        In a world at rest, the means of what they were: contacts go on trembling, and the last step
-        would be told for ever.
+        In a world at rest, means over the steps before: contacts vibrate, and the last step's value
+        would be reported for the whole rest.
         """
         rows = self._feedback.get(index)
         if not rows or not self._client.auto_disable.disabled:
@@ -81,7 +81,7 @@ class BodyJoints(EngineHandle):
         return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
 
     def keep_feedback(self) -> None:
-        """Note what joints bore in the last step; as many steps as there are between two looks."""
+        """Record the last step's loads; as many steps as there are between two samples."""
         for index, rows in self._feedback.items():
             rows.append(self._last_effort(index))
             while len(rows) > self._client.auto_disable.sample_steps:
@@ -113,7 +113,7 @@ class BodyJoints(EngineHandle):
         self.change(pybullet.resetJointState, self._joint_index[joint], position, velocity)
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
-        """Motor that holds a rate with at most `effort` (N m or N), until told otherwise.
+        """Motor that holds a rate with at most `effort` (N m or N), until the next command.
 
         Below zero there is none, as in ODE.
         """
@@ -134,7 +134,7 @@ class BodyJoints(EngineHandle):
                         pybullet.TORQUE_CONTROL, force=effort)
 
     def add_effort(self, joint: str, effort: float) -> None:
-        """Effort (N m or N) during the next step, beside what motors and others do."""
+        """Effort (N m or N) during the next step, added to motors and others."""
         if self._is_number("joint effort", effort):
             self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
                         pybullet.TORQUE_CONTROL, force=effort)
@@ -188,7 +188,7 @@ class JointGroup:
         return self._body.read(pybullet.getJointStates, self._indices)
 
     def drive_efforts(self, efforts: Sequence[float]) -> None:
-        """Efforts (N m or N) during the next step, beside what motors and friction do."""
-        if any(efforts):  # the engine forgets them after each step: zeros need not be said
+        """Efforts (N m or N) during the next step, added to motors and friction."""
+        if any(efforts):  # the engine forgets them after each step: zeros need no call
             self._body.change(pybullet.setJointMotorControlArray, self._indices,
                               pybullet.TORQUE_CONTROL, forces=efforts)

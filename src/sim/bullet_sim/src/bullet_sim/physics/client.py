@@ -24,12 +24,12 @@ LOAD_FLAGS = (
 )
 
 # With SDF's default of 50 a light driven wheel is not solved out: a robot sent straight began to
-# turn after 8 s. 150, which the courses' worlds ask for themselves, holds 0.15 m/s within 0.05 %.
+# turn after 8 s. 150, the courses' worlds' own value, holds 0.15 m/s within 0.05 %.
 FEWEST_ITERATIONS = 150
 # The solver stops once no row of an iteration changes by more than the root of this, m^2/s^2 (or
 # rad^2/s^2). EXACT is the engine's own. FAST, 3 mm/s, is for worlds in which something drives:
 # steps of the waffle cost half, its drives of 10 s end within 0.2 mm and 0.2 degrees of the exact
-# ones, and what stands meanwhile creeps by 0.13 mm/s on a slope.
+# ones, and a box at rest on a slope creeps by 0.13 mm/s meanwhile.
 EXACT, FAST = 1e-7, 1e-5
 STATIC_FILTER = (2, -3)  # Bullet's group and mask of what never moves: all but its like
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
@@ -58,7 +58,7 @@ class PhysicsClient:
             numSolverIterations=max(physics.iterations, FEWEST_ITERATIONS),
             solverResidualThreshold=EXACT,
             # A pyramid, as Gazebo's ODE has it. The engine's cone lets light driven wheels creep:
-            # a turn in place came out 8 % slow.
+            # a turn in place was 8 % slow.
             enableConeFriction=0,
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
@@ -79,7 +79,7 @@ class PhysicsClient:
     def change_without_waking(self, function, *args, **kwargs):
         """Run a pybullet function that changes something, in a world that may stay at rest.
 
-        For what acts in every step, such as springs, and for what is undone at once.
+        For what acts in every step, such as springs, and for changes that are undone at once.
         """
         return function(*args, physicsClientId=self._id, **kwargs)
 
@@ -111,7 +111,7 @@ class PhysicsClient:
         return rows
 
     def load(self, tree: Tree, pose: Pose) -> int:
-        """Make a body of a tree; returns its number. The importer's chatter is kept off stdout.
+        """Make a body of a tree; returns its number. The importer's output is suppressed.
 
         SimulationError where the engine refuses it.
         """

@@ -13,7 +13,7 @@ from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.quiet import pybullet
 
-ALL_BITS = 0xFFFF  # SDF's collide_bitmask when nothing is said
+ALL_BITS = 0xFFFF  # SDF's default of collide_bitmask
 SHIFT = 8  # of these bits in the engine's masks, whose lowest ones say what moves
 MOVING, STILL = 1, 2  # the engine's own groups
 Part = tuple[Body, int, str]  # body, engine's number of a link with collisions, described link

@@ -26,13 +26,13 @@ ALIGNED = 0.97  # cosine: fdir1 has to lie along one of the engine's axes
 
 def contact_values(collision: Collision, fixed: bool, com: Pose, mass: float
                    ) -> dict[str, object]:
-    """Arguments of changeDynamics; `com` are the link's principal axes, which friction is told in.
+    """Arguments of changeDynamics; `com`: principal axes of the link, the engine's for friction.
 
     `mass` (kg) is that of the whole body.
 
     The engine multiplies two frictions where ODE takes the smaller one: what never moves counts
     as 1 at most, so that the product is the moving part's own coefficient. Two restitutions are
-    multiplied too, hence the roots: two alike come out as themselves.
+    multiplied too, hence the roots: two equal values give that value.
     """
     surface = collision.surface
     values: dict[str, object] = {
@@ -65,7 +65,7 @@ def _giving_way(mass: float) -> dict[str, float]:
 
 
 def _bouncing(mass: float) -> dict[str, float]:
-    """Hard enough, and so slow to come out that no bounce gains by it."""
+    """Stiff, and with a correcting velocity too small to add to a bounce."""
     stiffness = BOUNCING * _giving_way(mass)["contactStiffness"]
     return {"contactStiffness": stiffness, "contactDamping": stiffness * EMERGING}
 

@@ -54,7 +54,7 @@ def read_contacts(client: PhysicsClient, bodies: Iterable[tuple[str, Body]]) -> 
     for row in client.read(pybullet.getContactPoints):
         _, body1, body2, link1, link2, on1, on2, normal, distance, push = row[:10]
         if distance > 0.0 and push == 0.0:
-            continue  # near, but not there: the engine looks ahead
+            continue  # near, but not touching: the engine predicts contacts
         rub1, along1, rub2, along2 = row[10:14]
         force = tuple(
             push * n + rub1 * a + rub2 * b for n, a, b in zip(normal, along1, along2, strict=True))

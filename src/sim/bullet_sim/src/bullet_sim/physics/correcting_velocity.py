@@ -1,4 +1,4 @@
-"""Lets what was put into something else come out of it slowly, instead of shooting it out.
+"""Bounds the velocity at which overlapping bodies separate (ODE: contact_max_correcting_vel).
 
 A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as
 many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long as
@@ -13,8 +13,8 @@ from typing import Protocol
 from bullet_sim.physics.quiet import pybullet
 
 CORRECTED = 0.08  # part of the depth in each step; PyBullet's own, of rigid contacts
-ALL = 1.0  # of it: what is no deeper comes out at the engine's own pace
-FASTEST = 0.2  # m/s at which it comes out
+ALL = 1.0  # of it: what is no deeper separates at the engine's own velocity
+FASTEST = 0.2  # m/s at which it separates
 DEEPEST = 1.0  # m, that is reckoned with
 LONGEST = 5.0  # s, simulated, after which the engine has its own way again
 DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
@@ -42,7 +42,7 @@ class CorrectingVelocityLimit:
         self._placed = False  # since the last step
 
     def watch(self) -> None:
-        """A body was put somewhere."""
+        """A body was placed."""
         self._left = LONGEST
         self._placed = True
 

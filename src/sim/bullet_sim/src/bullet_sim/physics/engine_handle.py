@@ -21,7 +21,7 @@ class EngineHandle:
     number: int  # the engine's
     _client: PhysicsClient
     _index: dict[str, int]  # physics link -> the engine's number of it and of its joint
-    _refused: set[str]  # what has been said to be no number
+    _refused: set[str]  # quantities already reported as not finite
 
     @property
     def client(self) -> PhysicsClient:
@@ -49,7 +49,7 @@ class EngineHandle:
         return self.read(pybullet.getDynamicsInfo, index)
 
     def _is_number(self, what: str, *values: float) -> bool:
-        """Whether the engine may see them: one NaN, and nothing has ground to stand on."""
+        """Whether they are finite: one NaN in the engine spreads to all bodies in contact."""
         if all(map(math.isfinite, values)):
             return True
         if what not in self._refused:

@@ -93,6 +93,6 @@ def _reach(geometry: Geometry) -> float:
             return 0.0
     try:
         vertices, _ = collision_mesh(geometry)
-    except FormatError:  # said where the shape is made
+    except FormatError:  # reported where the shape is made
         return 0.0
     return float(np.linalg.norm(np.ptp(vertices, axis=0))) / 2 if len(vertices) else 0.0

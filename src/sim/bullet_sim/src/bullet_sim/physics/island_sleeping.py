@@ -1,6 +1,6 @@
-"""Lets bodies that lean on one another stand still, also where they never quite settle.
+"""Disables groups of bodies in contact that move too slowly to get anywhere (Bullet's islands).
 
-Shapes that overlap push one another for ever, too fast for `rest` and too slowly to get anywhere.
+Overlapping shapes push one another without end, too fast for `rest` and too slowly to get anywhere.
 As Gazebo does with ODE: models without joints that touch are disabled once all of them have kept
 below 0.1 m/s and 0.1 rad/s for a second; whatever changes one of them, or pushes it, ends that.
 Unlike there, the means over that second count, and a body that touches none of its kind goes on:
@@ -21,7 +21,7 @@ from bullet_sim.physics.quiet import pybullet
 
 SPEED = 0.1  # m/s, of the mean over SAMPLES: Gazebo's threshold (ODEPhysics.cc)
 RATE = 0.1  # rad/s
-TREMBLING = 3.0  # times as fast it may be between two looks
+TREMBLING = 3.0  # times as fast it may be between two samples
 SAMPLES = round(1.0 / SAMPLE_PERIOD)  # Gazebo's second
 # (m/s)^2 + (rad/s)^2 above which the engine wakes a body that is pushed
 SLEEP_THRESHOLD = 2 * 0.05 ** 2
@@ -46,7 +46,7 @@ class Disablable(Protocol):
 
 
 class IslandSleeping:
-    """Asked after every step, told of every change.
+    """`after_step` is called after every step, `changed` for every change.
 
     `run` runs a pybullet function without waking anything; `bodies` is the list of all there are.
     """
@@ -61,7 +61,7 @@ class IslandSleeping:
         self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be given again
 
     def after_step(self, sampling: bool) -> None:
-        """`sampling`: at a look of `rest`, disable what has been quiet."""
+        """`sampling`: at a sample of AutoDisable, disable what has been slow."""
         for push, args in self._late:
             self._run(push, *args)
         self._late.clear()
@@ -81,7 +81,7 @@ class IslandSleeping:
             self._disable(ready)
 
     def _quiet(self, number: int, pose: tuple) -> deque:
-        """Its poses since it was last too quick for anything that trembles."""
+        """Its poses since it was last faster than a vibration."""
         seen = self._poses.get(number)
         if seen is None or not _slower(seen[-1], pose, TREMBLING * SAMPLE_PERIOD):
             return deque([pose], maxlen=SAMPLES + 1)
@@ -101,7 +101,7 @@ class IslandSleeping:
         self._disabled -= concerned
         self._waking |= concerned
         if push:
-            self._poses.pop(args[0], None)  # whoever pushes all the time is not to be held up
+            self._poses.pop(args[0], None)  # what is pushed all the time must stay enabled
             if args[0] in self._waking:
                 self._late.append((function, args))
         elif function is pybullet.removeBody:
@@ -135,7 +135,7 @@ def _slower(before: tuple, after: tuple, seconds: float) -> bool:
 
 
 def _islands(pairs: Iterable[tuple[int, int]], still: set[int]) -> list[set[int]]:
-    """Sets of bodies that touch, also by way of others; what stands still for ever joins none.
+    """Sets of bodies that touch, also through others; static bodies belong to none.
 
     What touches nothing but that is a set of its own; what touches nothing at all is in none.
     """

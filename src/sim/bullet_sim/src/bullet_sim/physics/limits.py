@@ -1,4 +1,4 @@
-"""What a world may ask of the engine: outside of it, time would stand still or be no physics."""
+"""Bounds of physics parameters: outside of them a step takes too long, or its result is useless."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ HIGHEST_RATE = 1e6  # Hz
 KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
         "contact_surface_layer": "contact_surface_layer",
         "contact_max_correcting_vel": "contact_max_correcting_vel"}
-# PyBullet keeps 128 positions of a body, of which its base takes 7, and tells no more (measured).
+# PyBullet keeps 128 positions of a body, of which its base takes 7, and reports no more (measured).
 MOST_POSITIONS = 121
 BALL_POSITIONS = 4  # a ball joint's: a quaternion
 
 
 def check_physics(physics: PhysicsDescription) -> None:
-    """A SimulationError that says what is outside, and what is possible."""
+    """Raise a SimulationError that names the value and its bounds."""
     if not SHORTEST_STEP <= physics.max_step_size <= LONGEST_STEP:
         raise SimulationError(f"a time step of {physics.max_step_size:g} s is not possible; "
                               f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} is")
@@ -41,7 +41,7 @@ def check_physics(physics: PhysicsDescription) -> None:
 
 
 def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
-    """What a world file asks for; for what is outside, the default, with an error line."""
+    """A world file's parameters; the default, with an error line, for what is out of bounds."""
     usual = PhysicsDescription()
     for field in ("max_step_size", "real_time_update_rate", "iterations"):
         asked, default = getattr(physics, field), getattr(usual, field)

@@ -66,7 +66,7 @@ class LoopConstraints:
         self._constraints.append(made)
 
     def _place(self, name: str) -> tuple[Body, PhysicsLink]:
-        """Where a described link is; what stands still is the base of the first fixed body."""
+        """Where a described link is; of the static world, the base of the first fixed body."""
         for body in self.bodies:
             if name == WORLD and body.tree.fixed:
                 return body, body.tree.links[0]

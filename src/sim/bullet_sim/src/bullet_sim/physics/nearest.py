@@ -1,4 +1,4 @@
-"""How far a point is from a shape: tells which of a link's collisions was touched."""
+"""The distance of a point to a shape: identifies which of a link's collisions touched."""
 
 from __future__ import annotations
 

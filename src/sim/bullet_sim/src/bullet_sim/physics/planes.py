@@ -16,7 +16,7 @@ Place = tuple[float, ...]  # unit normal and distance from the origin (m), frict
 
 
 class Planes:
-    """Bodies that are one plane and stand still; `switch(body, on)` has one collide or not."""
+    """Static bodies that are one plane; `switch(body, on)` has one collide or not."""
 
     def __init__(self, switch: Callable[[int, bool], None]):
         self._switch = switch
@@ -31,7 +31,7 @@ class Planes:
             self._update()
 
     def remove(self, body: int) -> None:
-        """A body is gone."""
+        """A body was unloaded."""
         if self._places.pop(body, None) is not None:
             self._idle.discard(body)
             self._update()

@@ -1,4 +1,4 @@
-"""PyBullet, imported and called without its chatter: learners read the terminal."""
+"""PyBullet, imported and called with its output suppressed: learners read the terminal."""
 
 from __future__ import annotations
 

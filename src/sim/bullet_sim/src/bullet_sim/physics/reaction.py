@@ -9,7 +9,7 @@ from bullet_sim.twist import cross
 
 
 def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
-    """What the joint that carries `link` bears: force (N) and torque (N m) about its anchor.
+    """The load of the joint that carries `link`: force (N) and torque (N m) about its anchor.
 
     As of Gazebo's ODEJoint::GetForceTorque (physics/ode/ODEJoint.cc): of the joint's child on the
     joint, in the child link's frame, effort of the joint's motor included; a weight hanging below
@@ -37,7 +37,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     if not link.turned:
         out = link.offset.orientation
         return _negative(rotate(out, force)), _negative(rotate(out, torque))
-    # The engine's child is the described parent: the described child feels the opposite of this.
+    # The engine's child is the described parent: the wrench on the described child is its negative.
     parent = next(other for other in body.tree.links if other.name == link.parent)
     here, there = (body.engine_frame(body.index(name)) for name in (link.name, parent.name))
     turn = multiply(conjugate(there.orientation), here.orientation)

@@ -1,4 +1,4 @@
-"""What a robot can stand on: wheels on level axles, and all else that its base holds, as casters.
+"""What supports a robot: wheels on level axles, and as casters all else that its base holds.
 
 On flat ground in the model's frame, joints at zero.
 """
@@ -133,7 +133,7 @@ def _feet(collision: Collision, pose: Pose) -> np.ndarray | None:
         case Mesh():
             try:
                 corners = collision_mesh(collision.geometry)[0]
-            except FormatError:  # told where the shape is made
+            except FormatError:  # reported where the shape is made
                 return None
         case _:
             return None

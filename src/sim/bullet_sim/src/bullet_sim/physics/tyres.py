@@ -1,4 +1,4 @@
-"""Wheels as the engine gets them: crowned, so that they stand and turn on their middle.
+"""Wheels as the engine gets them: crowned, so that their contact is in their middle.
 
 The engine finds one point of a cylinder on a plane, on one of its edges, and keeps those that it
 found before: robots turned on the outer edges of their wheels, 10 % too slowly where these are as
@@ -100,7 +100,7 @@ def _unit_axis(link: PhysicsLink) -> np.ndarray:
 def _of_mesh(link: PhysicsLink, collision: Collision) -> Tyre | None:
     try:
         vertices, _ = collision_mesh(collision.geometry)
-    except FormatError:  # told where the shape is made
+    except FormatError:  # reported where the shape is made
         return None
     axis = _unit_axis(link)
     points = vertices @ rotation_matrix(collision.pose.orientation).T + collision.pose.position

@@ -7,7 +7,7 @@ from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose
 
 WORLD_BODY = -1  # PyBullet's number of what is no body
-STRONGEST = 1e6  # N and N m: more than anything that hangs on a robot
+STRONGEST = 1e6  # N and N m: more than any load of a robot
 
 
 class Weld:
@@ -43,7 +43,7 @@ class Weld:
         client.change(pybullet.changeConstraint, self._constraint, maxForce=STRONGEST)
 
     def detach(self) -> None:
-        """Take the constraint out; `attach` puts it in again."""
+        """Remove the constraint; `attach` makes it again."""
         if self._constraint is None:
             return
         constraint, self._constraint = self._constraint, None

@@ -71,7 +71,7 @@ class EglRenderer:
     def __init__(self, profiler: Profiler | None = None) -> None:
         self._profiler = profiler or Profiler()
         self._context = _open_context()
-        with self._context:  # leaving it lets go of the context, so that any thread may draw
+        with self._context:  # leaving it releases the context, so that any thread may draw
             self._context.gc_mode = "context_gc"
             info = self._context.info
             self.name = f"EGL, {info['GL_RENDERER']}"
@@ -85,7 +85,7 @@ class EglRenderer:
         self._finish = _finish_without_gil() or self._context.finish
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
-        """RGB, and depth if asked for, of one pass."""
+        """RGB, and depth if wanted, of one pass."""
         measure = self._profiler.measure
         with self._context:
             target = self._target(view.width, view.height)
@@ -198,7 +198,7 @@ class _Target:
         self._framebuffer.depth_mask = False
 
     def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
-        """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if asked for."""
+        """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if wanted."""
         self._framebuffer.read_into(self._rgba, components=4, alignment=1)
         if not depth:
             return self._rgba, None

@@ -1,4 +1,4 @@
-"""What a renderer is asked for and what it gives back."""
+"""A renderer's input and output."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ class SurfaceStore:
             del self._shown[name]
 
     def of(self, shape: LinkShape) -> list[Surface]:
-        """The shape's surfaces, uploaded when first asked for."""
+        """The shape's surfaces, uploaded at first use."""
         surfaces = self._surfaces.get(shape)
         if surfaces is None:
             surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]

@@ -19,7 +19,7 @@ EYE_OFFSET = 16  # bytes, of the camera's position in the block
 
 
 def lights_block(scene: SceneState) -> bytes:
-    """All but the eye, which changes with the camera; lights beyond the eighth are left out."""
+    """All but the camera's position; lights beyond the eighth are left out."""
     lights = list(scene.lights.values())
     if len(lights) > MAX_LIGHTS:
         left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])

@@ -28,18 +28,18 @@ class Renderer(Protocol):
     largest_px: int  # longest side of a picture
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
-        """One picture, and its depth if asked for; the arrays are the caller's own."""
+        """One picture, and its depth if wanted; the arrays are the caller's own."""
         ...
 
     def trim(self) -> None:
-        """Give back the memory that pictures were drawn in, and models that have gone.
+        """Free the memory of pictures and of models that were removed.
 
         The next pictures take anew what they need.
         """
         ...
 
     def close(self) -> None:
-        """Give back what the renderer holds; it draws no more."""
+        """Free all resources; it cannot draw afterwards."""
         ...
 
 
@@ -55,7 +55,7 @@ def open_renderer(preference: str | None = None, profiler: Profiler | None = Non
         return _open_chosen(chosen, profiler)
     try:
         return _open_egl(profiler)
-    except Exception as error:  # no library, no driver, no device: each says it in its own way
+    except Exception as error:  # no library, driver or device: each raises another type
         reason = " ".join(str(error).split()) or type(error).__name__
     renderer = _open_tiny(profiler)
     rate_hz = 1 / _seconds_per_frame()

@@ -55,7 +55,7 @@ class Node:
 
     @property
     def matrix(self) -> np.ndarray:
-        """(4, 4) float64 of the pose; made when first asked for."""
+        """(4, 4) float64 of the pose; computed at first use."""
         if self._matrix is None:
             self._matrix = self.pose.matrix()
         return self._matrix
@@ -94,13 +94,13 @@ class Scene(SceneState):
         self._visuals: dict[LinkKey, tuple[Visual, ...]] = {}
 
     def frozen(self) -> SceneState:
-        """As it is now; another thread may draw it while the scene goes on."""
+        """As it is now; another thread may draw it while the scene changes."""
         return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version,
                           dict(self.images))
 
     @property
     def visuals(self) -> Mapping[LinkKey, tuple[Visual, ...]]:
-        """What each link's shape was made from."""
+        """The visuals of each link."""
         return self._visuals
 
     def add_light(self, light: LightDescription) -> None:

@@ -32,7 +32,7 @@ _LEFT_OUT = ("plugins",)
 
 @dataclass(frozen=True)
 class SceneContent:
-    """What a text says; poses are those at which it was written."""
+    """The content of a text; poses are those at which it was written."""
 
     description: SceneDescription
     lights: tuple[LightDescription, ...]

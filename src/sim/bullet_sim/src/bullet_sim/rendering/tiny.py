@@ -48,7 +48,7 @@ class TinyRenderer:
         self._textures: dict[str, int] = {}
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
-        """RGB, and depth if asked for."""
+        """RGB, and depth if wanted."""
         with self._profiler.measure("draw"):
             self._mirror(scene)
             width, height, pixels, raw, _ = pybullet.getCameraImage(
@@ -67,7 +67,7 @@ class TinyRenderer:
             metres = metres_from_depth(
                 np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far
             )
-            background = metres > view.far * 0.99  # TinyRenderer says nearly `far` for nothing
+            background = metres > view.far * 0.99  # TinyRenderer's depth of nothing is nearly `far`
             colour = np.array(scene.description.background[:3]) * 255 + 0.5
             rgb[background] = np.clip(colour, 0, 255)
             metres[background] = np.inf

@@ -33,7 +33,7 @@ class Outlines:
         self._radii = np.array([shape.radius for shape in shapes])
 
     def seen(self, nodes: Sequence[Node], clip_world: np.ndarray, eye: np.ndarray) -> Visibility:
-        """`clip_world` (4, 4) is world to clip coordinates, `eye` (3,) the camera in the world."""
+        """`clip_world` (4, 4) is world to clip coordinates, `eye` (3,) the camera's position."""
         world_node = np.array([node.matrix for node in nodes]).reshape(-1, 4, 4)
         clip_node = clip_world @ world_node
         clip = clip_node[self._owner] @ self._corners

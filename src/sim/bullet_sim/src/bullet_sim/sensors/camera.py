@@ -71,7 +71,7 @@ class Camera:
         self._lens: WideLens | None = None
 
     def view(self) -> CameraView:
-        """The pinhole as it stands now."""
+        """The pinhole at its present pose."""
         camera = self.description
         return CameraView(camera.width, camera.height, camera.horizontal_fov, camera.near,
                           camera.far, self._link.pose * self._sensor.pose * camera.pose)
@@ -87,7 +87,7 @@ class Camera:
             return CaptureState(world.time, world.tick, world.update_scene().frozen(), self.view())
 
     def render(self, state: CaptureState, depth: bool = False) -> CameraReading:
-        """Draw an exposure. Any thread may do it, one at a time, while the world goes on.
+        """Draw a captured state. Any thread may do it, one at a time, while the world steps.
 
         A wide-angle camera has no depth.
         """
@@ -138,7 +138,7 @@ def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> Came
 
 
 def _mistake(camera: CameraDescription, renderer: Renderer, wide_angle: bool) -> str | None:
-    """What of a camera nobody can draw."""
+    """Why a camera cannot be drawn; empty if it can."""
     if min(camera.width, camera.height) < 1:
         return f"an image of {camera.width}x{camera.height} px"
     side_px = min(renderer.largest_px, LARGEST_SQUARE_PX)

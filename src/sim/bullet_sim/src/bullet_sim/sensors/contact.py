@@ -31,7 +31,7 @@ class TouchingPair:
 
 
 class ContactSensor:
-    """`<contact><collision>` names the collisions; a sensor that names none feels all of its link.
+    """`<contact><collision>` names the collisions; a sensor that names none covers all of its link.
 
     Where several are named they need not be of this link: `model::link::collision` is any.
     """

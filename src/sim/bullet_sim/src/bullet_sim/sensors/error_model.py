@@ -9,12 +9,12 @@ import numpy as np
 
 from bullet_sim.world import World
 
-HOUR = 3600.0  # s, time constant of a drift unless a file says otherwise
+HOUR = 3600.0  # s, time constant of a drift unless a file gives another
 
 
 @dataclass(frozen=True)
 class ErrorParameters:
-    """One value for each component, in the reading's own unit unless said."""
+    """One value for each component, in the reading's own unit where no other is named."""
 
     offset: tuple[float, ...]
     drift: tuple[float, ...]  # standard deviation of the drift
@@ -53,7 +53,7 @@ class ErrorModel:
 
     @property
     def drifts(self) -> bool:
-        """Whether it goes on changing while nobody looks."""
+        """Whether it changes also between readings."""
         return any(self.parameters.drift) or bool(self.drift.any())
 
     @property
@@ -75,7 +75,7 @@ class ErrorModel:
         return self.bias + white[1] * p.gaussian_noise if noisy else self.bias
 
     def apply(self, value: np.ndarray, elapsed: float) -> np.ndarray:
-        """A true reading, (components,), as the sensor would tell it."""
+        """The sensor's reading of a true value, (components,)."""
         return np.multiply(value, self.parameters.scale_error) + self.update(elapsed)
 
 

@@ -11,7 +11,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class JointReading:
-    """Parallel lists, in the order the joints were asked for."""
+    """Parallel lists, in the order of the request."""
 
     time: float  # s, simulated
     names: tuple[str, ...]

@@ -60,6 +60,6 @@ class WheelOdometry:
         self._yaw_rate = turn / elapsed
 
     def sample(self) -> OdometryReading:
-        """The estimate as it stands."""
+        """The present estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         return OdometryReading(self._time, pose, self._speed, 0.0, self._yaw_rate)

@@ -14,7 +14,7 @@ from bullet_sim.world import World
 
 log = logging.getLogger(__name__)
 
-# Of a sweep: a second or so in which nobody else is answered.
+# Of a sweep: it takes about a second, in which no request is answered.
 MOST_RAYS = 100_000
 
 

@@ -11,7 +11,7 @@ class Commands:
     """Numbers that were commanded last; with a time-out, numbers to fall back on after it."""
 
     def __init__(self, timeout: float = 0.0):
-        self.timeout = timeout  # s, simulated; 0: a command stands for ever
+        self.timeout = timeout  # s, simulated; 0: a command never expires
         self.values: Sequence[float] = ()
         self._fallback: Sequence[float] | None = None
         self._taken_at: float | None = None

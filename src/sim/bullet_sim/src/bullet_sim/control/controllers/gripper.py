@@ -1,4 +1,4 @@
-"""A gripper's one joint: goes to a position, and notices when it arrives or is held up."""
+"""A gripper's one joint: moves to a position, and detects arrival and stalling."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ class GripperOptions:
     """Defaults of gripper_action_controller_impl.h, GripperActionController::init."""
 
     goal_tolerance: float = 0.01  # rad or m
-    max_effort: float = 0.0  # N m or N, while no goal says otherwise
+    max_effort: float = 0.0  # N m or N, where a goal names none
     stall_velocity_threshold: float = 0.001  # rad/s or m/s; slower is not moving
     stall_timeout: float = 1.0  # s
 
 
 @dataclass(frozen=True)
 class GripperState:
-    """What goal feedback and result tell."""
+    """Goal feedback and result."""
 
     position: float  # rad or m
     effort: float  # N m or N, as commanded
@@ -34,7 +34,7 @@ Move = Callable[[float, float, float], float]
 
 
 def move_by_position(handle: CommandHandle) -> Move:
-    """The position is the command; who is asked for the effort says the greatest."""
+    """The position is the command; the reported effort is the greatest."""
     def move(position: float, max_effort: float, period: float) -> float:
         handle.command = position
         return max_effort
@@ -52,7 +52,7 @@ def move_by_effort(handle: CommandHandle, pid: Pid) -> Move:
 
 
 class Gripper:
-    """`update` each control period; it says when the goal is over."""
+    """`update` each control period; it returns the outcome of a goal."""
 
     def __init__(self, handle: CommandHandle, move: Move, options: GripperOptions):
         self._joint = handle.joint

@@ -1,4 +1,4 @@
-"""Mecanum drive: four wheels whose rollers stand at 45 degrees to the axle."""
+"""Mecanum drive: four wheels whose rollers are at 45 degrees to the axle."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class MecanumDrive(MobileBase):
         super().command(time, forward, turning)
 
     def start(self, time: float) -> None:
-        """Stand still; odometry goes on where it was."""
+        """Brake; odometry keeps its pose."""
         self._sideways.clear()
         self._sideways_limiter.restart()
         super().start(time)

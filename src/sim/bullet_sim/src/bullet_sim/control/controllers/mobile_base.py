@@ -1,4 +1,4 @@
-"""What all drives of a robot's base share: a command with an end, limits, and odometry."""
+"""What all drives of a robot's base share: a command with a time-out, limits, and odometry."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class MobileBase(ABC):
         self._command.give(time, forward, turning)
 
     def start(self, time: float) -> None:
-        """Stand still; odometry goes on where it was."""
+        """Brake; odometry keeps its pose."""
         self._command.clear()
         self._forward_limiter.restart()
         self._turning_limiter.restart()
@@ -67,7 +67,7 @@ class MobileBase(ABC):
 
     @abstractmethod
     def _moved(self) -> tuple[float, float, float]:
-        """Forward and leftward (m) and turn (rad) by the wheels since it was last asked."""
+        """Forward and leftward (m) and turn (rad) by the wheels since the last call."""
 
     @abstractmethod
     def _twist(self, forward: float, turning: float) -> tuple[float, float]:

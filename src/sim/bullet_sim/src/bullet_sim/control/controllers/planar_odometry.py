@@ -47,7 +47,7 @@ class PlanarOdometry:
         self._advance(forward * elapsed, 0.0, yaw_rate * elapsed)
 
     def sample(self) -> OdometryReading:
-        """The estimate as it stands."""
+        """The present estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         count = max(1, len(self._speeds))
         forward, leftward, yaw_rate = (

@@ -1,4 +1,4 @@
-"""Follows a trajectory with some joints, and judges the goal that asked for it."""
+"""Follows a trajectory with some joints, and evaluates its goal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A trajectory as somebody asks for it, checked and joined to the one that is being followed."""
+"""A requested trajectory, checked and joined to the one that is being followed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bullet_sim.errors import SimulationError
 
 
 class InvalidTrajectory(SimulationError):
-    """A trajectory that nobody could follow."""
+    """A trajectory that cannot be followed."""
 
 
 class InvalidJoints(InvalidTrajectory):
@@ -22,7 +22,7 @@ class InvalidJoints(InvalidTrajectory):
 
 @dataclass(frozen=True)
 class RequestedPoint:
-    """Values in the order of the request's joints; empty: not said."""
+    """Values in the order of the request's joints; empty: not given."""
 
     time: float  # s from the trajectory's start
     positions: Sequence[float]

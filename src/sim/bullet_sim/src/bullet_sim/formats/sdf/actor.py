@@ -58,7 +58,7 @@ def read_actor(element: Element, source: Source) -> ModelDescription:
 
 
 def _figure(link: str, scale: float) -> LinkDescription:
-    """Somebody who stands on z = 0."""
+    """A standing figure, its feet at z = 0."""
     body = Cylinder(BODY_RADIUS * scale, BODY_HEIGHT * scale)
     head = Sphere(HEAD_RADIUS * scale)
     top = (BODY_HEIGHT + HEAD_RADIUS) * scale

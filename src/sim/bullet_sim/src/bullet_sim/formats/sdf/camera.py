@@ -23,7 +23,7 @@ FUNCTIONS = ("sin", "tan", "id")
 
 
 def read_camera(element: Element, sensor: str) -> CameraDescription:
-    """One camera; `sensor` says for errors which sensor it is in."""
+    """One camera; `sensor` names its sensor in errors."""
     name = element.get("name", "")
     where = f"{sensor} <camera name={name!r}>" if name else f"{sensor} <camera>"
     usual = CameraDescription()

@@ -39,7 +39,7 @@ class Entities:
 def read_entities(
     element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
 ) -> Entities:
-    """Everything that stands in a world, in the world's frame."""
+    """All entities of a world, in the world's frame."""
     frames = Frames(source, f"world {element.get('name', 'default')}")
     for frame in element.findall("frame"):
         frames.add_element(frame, frame.get("attached_to", ""), f"frame {frame.get('name')!r}")

@@ -13,7 +13,7 @@ JOINT = "joint "  # before SDF 1.7 a joint may bear the name of a link
 
 
 class Frames:
-    """Named frames of one model and where they stand in the model frame, joints at zero."""
+    """Named frames of one model and their poses in the model frame, joints at zero."""
 
     def __init__(self, source: Source, model: str):
         self._source = source
@@ -72,7 +72,7 @@ def end_of(joint: Element, role: str) -> str:
 
 
 def add_model_frames(frames: Frames, element: Element, where: str) -> None:
-    """All links, joints and frames that stand directly in a `<model>`."""
+    """All links, joints and frames that are children of a `<model>`."""
     for link in element.findall("link"):
         frames.add_element(link, MODEL, f"{where}, link {link.get('name')!r}")
     for joint in element.findall("joint"):

@@ -26,7 +26,7 @@ from bullet_sim.formats.xml_values import (
 )
 
 IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
-# What a texture of Gazebo's media folder stands for, by a word in its file name: we have none.
+# Colours for textures of Gazebo's media folder, by a word in the file name: we ship no textures.
 GROUNDS: dict[str, Rgba] = {
     "dirt": (0.42, 0.33, 0.24, 1.0),
     "grass": (0.25, 0.42, 0.16, 1.0),

@@ -28,7 +28,7 @@ TYPES = (
     "continuous",
 )
 AXES = ("axis", "axis2")
-UPWARD = (0.0, 0.0, 1.0)  # the axis of a joint that says nothing
+UPWARD = (0.0, 0.0, 1.0)  # the axis of a joint without `<axis>`
 LIMITS = ("lower", "upper", "effort", "velocity")
 UNLIMITED = JointDescription("", "", "", "")
 AXES_IN_JOINT_FRAME = (1, 5)  # SDF version since which an axis is given in the joint frame
@@ -104,7 +104,7 @@ def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
 
 
 def read_limit(text: str, key: str, where: str) -> float:
-    """One number of a joint's limits; infinity is allowed here and says that there is none."""
+    """One number of a joint's limits; infinity is allowed here and means none."""
     if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
         return getattr(UNLIMITED, key)
     return numbers(text, 1, where)[0]

@@ -65,7 +65,7 @@ def read_link(
 
 
 def _warn_of_lost_collisions(element: Element, source: Source, where: str) -> None:
-    """Of files that were not found, which another link may have been told of before."""
+    """Of files that were not found, also if a warning was given for another link."""
     files = [child_text(shape, "uri") or child_text(shape, "filename")
              for shape in element.findall("collision/geometry/*")]
     if any(files):

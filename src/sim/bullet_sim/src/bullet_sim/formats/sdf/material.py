@@ -21,7 +21,7 @@ COLOURS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def read_material(element: Element, source: Source, where: str) -> Material | None:
-    """A visual's material; None where it says nothing that we know."""
+    """A visual's material; None without any known element."""
     named = _scripted(element, source, where)
     written = [name for name in COLOURS if child_text(element, name)]
     start = named or Material()

@@ -14,7 +14,7 @@ FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
 
 
 def read_scene(element: Element | None, world: str) -> SceneDescription:
-    """Everything that is the same wherever a camera looks."""
+    """Everything that does not depend on the camera."""
     usual = SceneDescription()
     if element is None:
         return usual

@@ -1,4 +1,4 @@
-"""Says which elements of an SDF text nobody knows: most often they are misspelt."""
+"""Reports unknown elements of an SDF text: most often they are misspelt."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ALIKE = 0.75  # of a misspelt tag to the one that was meant, 0..1
 
 @cache
 def known_children() -> dict[str, frozenset[str]]:
-    """What may stand in an element, by its tag or by `parent/tag`."""
+    """The elements allowed in an element, by its tag or by `parent/tag`."""
     with (DATA_FOLDER / "sdf_elements.toml").open("rb") as file:
         table = tomllib.load(file)
     return {parent: frozenset(names.split()) for parent, names in table.items()}
@@ -46,7 +46,7 @@ def _is_old_pose(element: Element) -> bool:
 
 
 def _strange(element: Element, parent: str, place: str) -> Iterator[tuple[str, str, str]]:
-    """Unknown elements with `parent/tag` of what they stand in, and the names on the way there."""
+    """Unknown elements with `parent/tag` of their parent, and the names on the path to it."""
     tables = known_children()
     path = f"{parent}/{element.tag}"
     known = tables.get(path, tables.get(element.tag))

@@ -101,7 +101,7 @@ def _part(link: str, element: Element) -> str:
 
 
 def read_surface(element: Element | None, where: str) -> Surface:
-    """Contact parameters; only ODE's, as Gazebo runs on ODE unless told otherwise."""
+    """Contact parameters; only ODE's, Gazebo's default engine."""
     usual = Surface()
     if element is None:
         return usual

@@ -1,4 +1,4 @@
-"""Where the joints of a saved model stand, found from the poses that its links were saved with."""
+"""Positions of a saved model's joints, computed from the poses that its links were saved with."""
 
 from __future__ import annotations
 

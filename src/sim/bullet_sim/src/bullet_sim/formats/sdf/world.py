@@ -48,7 +48,7 @@ def read_world(
 def _with_insertions(
     world: WorldDescription, state: Element, source: Source, read_model: ModelReader
 ) -> WorldDescription:
-    """What was put in after the world had been opened; what the file has by now stays as it is."""
+    """Entities that were inserted after the world was opened; those that the file has are kept."""
     models = {model.name: model for model in world.models}
     for model in all_that_can(read_model, state.findall("insertions/model"), source):
         models.setdefault(model.name, model)

@@ -34,7 +34,7 @@ class Extensions:
             self._by_reference.setdefault(block.get("reference", ""), []).extend(block)
 
     def of(self, reference: str) -> list[Element]:
-        """Everything said about a link or joint, or with "" about the robot."""
+        """All extensions of a link or joint, or with "" of the robot."""
         return self._by_reference.get(reference, [])
 
     def references(self) -> Iterator[str]:

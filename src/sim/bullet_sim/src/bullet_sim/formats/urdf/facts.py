@@ -1,4 +1,4 @@
-"""What controllers want to know of a URDF: limits of joints, where they are, wheel radii."""
+"""Properties of a URDF for controllers: limits of joints, where they are, wheel radii."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from bullet_sim.pose import Vector3
 
 logger = logging.getLogger(__name__)
 
-FORWARD = (1.0, 0.0, 0.0)  # the axis of a joint that says nothing
+FORWARD = (1.0, 0.0, 0.0)  # the axis of a joint without `<axis>`
 NONE = (0.0,)
 SPRINGS = {"springReference": "spring_reference", "springStiffness": "spring_stiffness"}
 

@@ -111,7 +111,7 @@ def _part_as_sdf(part: Element, where: str) -> list[Element]:
 def _plain_shapes(
     geometry: Element | None, where: str
 ) -> list[tuple[Element | None, float]]:
-    """The shapes that make up a geometry, and how far along z each stands, m."""
+    """The shapes that make up a geometry, and how far along z each is, m."""
     shape = None if geometry is None or len(geometry) == 0 else geometry[0]
     if shape is None or shape.tag != "capsule":
         return [(shape, 0.0)]

@@ -50,7 +50,7 @@ class Body:
         )
 
     def take_in(self, child: Body, origin: Pose) -> None:
-        """Everything of `child`, whose frame stands at `origin` here."""
+        """Everything of `child`, whose frame is at `origin` here."""
         self.inertial = combined(self.inertial, child.inertial, origin)
         self.visuals += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.visuals]
         self.collisions += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.collisions]
@@ -125,7 +125,7 @@ def _named(
     own_count: dict[str, int] = {}
     for index, (owner, stem, shape) in enumerate(shapes):
         name = f"{stem}{ending}" + (f"_{index}" if index else "")
-        if not name.startswith(link):  # sdformat tells lumped shapes by this prefix alone
+        if not name.startswith(link):  # sdformat recognises lumped shapes by this prefix alone
             name = link + LUMP + name
         own_index = own_count.get(owner, 0)
         own_count[owner] = own_index + 1

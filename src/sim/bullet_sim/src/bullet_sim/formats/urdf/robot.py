@@ -80,7 +80,7 @@ def _poses(tree: UrdfTree) -> dict[str, Pose]:
 def _with_mass(
     tree: UrdfTree, bodies: dict[str, Body], survivor: dict[str, tuple[str, Pose]], source: Source
 ) -> list[str]:
-    """Links to keep, in order: one without mass goes, and with it all that hangs on it."""
+    """Links to keep, in order: one without mass is dropped with all links below it."""
     kept: list[str] = []
     for name in tree.depth_first(tree.root):
         if name not in bodies:
@@ -113,7 +113,7 @@ def _with_robot_level(
     lumped: dict[str, tuple[str, Pose]],
     source: Source,
 ) -> ModelDescription:
-    """The model with what `<gazebo>` without a reference says; other tags are SDF as written."""
+    """The model with what is in `<gazebo>` without a reference; other tags are SDF as written."""
     extra = Element("model")
     extra.extend(extensions.of(""))
     where = f"robot {tree.name!r}"

@@ -18,7 +18,7 @@ UNSET = re.compile(r"environment variable '(\w+)' is not set")
 
 
 def located(error: BaseException, path: str) -> str:
-    """Place and reason; `path` is the file that was asked for."""
+    """Place and reason; `path` is the requested file."""
     where, reason = place(path), _reason(error)
     text = reason if reason.startswith(where) else f"{where}: {reason}"
     return text if len(text) <= LONGEST else text[:LONGEST] + " …"
@@ -40,7 +40,7 @@ def root_of(error: BaseException) -> BaseException:
 
 
 def _reason(error: BaseException) -> str:
-    """What to tell people of an exception."""
+    """The text of an exception for users."""
     root = root_of(error)
     if isinstance(root, FormatError):
         return one_line(str(root))

@@ -71,7 +71,7 @@ class Attempt:
                               "flatten them") from None
 
     def unknown_tags(self) -> list[str]:
-        """Tags that look like calls nobody answered."""
+        """Tags that look like calls of undefined macros."""
         root = self.document.documentElement
         tags = [element.tagName for element in elements(root)]
         inside = unanswered_inside(root, self.macros)

@@ -53,7 +53,7 @@ class Legacy(Melodic):
 
 
 def _everywhere(parent: minidom.Element) -> Iterator[minidom.Element]:
-    """Elements below, outside of macros; the caller may take out what it is given."""
+    """Elements below, outside of macros; the caller may remove what it gets."""
     for element in elements(parent):
         yield element
         if element.parentNode is not None and element.tagName != "xacro:macro":

@@ -20,7 +20,7 @@ from bullet_sim.formats.xacro.errors import one_line, place
 from bullet_sim.formats.xacro.nodes import replace_node
 
 MOST_PARTS = 15_000  # macro calls, properties, conditions, blocks; large robots have 3 000
-MOST_TEXTS = 150_000  # attributes and texts looked through; TurtleBot3 has 110 for each link
+MOST_TEXTS = 150_000  # attributes and texts evaluated; TurtleBot3 has 110 for each link
 MOST_SECONDS = 3.5  # of processor time; large robots take 1
 LONG = 1.0  # s; an expression that took so long is what took the time
 MOST_BYTES = 2**30
@@ -35,7 +35,7 @@ class TooLarge(FormatError):
 
 
 class Budget:
-    """Counts what is put into the document, so that macros cannot double without end."""
+    """Counts what is put into the document, so that macros cannot grow it without bound."""
 
     def __init__(self) -> None:
         self._parts = self._texts = 0
@@ -65,7 +65,7 @@ class Budget:
 
 
 def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, which leaves word of what it is doing."""
+    """The same function, which records what it evaluates."""
     def noted(expression: str, symbols: dict, local: dict | None = None) -> Any:
         said = f"{time.monotonic()} {place('xacro')}: ${{{one_line(expression[:200])}}}"
         _note[:] = said.encode()[:NOTE_BYTES].ljust(NOTE_BYTES, b"\0")

@@ -36,7 +36,7 @@ class Siblings(minidom.NodeList):
 def replace_node(
     node: minidom.Node, by: minidom.Node | list[minidom.Node] | None, content_only: bool = False
 ) -> None:
-    """Stands for xacro's: puts `by`, or what is in it, in the place of a node.
+    """Replaces xacro's: puts `by`, or its content, in the place of a node.
 
     xacro moves the new nodes one by one, and each is looked for among all that are there.
     """
@@ -67,7 +67,7 @@ def _compiled(expression: str) -> CodeType:
 
 
 def safe_eval(expression: str, symbols: dict, local: dict | None = None) -> Any:
-    """Stands for xacro's: a macro's expressions are compiled once and not for each call."""
+    """Replaces xacro's: a macro's expressions are compiled once and not for each call."""
     code = _compiled(expression)
     if invalid := [name for name in code.co_names if name.startswith("__")]:
         raise xacro.XacroException("Use of invalid name(s): ", ", ".join(invalid))

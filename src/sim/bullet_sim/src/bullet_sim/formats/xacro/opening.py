@@ -36,7 +36,7 @@ def parse(_source: object, filename: str) -> minidom.Document:
         _check(filename)
         content = Path(filename).read_bytes()
     except OSError as error:
-        xacro.filestack.pop()  # the place of the mistake is the file that asked for this one
+        xacro.filestack.pop()  # the error is reported for the including file
         raise xacro.XacroException(_unreadable(filename, error), exc=error) from error
     return minidom.parseString(content)
 
@@ -53,7 +53,7 @@ def load_yaml(filename: str) -> Any:
 
 
 def _check(filename: str) -> None:
-    """OSError for what is there and no file to open: a pipe would keep its reader for ever."""
+    """OSError for what exists and is no regular file: reading a pipe would block."""
     if os.path.exists(filename):
         try:
             check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")

@@ -1,4 +1,4 @@
-"""`$(…)` in xacro files: what ROS 1's knows and PyPI's does not."""
+"""`$(…)` in xacro files: what ROS 1's xacro supports and PyPI's does not."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ LEXER = xacro.QuickLexer(
 
 
 class NoSuchArgument(substitution_args.ArgException, KeyError):
-    """Where Python looks for a name it goes on looking; elsewhere it is xacro's own error."""
+    """A KeyError where Python resolves a name; elsewhere xacro's own error."""
 
     __str__ = Exception.__str__
 
 
 class Arguments(dict):
-    """Values by name; to ask for one that is missing is one error, by whatever way."""
+    """Values by name; access to a missing one is the same error by item and by attribute."""
 
     def __missing__(self, name: str) -> str:
         raise NoSuchArgument(name)
