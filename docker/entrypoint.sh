@@ -15,7 +15,7 @@ if [ "$(id -u)" = 0 ]; then
   fi
 fi
 # Where a user has no entry in /etc/passwd, or another's home, programs ask these.
-[ -w "${HOME:-/nowhere}" ] || HOME=$(mktemp -d)
+[ -w "${HOME:-/nowhere}" ] || HOME=$(mktemp -d 2>/dev/null) || fail "there is no folder to write to: run with a writable /tmp"
 USER=$(id -un 2>/dev/null) || USER=learner
 export HOME USER LOGNAME=$USER ROS_HOSTNAME=localhost
 
@@ -24,7 +24,8 @@ if [ -d "$repository" ]; then
   changed=$({ diff <("$ws/docker/lists.sh" "$repository") /usr/local/share/workspace-lists || true; } | awk '/^[<>]/ && !name {name = $3} END {print name}')
   [ -z "$changed" ] ||
     fail "$changed is not what this image was made from; type: docker compose -f docker/compose.yaml build"
-  find "$repository" -maxdepth 1 -type f -size -1024k -exec cp --remove-destination -t . {} +
+  find "$repository" -maxdepth 1 -type f -readable -size -1024k -exec cp --remove-destination -t . {} + 2>/dev/null ||
+    fail "user $(id -u) cannot write in $ws: run the container with a writable file system"
 fi
 mkdir -p out 2>/dev/null || true
 [ -w out ] || fail "out/ belongs to $(stat -c 'user %u' out), not to you; type: sudo chown -R $(id -u):$(id -g) out"

@@ -31,7 +31,9 @@ choose_master() {
   if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
     export ROS_MASTER_URI=${given_master[0]}
     if [ -n "${given_master[2]}" ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
-    [ -z "${given_master[1]}" ] || export ROS_HOSTNAME=${given_master[1]}
+    if [ -n "${given_master[1]}" ]; then export ROS_HOSTNAME=${given_master[1]}
+    # Another machine cannot reach this one as localhost: rospy takes this machine's own name.
+    elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
     return 0
   fi
   port=$(python3 -c 'from evaluation.course_run.launch import free_port; print(free_port())')

@@ -171,3 +171,31 @@ def test_a_changed_list_asks_for_a_new_image(container: Path) -> None:
 def test_files_beside_the_folders_are_the_hosts(container: Path) -> None:
     (container / "repository/Makefile").write_text("new\n")
     assert enter(container, "cat Makefile").stdout == "new\n"
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root becomes another user, as in a container")
+def test_files_that_nobody_may_read_are_left_out(container: Path) -> None:
+    for path in [container / "repository", *(container / "repository").rglob("*")]:
+        os.chown(path, STRANGER, STRANGER)
+    secret = container / "repository/.env"
+    secret.write_text("secret\n")
+    secret.chmod(0o600)
+    assert enter(container, "ls -A").stderr == ""
+    assert not (container / "ws/.env").exists()
+
+
+def test_what_editors_and_hosts_leave_in_docker_asks_for_nothing(container: Path) -> None:
+    for name in (".DS_Store", "Dockerfile~", ".Dockerfile.swp", "compose.override.yaml"):
+        (container / "repository/docker" / name).write_text("x")
+    done = enter(container, "true")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root becomes another user, as in a container")
+def test_a_workspace_that_cannot_be_written_is_one_line(container: Path) -> None:
+    for path in [container / "repository", *(container / "repository").rglob("*")]:
+        os.chown(path, STRANGER, STRANGER)
+    (container / "ws").chmod(0o755)
+    done = enter(container, "true")
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    assert "writable file system" in done.stderr

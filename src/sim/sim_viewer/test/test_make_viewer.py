@@ -124,7 +124,9 @@ def master_chosen(**given: str) -> tuple[list[str], str]:
 
 def test_a_named_master_is_kept(somebody_elses_master):
     there = "http://10.0.0.7:11399"
-    assert master_chosen(ROS_MASTER_URI=there) == ([there, "localhost", ""], "")
+    assert master_chosen(ROS_MASTER_URI=there) == ([there, "", ""], "")  # reached by its own name
+    here = "http://127.0.0.1:11399"
+    assert master_chosen(ROS_MASTER_URI=here) == ([here, "localhost", ""], "")
     assert master_chosen(ROS_MASTER_URI=there, ROS_IP="10.0.0.8")[0] == [there, "", "10.0.0.8"]
     assert master_chosen(ROS_MASTER_URI=there, ROS_HOSTNAME="me")[0] == [there, "me", ""]
 
