@@ -1,6 +1,7 @@
 """The graph's layout: from left to right, nothing on top of anything, and always an end."""
 
 import itertools
+import math
 import random
 import subprocess
 import time
@@ -46,6 +47,18 @@ def test_names_may_hold_anything():
 def test_the_same_graph_has_the_same_layout_whatever_the_order():
     edges = [("a", "b"), ("a", "c"), ("b", "d"), ("c", "d")]
     assert layout(named("abcd"), edges) == layout(named("dcba"), edges[::-1])
+
+
+def test_a_large_graph_has_straight_edges_in_time():
+    pick = random.Random(1)
+    nodes, topics = [f"n{i}" for i in range(200)], [f"t{i}" for i in range(200)]
+    edges = {(pick.choice(nodes), topic) for topic in topics}
+    edges |= {(topic, pick.choice(nodes)) for topic in topics}
+    plan = layout(named(nodes + topics), edges)
+    assert set(plan.curves) == edges and len(edges) > graph_layout.MOST_CURVED
+    for (x, y), *between, (u, v) in plan.curves.values():
+        for s, t in between:
+            assert abs((s - x) * (v - y) - (t - y) * (u - x)) / math.dist((x, y), (u, v)) < 1.0
 
 
 def test_without_dot_it_says_what_to_type(monkeypatch):

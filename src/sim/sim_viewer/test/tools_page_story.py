@@ -58,6 +58,10 @@ class ToolsPage(unittest.TestCase):
                                ("/turtle1/cmd_vel", "/turtlesim")):
             self.page.wait_for(f"!!document.querySelector('.edge[data-from=\"{source}\"]"
                                f"[data-to=\"{target}\"]')")
+        self.assertEqual(self.page.evaluate("""
+            [...document.querySelectorAll('svg.graph g[data-name]')].filter((one) =>
+              one.querySelector('text').getBBox().width > one.querySelector('rect').getBBox().width)
+            .map((one) => one.dataset.name).join()"""), "")
         self.fill("#graph-filter", "cmd_vel")
         self.page.wait_for("document.querySelectorAll('#graph .topic').length === 1")
         self.fill("#graph-filter", "")
