@@ -9,7 +9,7 @@ BOX, GAP, LEFT = (150, 62), 26, 16  # px: width and height; between boxes; margi
 ROWS = (
     ("A file becomes bodies", (
         ("URDF, SDF, xacro", "text"),
-        ("formats/", "XML elements; URDF as SDF"),
+        ("formats/", "XML; URDF as SDF"),
         ("description/", "frozen dataclasses"),
         ("physics/assembly.py", "trees of links"),
         ("physics/urdf_text.py", "URDF of one tree"),
