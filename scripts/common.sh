@@ -23,6 +23,9 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 enter_workspace() {
   set +u; . "$root/devel/setup.bash"; set -u
   export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
+  # roscore and roslaunch write below ~/.ros, and end where they cannot.
+  local home=${HOME:-/nonexistent}
+  if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
 # A master that other terminals join: the one that was named, the usual one, or, where somebody else has that, a new one.

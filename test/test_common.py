@@ -1,0 +1,31 @@
+"""What the verbs share: scripts/common.sh."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def ros_home(home: Path | None) -> str:
+    """ROS_HOME of a verb for a user with that home; empty: ROS's own default."""
+    environment = {name: value for name, value in os.environ.items()
+                   if name not in ("HOME", "ROS_HOME")} | ({"HOME": str(home)} if home else {})
+    done = subprocess.run(
+        ["bash", "-c", '. scripts/common.sh; enter_workspace; echo "${ROS_HOME:-}"',
+         ROOT / "scripts/course.sh"],
+        cwd=ROOT, env=environment, text=True, capture_output=True, check=True)
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("has_ros", [True, False])
+def test_ros_writes_below_the_home(tmp_path: Path, has_ros: bool) -> None:
+    if has_ros:
+        (tmp_path / ".ros").mkdir()
+    assert ros_home(tmp_path) == ""
+
+
+def test_without_a_home_that_can_be_written_ros_writes_here(tmp_path: Path) -> None:
+    assert ros_home(None) == ros_home(tmp_path / "gone") == str(ROOT / ".setup/ros")
