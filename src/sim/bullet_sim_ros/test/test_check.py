@@ -1,5 +1,6 @@
 """rosrun bullet_sim_ros check: what it finds, how it says so, and its exit code."""
 
+import mmap
 import os
 import threading
 import time
@@ -307,6 +308,16 @@ def test_launch_files_that_do_not_end(check, tmp_path, inside, words):
     code, said = check("a.launch", f"<launch>{inside.replace('{}', str(tmp_path))}</launch>")
     (line,) = [line for line in said.splitlines() if "PROBLEM" in line]
     assert code == 1 and words in line, said
+
+
+def test_the_memory_of_whoever_asks_does_not_count(check):
+    large = mmap.mmap(-1, 3 << 29, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    text = f'<param name="a" value="{"x" * 1000}"/>' * 2000
+    try:
+        code, said = check("a.launch", f"<launch>{text}</launch>")
+        assert code == 0, said
+    finally:
+        large.close()
 
 
 def test_a_part_that_many_robots_include_is_no_circle(check, tmp_path):

@@ -110,7 +110,8 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         signal.signal(number, signal.SIG_DFL)  # which ends the process, whatever the parent does
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
     signal.alarm(LONGEST_WAIT)
-    resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
+    limit = _data_size() + MOST_MEMORY  # on top of what the parent has
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
     loader = roslaunch.loader.Loader
     loader.param_value = _remembered(loader.param_value, sender)
     _watch_includes(roslaunch.xmlloader.XmlLoader)
@@ -124,6 +125,11 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
               for node in config.nodes),
         {name: parameter.value for name, parameter in config.params.items()}))
+
+
+def _data_size() -> int:
+    """Bytes of this process that RLIMIT_DATA counts."""
+    return int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
 
 
 def _said(error: Exception) -> str:
