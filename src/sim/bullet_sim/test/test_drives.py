@@ -68,6 +68,11 @@ def test_set_velocity_moves_every_link_as_of_one_piece(world):
     assert model.twist.angular == pytest.approx((0.0, 0.0, 2.0))
 
 
+def assert_same_pose(pose, expected):
+    assert pose.position == pytest.approx(expected.position, abs=1e-3)
+    assert pose.rpy() == pytest.approx(expected.rpy(), abs=2e-3)
+
+
 def test_links_stay_attached_as_they_were_whatever_their_centres_of_mass(world):
     first = world.spawn(cube("a", (0.02, 0, 0)), Pose((0, 0, 1), quaternion_from_rpy(.3, .2, .5)))
     second = world.spawn(cube("b", (0, 0.03, 0)),
@@ -76,9 +81,7 @@ def test_links_stay_attached_as_they_were_whatever_their_centres_of_mass(world):
     weld = second.links["l"].attach(first.links["l"])
     first.links["l"].apply_force((50.0, 0.0, 0.0), (0.0, 3.0, 0.0))
     world.step(300)
-    after = first.pose.inverse() * second.pose
-    assert after.position == pytest.approx(before.position, abs=1e-3)
-    assert after.rpy() == pytest.approx(before.rpy(), abs=2e-3)
+    assert_same_pose(first.pose.inverse() * second.pose, before)
     weld.release()
     weld.release()  # a second time does nothing
 
@@ -97,9 +100,7 @@ def test_a_weld_outlives_a_rebuild_of_either_body(world):
     rebuild_heavier(second)
     first.links["l"].apply_force((50.0, 0.0, 0.0), (0.0, 3.0, 0.0))
     world.step(300)
-    after = first.pose.inverse() * second.pose
-    assert after.position == pytest.approx(before.position, abs=1e-3)
-    assert after.rpy() == pytest.approx(before.rpy(), abs=2e-3)
+    assert_same_pose(first.pose.inverse() * second.pose, before)
     weld.release()
     first.links["l"].apply_force((500.0, 0.0, 0.0))
     world.step(100)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -48,7 +49,7 @@ def clamp(value: float, low: float, high: float) -> float:
     return low if value < low else high if value > high else value
 
 
-class Limiter:
+class Limiter(ABC):
     """Keeps the commands of one joint within limits. `apply` is called once a step."""
 
     def __init__(self, joint: JointState, limits: JointLimits):
@@ -60,9 +61,9 @@ class Limiter:
         """After a reset of the joint, or a stop: forget the command before."""
         self._last: float | None = None
 
+    @abstractmethod
     def apply(self, command: float, period: float) -> float:
         """The command that may be given, `period` (s) after the one before."""
-        raise NotImplementedError
 
     def _soft_speeds(self, position: float) -> tuple[float, float]:
         """Least and greatest speed at a position, as soft limits have it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from bullet_sim.control.controllers.commands import Commands
@@ -11,7 +12,7 @@ from bullet_sim.control.limits import clamp
 from bullet_sim.control.pid import Pid
 
 
-class Servo:
+class Servo(ABC):
     """One joint; `target`, `error` and `output` are those of the last update."""
 
     def __init__(self, handle: CommandHandle, pid: Pid):
@@ -24,18 +25,18 @@ class Servo:
         self.pid.reset()
         return self.rest()
 
+    @abstractmethod
     def rest(self) -> float:
         """The target that keeps the joint as it is."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def process_value(self) -> float:
         """What is to reach the target."""
-        raise NotImplementedError
 
+    @abstractmethod
     def update(self, target: float, period: float) -> None:
         """Write the command; `period` (s) since the last update."""
-        raise NotImplementedError
 
 
 class VelocityServo(Servo):

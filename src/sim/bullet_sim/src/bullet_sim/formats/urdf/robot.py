@@ -19,7 +19,7 @@ from bullet_sim.formats.urdf.joint import read_urdf_joint
 from bullet_sim.formats.urdf.link import read_urdf_link
 from bullet_sim.formats.urdf.lumping import Body, follow_lumping, lump
 from bullet_sim.formats.urdf.tree import WORLD, UrdfJoint, UrdfTree, read_origin, read_tree
-from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.pose import Pose
 
 KEEP_FIXED_JOINT = ("preserveFixedJoint", "disableFixedJointLumping")
 
@@ -44,7 +44,7 @@ def read_robot(robot: Element, source: Source) -> ModelDescription:
         member: (name, pose) for name, body in bodies.items()
         for member, pose in body.members.items()
     }
-    poses = _poses(tree)
+    poses = tree.poses()
     kept = _with_mass(tree, bodies, survivor, source)
     links = [bodies[name].as_link(poses[name]) for name in kept]
     lumped = {
@@ -66,15 +66,6 @@ def _read_body(
     extend_link(sdf, extensions.of(name), lumped)
     link = read_link(sdf, source, f"robot {tree.name!r}")
     return Body.of(link, inertial)
-
-
-def _poses(tree: UrdfTree) -> dict[str, Pose]:
-    """Links in the model frame with every joint at zero."""
-    poses = {tree.root: IDENTITY}
-    for name in tree.depth_first(tree.root):
-        for joint in tree.outward.get(name, ()):
-            poses[joint.child] = poses[name] * joint.origin
-    return poses
 
 
 def _with_mass(

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.xml_values import bounded, numbers, or_default
-from bullet_sim.pose import Pose
+from bullet_sim.pose import IDENTITY, Pose
 
 WORLD = "world"
 DEEPEST = 200  # joints from the root to a link
@@ -43,6 +43,14 @@ class UrdfTree:
         yield start
         for joint in self.outward.get(start, ()):
             yield from self.depth_first(joint.child)
+
+    def poses(self) -> dict[str, Pose]:
+        """Links in the model frame with every joint at zero."""
+        poses = {self.root: IDENTITY}
+        for name in self.depth_first(self.root):
+            for joint in self.outward.get(name, ()):
+                poses[joint.child] = poses[name] * joint.origin
+        return poses
 
 
 def read_tree(robot: Element) -> UrdfTree:

@@ -16,9 +16,9 @@ from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.link import read_link
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf.link import link_as_sdf
-from bullet_sim.formats.urdf.tree import UrdfTree, read_tree
+from bullet_sim.formats.urdf.tree import read_tree
 from bullet_sim.formats.xml_values import numbers, parse_xml
-from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.pose import Pose
 
 RobotLinks = dict[str, tuple[Pose, tuple[Visual, ...]]]
 
@@ -35,20 +35,12 @@ def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks
     tree = read_tree(robot)
     source = Source(resources)
     named = {element.get("name", ""): element for element in robot.findall("material")}
-    poses = _poses(tree)
+    poses = tree.poses()
     with reading():
         return tree.name, {
             name: (poses[name], tuple(visual for part in link.findall("visual")
                                       for visual in _visuals(name, part, named, source)))
             for name, link in tree.links.items()}
-
-
-def _poses(tree: UrdfTree) -> dict[str, Pose]:
-    poses = {tree.root: IDENTITY}
-    for name in tree.depth_first(tree.root):
-        for joint in tree.outward.get(name, ()):
-            poses[joint.child] = poses[name] * joint.origin
-    return poses
 
 
 def _visuals(link: str, part: Element, named: dict[str, Element],
