@@ -1,12 +1,20 @@
 #!/usr/bin/env bash
-# Takes out of an image what nobody uses there: PyBullet's symbols, packages' own tests, manuals, libraries to link statically.
+# Takes out of an image what nobody uses there: symbols, sample data, packages' own tests, manuals, libraries to link
+# statically, GCC's reader of LTO files, and ROCm (MPI's plugin for AMD accelerators pulls it in, with an LLVM of its own).
 set -euo pipefail
 shopt -s nullglob
 cd .venv/lib/python3*/site-packages
-strip --strip-unneeded pybullet.*.so eglRenderer.*.so
+strip --strip-unneeded pybullet.*.so eglRenderer.*.so llvmlite/binding/libllvmlite.so
 rm -rf pybullet_envs pybullet_examples pybullet_robots
+find pybullet_data -type f ! -name '*.urdf' ! -name '*.py' -delete  # the core's tests read the URDF files
 for package in numpy scipy numba llvmlite matplotlib; do
   [ ! -d $package ] || find $package -type d -name tests -prune -exec rm -rf {} +
 done
 rm -rf /usr/share/doc /usr/share/man /usr/share/info /usr/share/locale /usr/share/help
-rm -f /usr/lib/*/libboost_*.a /usr/lib/*/libicu*.a /usr/lib/*/libpython3*.a
+rm -f /usr/lib/*/libboost_*.a /usr/lib/*/libicu*.a /usr/lib/*/libpython3*.a /usr/lib/python3*/config-*/*.a
+rm -f /usr/bin/*-lto-dump-*
+for comgr in /usr/lib/*/libamd_comgr.so.*.*; do
+  llvm=$(objdump -p "$comgr" | awk '$1 == "NEEDED" && $2 ~ /^libLLVM-/ {print $2}')
+  [ -z "$llvm" ] || rm -f "${comgr%/*}/${llvm%%.so*}.so"*
+done
+rm -f /usr/lib/*/libamd_comgr.so* /usr/lib/*/libamdhip64.so* /usr/lib/*/libhsa-runtime64.so* /usr/lib/*/ucx/*rocm*
