@@ -29,3 +29,17 @@ def test_ros_writes_below_the_home(tmp_path: Path, has_ros: bool) -> None:
 
 def test_without_a_home_that_can_be_written_ros_writes_here(tmp_path: Path) -> None:
     assert ros_home(None) == ros_home(tmp_path / "gone") == str(ROOT / ".setup/ros")
+
+
+@pytest.mark.parametrize(("platform", "sound"), [("trixie-arm64", "yes"), ("trixie-amd64", "no")])
+def test_a_venv_of_another_architecture_is_made_again(
+        tmp_path: Path, platform: str, sound: str) -> None:
+    venv = tmp_path / "venv"
+    subprocess.run(["/usr/bin/python3", "-m", "venv", "--system-site-packages", venv], check=True)
+    (tmp_path / "state").mkdir()
+    (tmp_path / "state/venv").write_text(f"{venv} trixie-arm64\n")
+    done = subprocess.run(
+        ["bash", "-c", f". scripts/setup/python.sh; venv={venv} state={tmp_path}/state "
+         f"platform={platform}; venv_is_sound && echo yes || echo no"],
+        cwd=ROOT, text=True, capture_output=True, check=True)
+    assert done.stdout.strip() == sound

@@ -2,7 +2,7 @@
 
 venv_is_sound() {
   [ ! -e "$state/venv-unfinished" ] && [ -x "$venv/bin/pip" ] &&
-    [ "$(cat "$state/venv" 2>/dev/null || echo "$venv")" = "$venv" ] &&
+    [ "$(cat "$state/venv" 2>/dev/null || echo "$venv $platform")" = "$venv $platform" ] &&
     grep -q '^include-system-site-packages = true' "$venv/pyvenv.cfg" && grep -q '^home = /usr/bin$' "$venv/pyvenv.cfg" &&
     "$venv/bin/python3" -c 'import os, sys, sysconfig; sys.exit(not os.path.isdir(sysconfig.get_path("purelib")))' 2>/dev/null
 }
@@ -12,7 +12,7 @@ python_environment() {
   rm -rf "$venv" "$state"/requirements* "$state/build-inputs"
   touch "$state/venv-unfinished"
   logged venv /usr/bin/python3 -m venv --system-site-packages "$venv" || fail_with_log "python3 -m venv failed" venv
-  echo "$venv" >"$state/venv"
+  echo "$venv $platform" >"$state/venv"
 }
 
 pip() { env -u PIP_USER -u PIP_TARGET -u PIP_PREFIX "$venv/bin/python3" -I -m pip "$@" --no-input --disable-pip-version-check --no-deps; }
