@@ -43,5 +43,13 @@ class UnknownName(SimulationError):
         super().__init__(f"no {kind} named {name!r}; there are: {', '.join(self.known) or 'none'}")
 
 
+def check_lengths(geometry: object, *names: str) -> None:
+    """SimulationError for a field of these names (m) that is not above 0."""
+    for name in names:
+        value = getattr(geometry, name)
+        if not value > 0.0:
+            raise SimulationError(f"{name} is {value:g} m; it must be above 0")
+
+
 class NameTaken(SimulationError):
     """A model of that name is already in the world."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Rgba
@@ -19,8 +19,8 @@ from bullet_sim.formats.xml_text import parse_xml, read_xml_file
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 __all__ = [
-    "amount", "bounded", "child_text", "colour", "flag", "integer", "length", "not_negative",
-    "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file", "shown", "size",
+    "amount", "bounded", "child_text", "colour", "fields", "flag", "integer", "length",
+    "not_negative", "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file", "shown", "size",
     "vector", "vector_text",
 ]
 
@@ -167,6 +167,16 @@ def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
     count = 3 if len(text.split()) == 3 else 4
     return or_default(
         lambda: (*numbers(text, count, f"{where} <{path}>"), 1.0)[:4], default)
+
+
+def fields(read: Callable[..., Value], parent: Element, names: str, usual: Any, where: str,
+           folder: str = "", prefix: str = "") -> dict[str, Value]:
+    """What `read` gives for elements in `folder` that are named as the fields of a description.
+
+    `usual` has the defaults. `prefix` is what the fields' names have before those of the elements.
+    """
+    return {prefix + name: read(parent, folder + name, getattr(usual, prefix + name), where)
+            for name in names.split()}
 
 
 def pose(parent: Element, where: str, default: Pose = IDENTITY) -> Pose:

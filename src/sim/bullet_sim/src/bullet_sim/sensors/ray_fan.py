@@ -55,6 +55,13 @@ class RayFan:
         distances = ray.range_min + hits.fraction * (ray.range_max - ray.range_min)
         return distances.reshape(self.shape), hits.retro.reshape(self.shape)
 
+    def nearest(self) -> float:
+        """Distance to the nearest thing, m, as sonars and range finders measure it.
+
+        Where nothing is near it is range_max. The ray's own SDF noise is not added.
+        """
+        return float(self.cast()[0].min())
+
 
 def fewer_rays(columns: int, rows: int) -> tuple[int, int]:
     """As many columns and rows as are cast; the longer of the two is thinned first."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 # m/s; slower than this the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
 CRAWL = 1e-3
@@ -25,9 +25,7 @@ class FourWheelGeometry:
     wheel_radius: float
 
     def __post_init__(self):
-        for name in ("track", "wheelbase", "wheel_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "track", "wheelbase", "wheel_radius")
 
     def places(self) -> tuple[tuple[float, float], ...]:
         """Of the wheels from the middle: front left, front right, rear left, rear right."""

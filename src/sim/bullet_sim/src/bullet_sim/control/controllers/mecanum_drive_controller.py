@@ -9,7 +9,7 @@ from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 # What leftward speed and yaw rate add to a wheel's rim speed: front left, back left, back right,
 # front right. Seen from above the rollers' axes make an X; those on the ground a diamond.
@@ -24,9 +24,7 @@ class MecanumGeometry:
     wheel_radius: float
 
     def __post_init__(self):
-        for name in ("reach", "wheel_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "reach", "wheel_radius")
 
 
 class MecanumDrive(MobileBase):
