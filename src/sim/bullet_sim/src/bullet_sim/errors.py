@@ -7,10 +7,10 @@ from collections.abc import Iterable
 LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
 
 
-def shortened(text: str) -> str:
+def shortened(text: str, longest: int = LONGEST_LINE) -> str:
     """Both ends of one that is too long: what is wrong, and what to do about it."""
-    half = LONGEST_LINE // 2
-    return text if len(text) <= LONGEST_LINE else f"{text[:half]} … {text[-half:]}"
+    half = longest // 2
+    return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
 
 
 class SimulationError(Exception):

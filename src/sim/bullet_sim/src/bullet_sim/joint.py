@@ -39,7 +39,7 @@ class Joint:
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """Put the joint there at once; a screw travels with its turn."""
         self._body.reset_joint(self.name, position, velocity)
-        if self.name + TRAVEL in self._body.joint_names():
+        if self.name + TRAVEL in self._body.joint_index:
             pitch = -self.description.thread_pitch
             self._body.reset_joint(self.name + TRAVEL, position / pitch, velocity / pitch)
         self._touched()

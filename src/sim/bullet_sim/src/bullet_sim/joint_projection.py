@@ -23,7 +23,7 @@ def project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, 
     if carrier is None:
         return None
     joint, axis = carrier.joint, carrier.joint.axis
-    frame = body.engine_frame(body.index(carrier.name))
+    frame = body.engine_frame(body.index[carrier.name])
     wanted = pose * link.pose.inverse() * frame
     moved = frame.inverse() * wanted
     parent_pose, parent_twist = link.model.link_states().get(

@@ -54,7 +54,7 @@ class Model(ModelState):
         }
         self._axes = {  # all that the engine can move, second axes and travels of screws too
             joint: Joint(body.joint_description(joint), body, self.forget)
-            for body in self.bodies for joint in body.joint_names()
+            for body in self.bodies for joint in body.joint_index
         }
         self._find_joints(loops)
         self._steady = [body for body in self.bodies if body.acts_steadily]

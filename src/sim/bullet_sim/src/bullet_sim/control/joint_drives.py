@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.limits import LIMITERS, JointLimits, clamp
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.joint import Joint
+from bullet_sim.pose import shortest_angular_distance
 
 STRONGEST = 1e6  # N m or N: where there is no limit; the engine makes NaN of much more
 ARRIVED = 1e-9  # rad or m

@@ -20,8 +20,8 @@ from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 __all__ = [
     "amount", "bounded", "child_text", "colour", "fields", "flag", "integer", "length",
-    "not_negative", "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file", "shown", "size",
-    "vector", "vector_text",
+    "not_negative", "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file",
+    "shown", "size", "vector", "vector_text",
 ]
 
 TRUE_WORDS = ("true", "1")

@@ -11,10 +11,10 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import Fog, Material
+from bullet_sim.meshes.images import load_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
 from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
-from bullet_sim.rendering.textures import load_image
 
 LIGHTS_BINDING, SURFACE_BINDING = 0, 1
 _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}

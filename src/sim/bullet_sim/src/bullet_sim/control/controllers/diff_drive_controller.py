@@ -52,9 +52,6 @@ class DiffDrive(MobileBase):
         right = (self._travelled[1] - before[1]) * g.right_radius
         return (left + right) / 2, 0.0, (right - left) / g.wheel_separation
 
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning
-
 
 def _mean_angle(wheels: Sequence[CommandHandle]) -> float:
     return sum(wheel.joint.position for wheel in wheels) / len(wheels)

@@ -101,9 +101,6 @@ class FourWheelSteering(MobileBase):
         twist = measured_twist(self._geometry, speeds, angles)
         return tuple(rate * elapsed for rate in twist)
 
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning
-
 
 def wheel_commands(geometry: FourWheelGeometry, forward: float, front: float,
                    rear: float) -> list[tuple[float, float]]:

@@ -75,6 +75,3 @@ class MecanumDrive(MobileBase):
         leftward = sum(way * sideways for way, (sideways, _) in zip(ways, SIGNS, strict=True))
         turned = sum(way * around for way, (_, around) in zip(ways, SIGNS, strict=True))
         return sum(ways), leftward, turned / g.reach
-
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning

@@ -69,9 +69,9 @@ class MobileBase(ABC):
     def _moved(self) -> tuple[float, float, float]:
         """Forward and leftward (m) and turn (rad) by the wheels since the last call."""
 
-    @abstractmethod
     def _twist(self, forward: float, turning: float) -> tuple[float, float]:
         """Speed (m/s) and rate of yaw (rad/s) that such a command means."""
+        return forward, turning
 
     @abstractmethod
     def _drive(self, forward: float, turning: float) -> None:

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.trajectory.path import Path
 from bullet_sim.control.trajectory.segment import Segment, Waypoint
 from bullet_sim.errors import SimulationError
+from bullet_sim.pose import shortest_angular_distance
 
 
 class InvalidTrajectory(SimulationError):

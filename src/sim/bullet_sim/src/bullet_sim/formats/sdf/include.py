@@ -15,6 +15,7 @@ from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
 
+Found = ModelDescription | LightDescription
 RootReader = Callable[[Element, Source], ModelDescription]
 MANIFESTS = ("model.config", "manifest.xml")
 DEEPEST = 30  # files that include each other
@@ -23,7 +24,7 @@ MOST_FILES = 2000  # of one world: a few files that include each other twice are
 
 def read_include(
     include: Element, source: Source, read_root: RootReader
-) -> ModelDescription | LightDescription | None:
+) -> Found | None:
     """What an include brings in; None, with one error line, where it cannot be had."""
     uri = child_text(include, "uri")
     if len(source.files) >= MOST_FILES:
@@ -40,7 +41,7 @@ def read_include(
 
 def _read(
     include: Element, uri: str, source: Source, read_root: RootReader
-) -> ModelDescription | LightDescription:
+) -> Found:
     if not uri:
         raise FormatError("no <uri>; write <uri>model://NAME</uri>")
     file = model_file(source.resources.resolve(uri, source.folder))
@@ -57,26 +58,18 @@ def _read(
             found = read_light(light)
         else:
             found = read_root(root, inner)
-    place = _placed_light if isinstance(found, LightDescription) else overridden
-    return place(found, include)
+    return _overridden(found, include)
 
 
-def overridden(model: ModelDescription, include: Element) -> ModelDescription:
-    """A model with the include's own name, pose, static flag and further plugins."""
+def _overridden(found: Found, include: Element) -> Found:
+    """With the include's own name and pose; a model also with its static flag and plugins."""
     where = f"<include> of {child_text(include, 'uri')}"
-    return replace(
-        model,
-        name=child_text(include, "name", model.name),
-        pose=pose(include, where, model.pose),
-        static=flag(include, "static", model.static),
-        plugins=model.plugins + read_plugins(include),
-    )
-
-
-def _placed_light(light: LightDescription, include: Element) -> LightDescription:
-    where = f"<include> of {child_text(include, 'uri')}"
-    return replace(light, name=child_text(include, "name", light.name),
-                   pose=pose(include, where, light.pose))
+    found = replace(found, name=child_text(include, "name", found.name),
+                    pose=pose(include, where, found.pose))
+    if isinstance(found, LightDescription):
+        return found
+    return replace(found, static=flag(include, "static", found.static),
+                   plugins=found.plugins + read_plugins(include))
 
 
 def model_file(found: Path) -> Path:

@@ -123,8 +123,9 @@ def _private_state(
     """Fresh module variables for one expansion; the old ones come back afterwards."""
     budget = Budget()
     fresh = {
-        "message": messages.message, "warning": messages.warning, "error": messages.error,
-        "print_location": messages.print_location, "verbosity": 1, "all_includes": [],
+        "message": messages.at(logging.INFO), "warning": messages.at(logging.WARNING),
+        "error": messages.at(logging.ERROR),
+        "print_location": lambda: None, "verbosity": 1, "all_includes": [],  # each line has a place
         "filestack": None, "macrostack": None, "substitution_args_context": {"filename": ""},
         "parse": parse, "LEXER": LEXER, "replace_node": budget.replace_node,
         "safe_eval": noted_eval(safe_eval), "eval_text": budget.eval_text,
@@ -165,21 +166,13 @@ class _Messages:
     def __init__(self) -> None:
         self.lines: list[tuple[int, str]] = []
 
-    def message(self, *words: object, **_: object) -> None:
-        self._add(logging.INFO, words)
+    def at(self, level: int) -> Callable[..., None]:
+        """A function of xacro's that keeps a line, to be logged when the expansion is over."""
+        def keep(*words: object, **_: object) -> None:
+            text = one_line(" ".join(map(str, words)))
+            self.lines.append((level, f"{place('xacro')}: {text}"))
 
-    def warning(self, *words: object, **_: object) -> None:
-        self._add(logging.WARNING, words)
-
-    def error(self, *words: object, **_: object) -> None:
-        self._add(logging.ERROR, words)
-
-    def print_location(self) -> None:
-        """Nothing: every line names its place."""
-
-    def _add(self, level: int, words: tuple[object, ...]) -> None:
-        text = one_line(" ".join(map(str, words)))
-        self.lines.append((level, f"{place('xacro')}: {text}"))
+        return keep
 
 
 def _finder(find_package: FindPackage | None) -> FindPackage:

@@ -10,9 +10,8 @@ from pathlib import Path
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro.expansion import Attempt, FindPackage, Run, attempt
-from bullet_sim.formats.xacro.legacy import Legacy
 from bullet_sim.formats.xacro.limits import TooLarge
-from bullet_sim.formats.xacro.melodic import Melodic
+from bullet_sim.formats.xacro.older_releases import Legacy, Melodic
 
 _LOCK = threading.Lock()  # xacro keeps its state in module variables: one expansion at a time
 _LOGGER = logging.getLogger(__name__)
