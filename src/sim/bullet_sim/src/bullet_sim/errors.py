@@ -1,7 +1,5 @@
 """The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length

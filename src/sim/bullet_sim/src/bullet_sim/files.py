@@ -1,7 +1,5 @@
 """Checks a file that a model names before it is opened: reading a pipe would block."""
 
-from __future__ import annotations
-
 import os
 import stat
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Joints of a model: driven by the engine, passive, and closing a loop."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 In Gazebo such a link keeps any pose for one step; then its joints pull it back.
 """
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.link import Link

@@ -1,7 +1,5 @@
 """A model in the world: links and joints by name."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Where the wall-clock time goes: a stopwatch for each stage of the work."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The simulated world: the only thing that steps, and the owner of simulated time."""
 
-from __future__ import annotations
-
 import logging
 import math
 import time

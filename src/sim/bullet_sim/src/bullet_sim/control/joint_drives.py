@@ -3,8 +3,6 @@
 The ways, and when each is taken, are those of gazebo_ros_control's DefaultRobotHWSim.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from bullet_sim.control.handles import CommandHandle, JointHandle

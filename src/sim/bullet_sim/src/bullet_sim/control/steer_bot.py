@@ -5,8 +5,6 @@ Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear
 front ones roll, so that the car drives the circle that its odometry counts.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Which of a round robot's three bumpers is pressed, from what touches it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """Holds what fingers press from opposite sides, as friction alone does not in a simulation."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Which wheels of a base have no ground contact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 from bullet_sim.physics.contacts import Contact

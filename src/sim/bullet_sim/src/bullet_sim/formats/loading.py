@@ -1,7 +1,5 @@
 """Reads a model, light or world from its text: URDF or SDF, by the root element."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Says what is wrong in a text and reads on without it, as sdformat does; so many times at most."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Meshes of Gazebo's model library that shapes of data/models replace: their sizes and places."""
 
-from __future__ import annotations
-
 import functools
 import tomllib
 from collections.abc import Iterable

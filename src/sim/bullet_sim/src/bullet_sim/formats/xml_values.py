@@ -4,8 +4,6 @@ The readers that take a default give one error line and the default for what can
 sdformat does; the checks that do not (`numbers`, `not_negative`, `bounded`) raise FormatError.
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Callable, Sequence

@@ -5,8 +5,6 @@ models made for it are drawn accordingly, so a Y_UP file stays as its numbers ar
 in their bind pose.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 from dataclasses import replace

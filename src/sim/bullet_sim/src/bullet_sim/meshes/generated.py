@@ -1,7 +1,5 @@
 """Triangles of the shapes that no mesh file holds: generated at first use, then cached."""
 
-from __future__ import annotations
-
 import functools
 
 from bullet_sim.description import Generated, Heightmap, ImageExtrusion, Polyline, Strip

@@ -1,7 +1,5 @@
 """Reads image files that a model names, after a check of their unpacked size."""
 
-from __future__ import annotations
-
 import logging
 import os
 import struct

@@ -1,7 +1,5 @@
 """Triangles of mesh files: loaded once, scaled, with the materials that the file itself names."""
 
-from __future__ import annotations
-
 import functools
 import logging
 import warnings

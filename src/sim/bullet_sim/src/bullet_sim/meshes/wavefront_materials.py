@@ -1,7 +1,5 @@
 """The materials of a Wavefront OBJ file, from its MTL libraries."""
 
-from __future__ import annotations
-
 import logging
 from pathlib import Path
 from urllib.parse import unquote

@@ -6,8 +6,6 @@ Engines call this auto-disabling; ODE does it below 0.01 m/s and 0.01 rad/s. Our
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from typing import Protocol

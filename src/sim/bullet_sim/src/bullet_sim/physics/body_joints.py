@@ -125,9 +125,7 @@ class BodyJoints(EngineHandle):
     def drive_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step."""
         self._motors.pop(joint, None)
-        if self._is_number("joint effort", effort):
-            self.change(pybullet.setJointMotorControl2, self.joint_index[joint],
-                        pybullet.TORQUE_CONTROL, force=effort)
+        self.add_effort(joint, effort)
 
     def add_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step, added to motors and others."""

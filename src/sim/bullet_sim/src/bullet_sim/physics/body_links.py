@@ -1,7 +1,5 @@
 """The links of an engine body: where they are, how they move, and forces on them."""
 
-from __future__ import annotations
-
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.engine_handle import BASE, EngineHandle
 from bullet_sim.physics.quiet import pybullet

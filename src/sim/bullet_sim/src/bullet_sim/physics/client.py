@@ -1,7 +1,5 @@
 """One PyBullet world: connection, engine parameters, and a quiet importer."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

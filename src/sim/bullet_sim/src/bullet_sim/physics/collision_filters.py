@@ -4,8 +4,6 @@ Links of one model collide only where both say so with `<self_collide>`, and nev
 holds them together.
 """
 
-from __future__ import annotations
-
 import itertools
 
 from bullet_sim.description import ModelDescription

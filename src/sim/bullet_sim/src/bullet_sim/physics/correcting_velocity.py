@@ -5,8 +5,6 @@ many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet doe
 something is so deep, all contacts of the world correct only a small part of their depth in a step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from bullet_sim.physics.auto_disable import SimulatedBody

@@ -1,7 +1,5 @@
 """An engine body's number and tree, and the engine's functions called with that number."""
 
-from __future__ import annotations
-
 import logging
 import math
 

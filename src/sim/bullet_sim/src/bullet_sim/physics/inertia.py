@@ -5,8 +5,6 @@ The engine stops a link from turning at all when its principal moments break the
 small for its size: contacts then turn it round within a step. ODE takes both as they are.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Sequence

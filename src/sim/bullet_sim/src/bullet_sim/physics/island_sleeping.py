@@ -7,8 +7,6 @@ Unlike there, the means over that second count, and a body that touches none of 
 a ball that rolls slowly rolls.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """Joints that close a loop, screws' threads and gearboxes: constraints between links of a model."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 

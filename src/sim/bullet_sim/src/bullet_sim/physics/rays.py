@@ -1,7 +1,5 @@
 """Straight rays against collision shapes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

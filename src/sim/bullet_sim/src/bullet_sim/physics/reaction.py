@@ -1,7 +1,5 @@
 """Force and torque in a joint, as Gazebo gives them to a force-torque sensor."""
 
-from __future__ import annotations
-
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.body import Body
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate

@@ -5,8 +5,6 @@ instead of coming to rest (a wheel of 1e-5 kg m^2 with a damping of 0.7, as many
 coefficient is cut to what brings the joint there within a step or two, which looks the same.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

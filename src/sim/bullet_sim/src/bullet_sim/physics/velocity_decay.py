@@ -3,8 +3,6 @@
 The engine's own damping is one for all links of a body and grows with the square of the speed.
 """
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.physics.body_links import BodyLinks

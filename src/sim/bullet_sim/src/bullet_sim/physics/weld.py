@@ -1,7 +1,5 @@
 """Welds made while the world runs: of two links, or of a link to a place in the world."""
 
-from __future__ import annotations
-
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose

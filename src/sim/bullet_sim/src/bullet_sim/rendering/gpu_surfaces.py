@@ -1,7 +1,5 @@
 """Triangles and materials on the graphics card, uploaded once for all links that look alike."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary

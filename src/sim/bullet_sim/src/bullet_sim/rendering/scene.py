@@ -1,7 +1,5 @@
 """What there is to see: lights, and links with surfaces and poses, as data without a renderer."""
 
-from __future__ import annotations
-
 import itertools
 import logging
 from collections.abc import Sequence

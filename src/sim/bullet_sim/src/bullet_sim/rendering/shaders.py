@@ -5,8 +5,6 @@ clamped to 1, times the texture. No gamma. A surface without highlight under dir
 is lit per corner, which is the same on flat faces and leaves little to do for each pixel.
 """
 
-from __future__ import annotations
-
 MAX_LIGHTS = 8
 DIRECTIONAL, POINT, SPOT = 0, 1, 2
 LINEAR, EXP, EXP2 = 0, 1, 2

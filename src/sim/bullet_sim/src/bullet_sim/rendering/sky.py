@@ -1,7 +1,5 @@
 """The sky of a scene that has one: a gradient behind everything, by how high a pixel looks."""
 
-from __future__ import annotations
-
 import moderngl
 
 from bullet_sim.rendering.frame import CameraView

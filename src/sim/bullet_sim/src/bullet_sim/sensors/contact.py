@@ -1,7 +1,5 @@
 """Contact sensor: what the collisions of a link touch, pair by pair."""
 
-from __future__ import annotations
-
 import logging
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Net force and torque on a link, by Newton and Euler from how its momentum changes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from bullet_sim.link import Link

@@ -1,7 +1,5 @@
 """Rows of rays from a sensor: what laser scanners, range finders and 3D lidars have in common."""
 
-from __future__ import annotations
-
 import logging
 import math
 

@@ -1,7 +1,5 @@
 """Ackermann steering as a bicycle: one driven rear wheel, one steered front wheel."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

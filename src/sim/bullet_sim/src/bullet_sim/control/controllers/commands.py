@@ -1,7 +1,5 @@
 """The latest command of a controller, and how long it is valid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by rounding

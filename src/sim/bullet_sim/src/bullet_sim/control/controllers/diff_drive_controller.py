@@ -1,7 +1,5 @@
 """Differential drive: wheels on two sides, turned by the difference of their speeds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Four wheels, each driven and each steered, with no scrub: all turn about one point."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Mecanum drive: four wheels whose rollers are at 45 degrees to the axle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What all drives of a robot's base share: a command with a time-out, limits, and odometry."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 

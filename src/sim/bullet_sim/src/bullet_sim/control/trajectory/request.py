@@ -1,7 +1,5 @@
 """A requested trajectory, checked and joined to the one that is being followed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Reads the `<camera>` of an SDF sensor: image, clip, noise, distortion and wide-angle lens."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import CameraDescription, Lens

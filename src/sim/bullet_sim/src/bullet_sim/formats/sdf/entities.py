@@ -1,7 +1,5 @@
 """What a `<world>` contains: models, actors, populations, lights and roads, where it puts them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element

@@ -1,7 +1,5 @@
 """Reads `<include>`: finds the model folder and its SDF file, and applies the overrides."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

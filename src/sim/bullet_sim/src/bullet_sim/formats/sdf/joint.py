@@ -1,7 +1,5 @@
 """Reads SDF joints, bringing old files' model-frame axes into the joint frame."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from xml.etree.ElementTree import Element

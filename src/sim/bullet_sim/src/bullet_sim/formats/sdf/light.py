@@ -1,7 +1,5 @@
 """Reads SDF `<light>` elements."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription

@@ -1,7 +1,5 @@
 """Reads SDF models with their nested models into one flat description."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from xml.etree.ElementTree import Element

@@ -1,7 +1,5 @@
 """Reads SDF's noise models, of any sensor and of the axes of an IMU."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import ImuDescription, Noise

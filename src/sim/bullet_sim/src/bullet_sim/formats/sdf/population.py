@@ -3,8 +3,6 @@
 Where the copies stand depends on the population's name alone: each run has the same world.
 """
 
-from __future__ import annotations
-
 import math
 import zlib
 from collections.abc import Callable, Iterator

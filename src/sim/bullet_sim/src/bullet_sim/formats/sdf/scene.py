@@ -1,7 +1,5 @@
 """Reads the `<scene>` of an SDF world: ambient light, background, sky and fog."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Fog, SceneDescription

@@ -1,7 +1,5 @@
 """Reads SDF sensors, cameras, rays and `<plugin>` elements."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import PluginDescription, RayDescription, SensorDescription

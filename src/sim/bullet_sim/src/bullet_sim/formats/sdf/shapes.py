@@ -1,7 +1,5 @@
 """Reads SDF geometry, visuals, collisions and their surfaces."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import (

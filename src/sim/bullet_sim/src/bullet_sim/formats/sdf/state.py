@@ -1,7 +1,5 @@
 """Applies the `<state>` of a saved world: its poses win over those the models were written with."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Reads SDF worlds: models, lights, physics, scene and the poses of a saved `<state>`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 

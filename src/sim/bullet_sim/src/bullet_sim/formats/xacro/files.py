@@ -1,7 +1,5 @@
 """Expands xacro files with PyPI's xacro, and old ones as the releases they were written for did."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ Melodic: keywords and macro calls without prefix, macros that are all global. Be
 another order: includes first, then all macros and properties.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 from xml.dom import minidom

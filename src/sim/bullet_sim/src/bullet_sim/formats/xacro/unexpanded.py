@@ -1,7 +1,5 @@
 """Finds what looks like xacro's within links, joints and models, and was not expanded."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from xml.dom import minidom
 
