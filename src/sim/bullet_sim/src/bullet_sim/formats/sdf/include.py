@@ -1,6 +1,5 @@
 """Reads `<include>`: finds the model folder and its SDF file, and applies the overrides."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -14,22 +13,19 @@ from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
 
 Found = ModelDescription | LightDescription
-RootReader = Callable[[Element, Source], ModelDescription]
 MANIFESTS = ("model.config", "manifest.xml")
 DEEPEST = 30  # files that include each other
 MOST_FILES = 2000  # of one world: a few files that include each other twice are a million
 
 
-def read_include(
-    include: Element, source: Source, read_root: RootReader
-) -> Found | None:
+def read_include(include: Element, source: Source) -> Found | None:
     """What an include brings in; None, with one error line, where it cannot be had."""
     uri = child_text(include, "uri")
     if len(source.files) >= MOST_FILES:
         source.warn_once(f"more than {MOST_FILES} <include>s; the rest is left out", "includes")
         return None
     try:
-        return _read(include, uri, source, read_root)
+        return _read(include, uri, source)
     except ResourceNotFound as error:
         mistake(f"<include>: {error}; going on without it")
     except SimulationError as error:
@@ -37,9 +33,7 @@ def read_include(
     return None
 
 
-def _read(
-    include: Element, uri: str, source: Source, read_root: RootReader
-) -> Found:
+def _read(include: Element, uri: str, source: Source) -> Found:
     if not uri:
         raise FormatError("no <uri>; write <uri>model://NAME</uri>")
     file = model_file(source.resources.resolve(uri, source.folder))
@@ -55,7 +49,7 @@ def _read(
         if root.tag != "robot" and root.find("model") is None and light is not None:
             found = read_light(light)
         else:
-            found = read_root(root, inner)
+            found = source.read_root(root, inner)
     return _overridden(found, include)
 
 

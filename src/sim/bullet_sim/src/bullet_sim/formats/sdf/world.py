@@ -5,8 +5,9 @@ from xml.etree.ElementTree import Element
 
 from bullet_sim.description import PhysicsDescription, SphericalDescription, WorldDescription
 from bullet_sim.formats.mistakes import all_that_can
-from bullet_sim.formats.sdf.entities import IncludeReader, ModelReader, read_entities
+from bullet_sim.formats.sdf.entities import read_entities
 from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.scene import read_scene
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.sdf.state import apply_state
@@ -14,9 +15,7 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import fields, integer, number, vector
 
 
-def read_world(
-    element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
-) -> WorldDescription:
+def read_world(element: Element, source: Source) -> WorldDescription:
     """A `<world>`, its models in the order of the file."""
     where = f"world {element.get('name', 'default')!r}"
     usual = WorldDescription()
@@ -24,7 +23,7 @@ def read_world(
     # In <physics> up to SDF 1.5.
     old_gravity = vector(physics, "gravity", usual.gravity, where)
     old_field = vector(physics, "magnetic_field", usual.magnetic_field, where)
-    entities = read_entities(element, source, read_model, read_include)
+    entities = read_entities(element, source)
     world = WorldDescription(
         name=element.get("name", usual.name),
         gravity=vector(element, "gravity", old_gravity, where),
@@ -38,12 +37,12 @@ def read_world(
         scenery=tuple(entities.roads.items()),
     )
     for state in element.findall("state"):
-        world = apply_state(_with_insertions(world, state, source, read_model), state)
+        world = apply_state(_with_insertions(world, state, source), state)
     return world
 
 
 def _with_insertions(
-    world: WorldDescription, state: Element, source: Source, read_model: ModelReader
+    world: WorldDescription, state: Element, source: Source
 ) -> WorldDescription:
     """Entities that were inserted after the world was opened; those that the file has are kept."""
     models = {model.name: model for model in world.models}
