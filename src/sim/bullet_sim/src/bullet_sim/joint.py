@@ -71,10 +71,6 @@ class Joint:
         """The motor's rate, and its greatest effort."""
         return self._body.motor(self.name)
 
-    def release(self) -> None:
-        """Let it turn freely, but for its own friction."""
-        self._body.release(self.name)
-
     def change(self, lower: float, upper: float, damping: float) -> None:
         """Other stops, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
         stops = {"lower": lower, "upper": upper, "damping": damping}
@@ -127,9 +123,6 @@ class PassiveJoint:
         """No effect."""
 
     add_effort = drive_effort
-
-    def release(self) -> None:
-        """No effect."""
 
     def change(self, lower: float, upper: float, damping: float) -> None:
         """No effect."""

@@ -94,18 +94,13 @@ def shown(value: float | Sequence[float] | Pose | str) -> str:
 
 def _number(
     parent: Element, path: str, default: float, where: str,
-    check: Callable[[Sequence[float], str], Sequence[float]] | None = None,
+    check: Callable[[Sequence[float], str], Sequence[float]] = lambda values, _: values,
 ) -> float:
     text = child_text(parent, path)
     if not text:
         return default
     where = f"{where} <{path}>"
-
-    def read() -> float:
-        values = numbers(text, 1, where)
-        return (check(values, where) if check else values)[0]
-
-    return or_default(read, default)
+    return or_default(lambda: check(numbers(text, 1, where), where)[0], default)
 
 
 def number(parent: Element, path: str, default: float, where: str) -> float:

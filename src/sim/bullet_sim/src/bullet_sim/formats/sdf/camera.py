@@ -71,9 +71,8 @@ def _lens(element: Element | None, where: str) -> Lens:
     return Lens(
         c1=c1,
         c2=c2,
-        c3=number(element, own + "c3", usual.c3, where) if kind == "custom" else usual.c3,
         function=function,
-        f=number(element, own + "f", usual.f, where) if kind == "custom" else usual.f,
+        **(fields(number, element, "c3 f", usual, where, own) if kind == "custom" else {}),
         scale_to_hfov=flag(element, "scale_to_hfov", usual.scale_to_hfov),
         cutoff_angle=number(element, "cutoff_angle", usual.cutoff_angle, where),
         env_texture_size=integer(element, "env_texture_size", usual.env_texture_size, where),
