@@ -14,14 +14,26 @@ from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import dot
 
 
-class Joint:
+class BodyJoint:
+    """A joint of the description that a body holds."""
+
+    second_axis: "Joint | None" = None  # of a universal or revolute2 joint
+
+    def __init__(self, description: JointDescription, body: Body):
+        self.description = description
+        self.name = description.name
+        self._body = body
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        return joint_reaction(self._body, self._body.carried_by(self.name))
+
+
+class Joint(BodyJoint):
     """A joint that can move; positions in rad or m."""
 
     def __init__(self, description: JointDescription, body: Body, touched: Callable[[], None]):
-        self.description = description
-        self.name = description.name
-        self.second_axis: Joint | None = None  # of a universal or revolute2 joint
-        self._body = body
+        super().__init__(description, body)
         self._touched = touched
 
     @property
@@ -81,20 +93,9 @@ class Joint:
         self._body.change_joint(self.name, type=kind, **stops)
         self._touched()
 
-    def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
-        return joint_reaction(self._body, self._body.carried_by(self.name))
 
-
-class PassiveJoint:
+class PassiveJoint(BodyJoint):
     """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
-
-    second_axis: Joint | None = None
-
-    def __init__(self, description: JointDescription, body: Body):
-        self.description = description
-        self.name = description.name
-        self._body = body
 
     @property
     def position(self) -> float:
@@ -126,10 +127,6 @@ class PassiveJoint:
 
     def change(self, lower: float, upper: float, damping: float) -> None:
         """No effect."""
-
-    def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
-        return joint_reaction(self._body, self._body.carried_by(self.name))
 
 
 class LoopJoint(PassiveJoint):

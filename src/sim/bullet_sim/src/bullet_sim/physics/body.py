@@ -43,6 +43,18 @@ class Attachment(Protocol):
         ...
 
 
+def fasten(attachment: Attachment) -> None:
+    """Attach it to its bodies, if it acts at all; what it made before a failure goes again."""
+    try:
+        attachment.attach()
+    except Exception:
+        attachment.detach()
+        raise
+    if attachment:
+        for body in attachment.bodies:
+            body.attached.append(attachment)
+
+
 class Body(BodyLinks, BodyJoints):
     """A loaded tree, whose links and joints go by name."""
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
-from bullet_sim.physics.body import Body
+from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.quiet import pybullet
@@ -32,14 +32,10 @@ class LoopConstraints:
         self.bodies = bodies
         self._loose = loose
         self._constraints: list[int] = []
-        try:
-            self.attach()
-        except Exception:
-            self.detach()
-            raise
-        if self._constraints:
-            for body in bodies:
-                body.attached.append(self)
+        fasten(self)
+
+    def __bool__(self) -> bool:
+        return bool(self._constraints)
 
     def attach(self) -> None:
         """Put the constraints in."""

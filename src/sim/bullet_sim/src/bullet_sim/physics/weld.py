@@ -1,6 +1,6 @@
 """Welds made while the world runs: of two links, or of a link to a place in the world."""
 
-from bullet_sim.physics.body import Body
+from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose
 
@@ -22,9 +22,7 @@ class Weld:
         holder = IDENTITY if other is None else other.engine_frame(other.index[other_link])
         self._pose_holder_link = holder.inverse() * body.engine_frame(body.index[link])
         self._constraint: int | None = None
-        self.attach()
-        for each in self.bodies:
-            each.attached.append(self)
+        fasten(self)
 
     def attach(self) -> None:
         """Put the constraint in, if both bodies are there."""
