@@ -30,7 +30,10 @@ FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a 
 
 
 class Attachment(Protocol):
-    """A constraint or filter on the engine's body itself, made again whenever that is."""
+    """A constraint or filter on the engine's body itself, made again whenever that is.
+
+    It is false where it has nothing to do.
+    """
 
     bodies: list[Body]  # each has it in `attached`
 
