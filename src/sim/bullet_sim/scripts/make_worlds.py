@@ -145,4 +145,4 @@ if __name__ == "__main__":
     for file_name, text in files().items():
         (WORLDS / file_name).write_text(text, encoding="utf-8")
     (DATA / TERRAIN).parent.mkdir(parents=True, exist_ok=True)
-    cv2.imwrite(str(DATA / TERRAIN), terrain())
+    cv2.imwrite(str(DATA / TERRAIN), terrain(), [cv2.IMWRITE_PNG_COMPRESSION, 9])
