@@ -8,7 +8,8 @@ A table is a model. Its keys (SI units):
   like, paint another model's table, but for its name, with the look of its first part changed
   static, mass (1), link ("link"), pose and link_pose [x, y, z], as in SDF
   size        [x, y, z], m, of the box round all that is solid (round all, where nothing is)
-  ordinary    the size is an ordinary one of its kind; without it, upstream's own numbers
+  ordinary    the size is an ordinary one of its kind; without it, that of the model of this name
+              in Gazebo's database (gazebo_models)
   parts       list of {box = [x, y, z]}, {cylinder = [radius, length]}, {sphere = radius},
               {squares = [columns, rows, side]} (the black half of a checkerboard) or {digit = n}
               (on the four sides of a cube of 0.8 m); at = [x, y, z(, roll, pitch, yaw)] in the

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes data/worlds/rubble.world (a heap of boxes and cylinders), stacks.world, heightmap.world
-with its terrain image, and the worlds that only include models.
+"""Writes data/worlds/rubble.world (a heap of boxes and cylinders), stacks.world and the terrain
+image of heightmap.world.
 
     python3 src/sim/bullet_sim/scripts/make_worlds.py
 
@@ -9,9 +9,10 @@ The heap is the same every time: its generator has a fixed seed.
 
 import math
 import random
-import struct
-import zlib
 from pathlib import Path
+
+import cv2
+import numpy as np
 
 DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
 WORLDS = DATA / "worlds"
@@ -27,8 +28,7 @@ HEAD = """<?xml version="1.0"?>
     <include>
       <uri>model://sun</uri>
     </include>
-"""
-GROUND = """    <include>
+    <include>
       <uri>model://ground_plane</uri>
     </include>
 """
@@ -50,49 +50,9 @@ MODEL = """    <model name="{name}">
       </link>
     </model>
 """
-
-
-INCLUDE = """    <include>
-      <uri>model://{folder}</uri>
-      <name>{name}</name>
-      <pose>{pose}</pose>
-    </include>
-"""
-# Worlds of included models: folder, name in the world, pose.
-INCLUDED = {
-    "camera.world": [("camera", "camera", [0] * 6), ("camera", "camera 2", [2, 0, 0, 0, 0, 0])],
-    "depth_camera.world": [("depth_camera", "depth_camera", [0] * 6),
-                           ("unit_box", "box", [3, 0, 0.5, 0, 0, 0])],
-    "empty_bullet.world": [("cordless_drill", "drill", [0] * 6)],
-    "robocup14_spl_field.world": [
-        ("robocup14_spl_field", "RoboCup 14 SPL Field", [0, 0, -0.005, 0, 0, 0]),
-        ("robocup14_spl_goal", "left goal", [-4.5, 0, 0, 0, 0, 3.1416]),
-        ("robocup14_spl_goal", "right goal", [4.5, 0, 0, 0, 0, 0]),
-        ("robocup_spl_ball", "RoboCup SPL Ball", [0, 0, 0, 0, 0, 0])],
-}
 SIDE = 129  # px of the terrain image, and m of the ground: one pixel is a metre
 TALLEST = 10.0  # m, of white
 FLAT = 10.0  # m round the origin that are level
-HEIGHTMAP = """    <model name="heightmap">
-      <static>true</static>
-      <link name="link">
-        <collision name="collision">
-          <geometry>
-            <heightmap><uri>file://{terrain}</uri><size>{size}</size><pos>0 0 0</pos></heightmap>
-          </geometry>
-        </collision>
-        <visual name="visual">
-          <geometry>
-            <heightmap>
-              <uri>file://{terrain}</uri>
-              <size>{size}</size>
-              <pos>0 0 0</pos>
-{layers}            </heightmap>
-          </geometry>
-        </visual>
-      </link>
-    </model>
-"""
 
 
 def box(name: str, pose: list[float], size: list[float], mass: float, look: str) -> str:
@@ -136,7 +96,7 @@ def rubble() -> str:
             radius, length = round(rng.uniform(0.05, 0.15), 2), round(rng.uniform(0.3, 0.8), 2)
             mass = DENSITY * math.pi * radius ** 2 * length
             models.append(cylinder(f"cylinder_{number}", pose, radius, length, mass, "Bricks"))
-    return HEAD + GROUND + "".join(models) + TAIL
+    return HEAD + "".join(models) + TAIL
 
 
 def stacks() -> str:
@@ -149,35 +109,13 @@ def stacks() -> str:
             sphere(f"sphere_{number + 1}", [0, 1.5, z, 0, 0, 0], 0.5, 1, "WoodPallet"),
             sphere(f"sphere_{number + 1}a", [1.5, 1.5, z, 0, 0, 0], 0.5, 1, "WoodPallet"),
             cylinder(f"cylinder_{number + 1}", [0, -1.5, z, 0, 0, 0], 0.1, 1, 1, "WoodPallet")]
-    return HEAD + GROUND + "".join(models) + TAIL
+    return HEAD + "".join(models) + TAIL
 
 
-def included(models: list[tuple[str, str, list[float]]]) -> str:
-    """Models of the database on the ground plane."""
-    return HEAD + GROUND + "".join(
-        INCLUDE.format(folder=folder, name=name, pose=_numbers(pose))
-        for folder, name, pose in models) + TAIL
-
-
-def heightmap() -> str:
-    """A wide bowl of soil, grass and moss with a box of 1 m in each corner, as Gazebo's."""
-    corners = ((-63, -63, "Red"), (-63, 63, "Green"), (63, 63, "Blue"), (63, -63, "White"))
-    boxes = [box(f"box{number}", [x, y, 10, 0, 0, 0], [1, 1, 1], 1, look)
-             for number, (x, y, look) in enumerate(corners, 1)]
-    layers = "".join(
-        f"              <texture><diffuse>file://media/materials/textures/{name}_diffusespecular.png"
-        "</diffuse><normal>file://media/materials/textures/flat_normal.png</normal>"
-        "<size>1</size></texture>\n" for name in ("dirt", "grass", "fungus"))
-    layers += "".join(f"              <blend><min_height>{height}</min_height>"
-                      "<fade_dist>5</fade_dist></blend>\n" for height in (2, 4))
-    ground = HEIGHTMAP.format(terrain=TERRAIN, size=f"{SIDE} {SIDE} {TALLEST:g}", layers=layers)
-    return HEAD + "".join(boxes) + ground + TAIL
-
-
-def terrain() -> list[list[int]]:
-    """Rows of grey values, 16 bit: level in the middle, rolling up to the rim."""
-    return [[round(65535 * _height(column - SIDE // 2, SIDE // 2 - row) / TALLEST)
-             for column in range(SIDE)] for row in range(SIDE)]
+def terrain() -> np.ndarray:
+    """(SIDE, SIDE) uint16 grey values: level in the middle, rolling up to the rim."""
+    return np.array([[round(65535 * _height(column - SIDE // 2, SIDE // 2 - row) / TALLEST)
+                      for column in range(SIDE)] for row in range(SIDE)], np.uint16)
 
 
 def _height(x: float, y: float) -> float:
@@ -185,18 +123,6 @@ def _height(x: float, y: float) -> float:
     out = min(1.0, max(0.0, (math.hypot(x, y) - FLAT) / (SIDE / 2)))
     waves = math.sin(x / 7) * math.cos(y / 9)
     return (7.5 + waves) * out * out * (3 - 2 * out)
-
-
-def png(rows: list[list[int]]) -> bytes:
-    """A grey picture of 16 bit as a file (PNG specification, ISO/IEC 15948)."""
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(
-            ">I", zlib.crc32(kind + data))
-
-    lines = b"".join(b"\0" + struct.pack(f">{len(row)}H", *row) for row in rows)
-    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 16, 0, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head)
-            + chunk(b"IDAT", zlib.compress(lines, 9)) + chunk(b"IEND", b""))
 
 
 def _model(name: str, pose: list[float], shape: str, mass: float, look: str,
@@ -212,12 +138,11 @@ def _numbers(values: list[float]) -> str:
 
 def files() -> dict[str, str]:
     """What the script writes: text by name in data/worlds."""
-    return {"rubble.world": rubble(), "stacks.world": stacks(), "heightmap.world": heightmap(),
-            **{name: included(models) for name, models in INCLUDED.items()}}
+    return {"rubble.world": rubble(), "stacks.world": stacks()}
 
 
 if __name__ == "__main__":
     for file_name, text in files().items():
         (WORLDS / file_name).write_text(text, encoding="utf-8")
     (DATA / TERRAIN).parent.mkdir(parents=True, exist_ok=True)
-    (DATA / TERRAIN).write_bytes(png(terrain()))
+    cv2.imwrite(str(DATA / TERRAIN), terrain(), [cv2.IMWRITE_PNG_COMPRESSION, 9])

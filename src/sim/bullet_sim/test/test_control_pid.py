@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.control.rate import Rate
 from bullet_sim.errors import SimulationError
+from bullet_sim.pose import shortest_angular_distance
 
 DT = 0.1  # s
 

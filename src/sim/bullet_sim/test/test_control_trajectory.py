@@ -18,7 +18,7 @@ from bullet_sim.control.trajectory.request import (
     join,
 )
 from bullet_sim.control.trajectory.segment import Segment, Waypoint
-from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance
+from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 
 STEP = 0.001  # s
 
@@ -310,4 +310,4 @@ def test_a_pid_drive_adds_feed_forward_and_both_errors():
 @pytest.mark.parametrize("wish, result", [(0.0, 0.5), (0.2, 0.2), (-1.0, 0.0)])
 def test_a_goal_may_change_tolerances(wish, result):
     assert Tolerance(position=0.5).replaced(wish, 0.0, 0.0).position == result
-    assert GoalTolerances(time=0.5).replaced_time(wish) == result
+    assert chosen(wish, 0.5) == result

@@ -13,7 +13,6 @@ from bullet_sim.description import (
     WorldDescription,
 )
 from bullet_sim.drives.bumper import pressed_bumpers
-from bullet_sim.drives.grasp import turned_round
 from bullet_sim.drives.spring_damper import rotation_vector
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import IDENTITY, Pose, quaternion_from_rpy
@@ -38,7 +37,7 @@ def touch(angle: float, height: float = 0.05, robot_first: bool = True) -> Conta
     """Something touches the robot from that direction (rad in the world)."""
     normal = (-math.cos(angle), -math.sin(angle), 0.0)  # into the robot
     contact = Contact("bot::base::c", "wall::l::c", (1.0, 1.0, height), normal, 0.0, normal)
-    return contact if robot_first else turned_round(contact)
+    return contact if robot_first else contact.reversed()
 
 
 @pytest.mark.parametrize("robot_first", [True, False])

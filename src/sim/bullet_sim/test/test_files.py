@@ -11,8 +11,8 @@ from bullet_sim.files import check_file
 from bullet_sim.formats import Resources, load_model, load_world
 from bullet_sim.formats.sdf.material import LARGEST_SCRIPT
 from bullet_sim.meshes.generated import generated_parts
+from bullet_sim.meshes.images import load_image
 from bullet_sim.meshes.loading import load_mesh
-from bullet_sim.rendering.textures import load_image
 
 MODEL = """<sdf version="1.6"><model name="m"><link name="l"><visual name="v"><geometry><sphere/>
     </geometry><material>{}</material></visual></link></model></sdf>"""

@@ -15,11 +15,11 @@ from bullet_sim.meshes.generated import generated_parts
 from bullet_sim.meshes.images import (
     check_image,
     image_size,
+    load_image,
     read_image,
     shrunk,
     warn_if_unreadable,
 )
-from bullet_sim.rendering.textures import load_image
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """Walks actors along their trajectories, by simulated time."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,16 +1,14 @@
 """The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
 
 
-def shortened(text: str) -> str:
+def shortened(text: str, longest: int = LONGEST_LINE) -> str:
     """Both ends of one that is too long: what is wrong, and what to do about it."""
-    half = LONGEST_LINE // 2
-    return text if len(text) <= LONGEST_LINE else f"{text[:half]} … {text[-half:]}"
+    half = longest // 2
+    return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
 
 
 class SimulationError(Exception):
@@ -41,6 +39,14 @@ class UnknownName(SimulationError):
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         self.kind, self.name, self.known = kind, name, tuple(known)
         super().__init__(f"no {kind} named {name!r}; there are: {', '.join(self.known) or 'none'}")
+
+
+def check_lengths(geometry: object, *names: str) -> None:
+    """SimulationError for a field of these names (m) that is not above 0."""
+    for name in names:
+        value = getattr(geometry, name)
+        if not value > 0.0:
+            raise SimulationError(f"{name} is {value:g} m; it must be above 0")
 
 
 class NameTaken(SimulationError):

@@ -1,10 +1,9 @@
 """Checks a file that a model names before it is opened: reading a pipe would block."""
 
-from __future__ import annotations
-
 import os
 import stat
 from pathlib import Path
+from urllib.parse import unquote
 
 from bullet_sim.errors import FormatError
 
@@ -26,3 +25,12 @@ def check_file(path: Path | str, largest: int, advice: str = "") -> os.stat_resu
         raise FormatError(f"{path} cannot be read: {status.st_size / 1e6:.0f} MB, "
                           f"more than {largest / 1e6:.0f}{'; ' if advice else ''}{advice}")
     return status
+
+
+def find_beside(name: str, folder: Path) -> Path | None:
+    """A file that one in `folder` names: there, or beside it, as names are of other machines."""
+    name = unquote(name.replace("\\", "/"))
+    for path in (folder / name, folder / Path(name).name):
+        if path.is_file():
+            return path
+    return None

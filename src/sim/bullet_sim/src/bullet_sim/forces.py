@@ -1,7 +1,5 @@
 """Wrenches on links and efforts on joints that act for a while (Gazebo's apply_body_wrench)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

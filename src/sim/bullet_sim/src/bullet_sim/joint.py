@@ -1,7 +1,5 @@
 """Joints of a model: driven by the engine, passive, and closing a loop."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -16,14 +14,26 @@ from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import dot
 
 
-class Joint:
+class BodyJoint:
+    """A joint of the description that a body holds."""
+
+    second_axis: "Joint | None" = None  # of a universal or revolute2 joint
+
+    def __init__(self, description: JointDescription, body: Body):
+        self.description = description
+        self.name = description.name
+        self._body = body
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        return joint_reaction(self._body, self._body.carried_by(self.name))
+
+
+class Joint(BodyJoint):
     """A joint that can move; positions in rad or m."""
 
     def __init__(self, description: JointDescription, body: Body, touched: Callable[[], None]):
-        self.description = description
-        self.name = description.name
-        self.second_axis: Joint | None = None  # of a universal or revolute2 joint
-        self._body = body
+        super().__init__(description, body)
         self._touched = touched
 
     @property
@@ -39,7 +49,7 @@ class Joint:
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """Put the joint there at once; a screw travels with its turn."""
         self._body.reset_joint(self.name, position, velocity)
-        if self.name + TRAVEL in self._body.joint_names():
+        if self.name + TRAVEL in self._body.joint_index:
             pitch = -self.description.thread_pitch
             self._body.reset_joint(self.name + TRAVEL, position / pitch, velocity / pitch)
         self._touched()
@@ -73,10 +83,6 @@ class Joint:
         """The motor's rate, and its greatest effort."""
         return self._body.motor(self.name)
 
-    def release(self) -> None:
-        """Let it turn freely, but for its own friction."""
-        self._body.release(self.name)
-
     def change(self, lower: float, upper: float, damping: float) -> None:
         """Other stops, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
         stops = {"lower": lower, "upper": upper, "damping": damping}
@@ -87,20 +93,9 @@ class Joint:
         self._body.change_joint(self.name, type=kind, **stops)
         self._touched()
 
-    def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
-        return joint_reaction(self._body, self._body.carried_by(self.name))
 
-
-class PassiveJoint:
+class PassiveJoint(BodyJoint):
     """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
-
-    second_axis: Joint | None = None
-
-    def __init__(self, description: JointDescription, body: Body):
-        self.description = description
-        self.name = description.name
-        self._body = body
 
     @property
     def position(self) -> float:
@@ -130,15 +125,8 @@ class PassiveJoint:
 
     add_effort = drive_effort
 
-    def release(self) -> None:
-        """No effect."""
-
     def change(self, lower: float, upper: float, damping: float) -> None:
         """No effect."""
-
-    def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
-        return joint_reaction(self._body, self._body.carried_by(self.name))
 
 
 class LoopJoint(PassiveJoint):

@@ -1,14 +1,12 @@
 """A model in the world: links and joints by name."""
 
-from __future__ import annotations
-
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 from bullet_sim.description import Inertial, JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.joint import Joint, LoopJoint, PassiveJoint, SingleJointGroup
-from bullet_sim.joint_projection import project_to_joint
 from bullet_sim.link import Link, gravity_compensation
 from bullet_sim.model_state import ModelState
 from bullet_sim.physics.assembly import Tree, assemble, loop_joints
@@ -21,8 +19,8 @@ from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.physics.levelling import levelled
 from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loop_constraints import LoopConstraints
-from bullet_sim.pose import Pose, Vector3
-from bullet_sim.twist import STILL, Twist, twist_difference
+from bullet_sim.pose import Pose, Vector3, rotate
+from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 
 
 class Model(ModelState):
@@ -54,7 +52,7 @@ class Model(ModelState):
         }
         self._axes = {  # all that the engine can move, second axes and travels of screws too
             joint: Joint(body.joint_description(joint), body, self.forget)
-            for body in self.bodies for joint in body.joint_names()
+            for body in self.bodies for joint in body.joint_index
         }
         self._find_joints(loops)
         self._steady = [body for body in self.bodies if body.acts_steadily]
@@ -98,7 +96,7 @@ class Model(ModelState):
         """
         body = link.body
         if body.tree.fixed_base and not self.static:
-            state = project_to_joint(link, pose, twist)
+            state = _project_to_joint(link, pose, twist)
             if state is not None:
                 name, position, rate = state
                 self._axes[name].reset(position, rate)
@@ -204,3 +202,34 @@ class Model(ModelState):
         """Unload its bodies."""
         for body in self.bodies:
             body.remove()
+
+
+def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
+    """Name, position and rate (rad or m) of the joint that carries `link`, nearest to these.
+
+    Of a link that joints hold to the world; in Gazebo it keeps any pose for one step, until its
+    joints pull it back. `pose` and `twist` (of the link's origin) are in the world. None of a link
+    that is fixed to the world or hangs on a ball joint.
+    """
+    body = link.body
+    carrier = body.moving_carrier(link.name)
+    if carrier is None:
+        return None
+    joint, axis = carrier.joint, carrier.joint.axis
+    frame = body.engine_frame(body.index[carrier.name])
+    wanted = pose * link.pose.inverse() * frame
+    moved = frame.inverse() * wanted
+    parent_pose, parent_twist = link.model.link_states().get(
+        body.described_parent(carrier), (Pose(), Twist()))
+    own = twist_difference(
+        twist, shifted_twist(parent_twist, parent_pose.position, pose.position))
+    if joint.type == "prismatic":
+        step, motion = dot(moved.position, axis), own.linear
+    else:
+        x, y, z, w = moved.orientation
+        step = math.remainder(2.0 * math.atan2(dot((x, y, z), axis), w), 2.0 * math.pi)
+        motion = own.angular
+    position = body.joint_state(joint.name)[0] + step
+    if joint.type != "continuous" and joint.lower <= joint.upper:
+        position = max(joint.lower, min(joint.upper, position))
+    return joint.name, position, dot(rotate(frame.orientation, axis), motion)

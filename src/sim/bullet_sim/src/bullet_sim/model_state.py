@@ -3,8 +3,6 @@
 What links and joints need of their model; `Model` adds the links and joints themselves.
 """
 
-from __future__ import annotations
-
 from bullet_sim.description import ModelDescription
 from bullet_sim.physics.assembly import WORLD
 from bullet_sim.physics.body import Body

@@ -3,8 +3,6 @@
 In the engine one body without a place (NaN) takes the ground from all others: they fall through.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """A model inside another: the part of it whose links are named `nested::link`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from bullet_sim.description import JointDescription

@@ -129,3 +129,17 @@ def rotation_matrix(q: Quaternion) -> np.ndarray:
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ])
+
+
+def symmetric_matrix(six: Sequence[float]) -> np.ndarray:
+    """(3, 3) of a tensor's xx, xy, xz, yy, yz, zz."""
+    xx, xy, xz, yy, yz, zz = six
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def shortest_angular_distance(start: float, to: float) -> float:
+    """The turn that leads from one angle to the other, in (-pi, pi], rad."""
+    turn = math.fmod(to - start, math.tau)
+    if turn <= -math.pi:
+        return turn + math.tau
+    return turn - math.tau if turn > math.pi else turn

@@ -1,9 +1,8 @@
 """Where the wall-clock time goes: a stopwatch for each stage of the work."""
 
-from __future__ import annotations
-
 import threading
 import time
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,14 +21,12 @@ class Profiler:
     """Stages by name. Several threads may add at once, each to stages of its own."""
 
     def __init__(self):
-        self._stages: dict[str, Stage] = {}
+        self._stages: dict[str, Stage] = defaultdict(Stage)
         self._thread = threading.local()
 
     def add(self, name: str, seconds: float, count: int = 1) -> None:
         """Something was done `count` times in so many seconds of wall time."""
-        stage = self._stages.get(name)
-        if stage is None:
-            stage = self._stages[name] = Stage()
+        stage = self._stages[name]
         stage.count += count
         stage.total += seconds
         stage.worst = max(stage.worst, seconds / count)

@@ -4,8 +4,6 @@ A model's own name may hold `::`, as Gazebo lets it, so that a name alone does n
 model's ends.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from bullet_sim.description import LightDescription

@@ -1,7 +1,5 @@
 """When something that has a rate is due, counted in physics steps."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.errors import SimulationError

@@ -1,7 +1,5 @@
 """Velocities of rigid bodies, and what they are at other points and in other frames."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.pose import Pose, Vector3, conjugate, rotate

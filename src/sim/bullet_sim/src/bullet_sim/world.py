@@ -1,7 +1,5 @@
 """The simulated world: the only thing that steps, and the owner of simulated time."""
 
-from __future__ import annotations
-
 import logging
 import math
 import time
@@ -45,7 +43,6 @@ class World:
         self.tick = round((self.description.sim_time or initial_time) / self.timestep)
         self.paused = False
         self.models: dict[str, Model] = {}
-        self.lights: dict[str, LightDescription] = {}
         self.scene = Scene(self.description.scene)
         self.forces = Forces()
         self.profiler = Profiler()
@@ -197,11 +194,13 @@ class World:
         """
         return find_frame(self.models, name)
 
+    @property
+    def lights(self) -> dict[str, LightDescription]:
+        """Those of the scene, by name."""
+        return self.scene.lights
+
     def add_light(self, light: LightDescription) -> None:
         """Add a light. NameTaken if there is one of that name."""
-        if light.name in self.lights:
-            raise NameTaken(f"a light named {light.name!r} is already there")
-        self.lights[light.name] = light
         self.scene.add_light(light)
 
     def change_light(self, light: LightDescription) -> None:
@@ -214,9 +213,6 @@ class World:
 
     def remove_light(self, name: str) -> None:
         """Remove a light. UnknownName without one of that name."""
-        if name not in self.lights:
-            raise UnknownName("light", name, self.lights)
-        del self.lights[name]
         self.scene.remove_light(name)
 
     # --- reset

@@ -1,7 +1,5 @@
 """A controller's access to a joint: its state to read, and a command to write."""
 
-from __future__ import annotations
-
 from bullet_sim.control.limits import JointLimits
 
 INTERFACES = ("effort", "position", "velocity")

@@ -3,8 +3,6 @@
 The semantics are those of gazebo_ros_control's DefaultRobotHWSim: a joint has one interface.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 from bullet_sim.control.handles import CommandHandle, JointHandle

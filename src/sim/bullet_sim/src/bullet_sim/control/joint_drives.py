@@ -3,26 +3,33 @@
 The ways, and when each is taken, are those of gazebo_ros_control's DefaultRobotHWSim.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
-from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.limits import LIMITERS, JointLimits, clamp
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.joint import Joint
+from bullet_sim.pose import shortest_angular_distance
 
 STRONGEST = 1e6  # N m or N: where there is no limit; the engine makes NaN of much more
 ARRIVED = 1e-9  # rad or m
 
 
-class EffortDrive:
-    """The effort that was commanded, each step."""
+class JointDrive:
+    """Turns a joint's command, within its limits, into what the engine does."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits):
         self.handle = handle
         self.limiter = LIMITERS[handle.interface](handle.joint, limits)
+        self._limits = limits
+
+    def reset(self) -> None:
+        """After a reset of the joint."""
+        self.limiter.reset()
+
+
+class EffortDrive(JointDrive):
+    """The effort that was commanded, each step."""
 
     def effort(self, period: float) -> float:
         """N m or N, for the next step of `period` (s); the joint's handle shows it from then on."""
@@ -30,17 +37,12 @@ class EffortDrive:
         self.handle.joint.effort = effort
         return effort
 
-    def reset(self) -> None:
-        """After a reset of the joint."""
-        self.limiter.reset()
-
 
 class PidDrive(EffortDrive):
     """A position or velocity command with gains: the effort that a PID finds for the error."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, gains: PidGains):
         super().__init__(handle, limits)
-        self._most = limits.effort
         self.pid = Pid(gains)
 
     def effort(self, period: float) -> float:
@@ -51,7 +53,8 @@ class PidDrive(EffortDrive):
             error = target - joint.velocity
         else:
             error = position_error(joint, target)
-        effort = clamp(self.pid.compute(error, period), -self._most, self._most)
+        most = self._limits.effort
+        effort = clamp(self.pid.compute(error, period), -most, most)
         joint.effort = effort
         return effort
 
@@ -61,22 +64,17 @@ class PidDrive(EffortDrive):
         self.pid.reset()
 
 
-class VelocityMotor:
+class VelocityMotor(JointDrive):
     """A velocity command without gains: a motor with the effort limit as its strength."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
-        self.handle = handle
-        self.limiter = LIMITERS["velocity"](handle.joint, limits)
+        super().__init__(handle, limits)
         self._joint = joint
-        self._strength = limits.effort
 
     def drive(self, period: float) -> None:
         """Set the motor for the next step of `period` (s)."""
-        self._joint.drive_velocity(self.limiter.apply(self.handle.command, period), self._strength)
-
-    def reset(self) -> None:
-        """After a reset of the joint."""
-        self.limiter.reset()
+        rate = self.limiter.apply(self.handle.command, period)
+        self._joint.drive_velocity(rate, self._limits.effort)
 
 
 class PositionMotor(VelocityMotor):
@@ -86,17 +84,13 @@ class PositionMotor(VelocityMotor):
     with a motor that nothing can hold, so that its rate is true and moves what it carries.
     """
 
-    def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
-        super().__init__(handle, limits, joint)
-        self.limiter = LIMITERS["position"](handle.joint, limits)
-        self._fastest = limits.velocity
-
     def drive(self, period: float) -> None:
         """Set the motor for the next step of `period` (s)."""
         target = self.limiter.apply(self.handle.command, period)
         gap = target - self.handle.joint.position
         rate = 0.0 if -ARRIVED < gap < ARRIVED else gap / period
-        self._joint.drive_velocity(clamp(rate, -self._fastest, self._fastest), STRONGEST)
+        fastest = self._limits.velocity
+        self._joint.drive_velocity(clamp(rate, -fastest, fastest), STRONGEST)
 
 
 def position_error(joint: JointHandle, target: float) -> float:
@@ -110,7 +104,7 @@ def position_error(joint: JointHandle, target: float) -> float:
 
 
 def make_drive(handle: CommandHandle, gains: PidGains | None,
-               joint: Joint) -> EffortDrive | VelocityMotor:
+               joint: Joint) -> JointDrive:
     """The drive for a joint's interface, with or without gains."""
     limits = handle.joint.limits
     limits = replace(limits, effort=min(limits.effort, STRONGEST))

@@ -1,7 +1,5 @@
 """Limits of a joint and how commands are kept within them, after joint_limits_interface's laws."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A PID controller with a clamped integral, after control_toolbox's laws."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear
 front ones roll, so that the car drives the circle that its odometry counts.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +12,7 @@ from dataclasses import dataclass
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.limits import JointLimits
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model
 
@@ -30,9 +28,7 @@ class SteerBotGeometry:
     ackermann: bool = True  # else both steered wheels are parallel
 
     def __post_init__(self):
-        for name in ("track", "wheelbase"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "track", "wheelbase")
 
     def angles(self, middle: float) -> tuple[float, float]:
         """Of the right and the left wheel (rad), for that angle half-way between them (rad).

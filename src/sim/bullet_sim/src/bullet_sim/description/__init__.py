@@ -4,71 +4,39 @@ All lengths in m, angles in rad, masses in kg. Link poses are in the model frame
 zero. This is the package's face: others import from here, not from the files by subject.
 """
 
-from bullet_sim.description.joints import JointDescription, SecondAxis
-from bullet_sim.description.links import Collision, Inertial, LinkDescription, Visual
-from bullet_sim.description.models import ModelDescription, Trajectory
-from bullet_sim.description.plugins import PluginDescription
-from bullet_sim.description.scenes import Fog, LightDescription, SceneDescription
-from bullet_sim.description.sensors import (
-    CameraDescription,
-    ImuDescription,
-    Lens,
-    Noise,
-    RayDescription,
-    SensorDescription,
-)
-from bullet_sim.description.shapes import (
-    Box,
-    Cylinder,
-    Generated,
-    Geometry,
-    Heightmap,
-    ImageExtrusion,
-    Mesh,
-    Plane,
-    Polyline,
-    Sphere,
-    Strip,
-    TerrainLayer,
-)
-from bullet_sim.description.surfaces import Material, Rgba, Surface
-from bullet_sim.description.worlds import PhysicsDescription, SphericalDescription, WorldDescription
-
-__all__ = [
-    "Box",
-    "CameraDescription",
-    "Collision",
-    "Cylinder",
-    "Fog",
-    "Generated",
-    "Geometry",
-    "Heightmap",
-    "ImageExtrusion",
-    "ImuDescription",
-    "Inertial",
-    "JointDescription",
-    "Lens",
-    "LightDescription",
-    "LinkDescription",
-    "Material",
-    "Mesh",
-    "ModelDescription",
-    "Noise",
-    "PhysicsDescription",
-    "Plane",
-    "PluginDescription",
-    "Polyline",
-    "RayDescription",
-    "Rgba",
-    "SceneDescription",
-    "SecondAxis",
-    "SensorDescription",
-    "Sphere",
-    "SphericalDescription",
-    "Strip",
-    "Surface",
-    "TerrainLayer",
-    "Trajectory",
-    "Visual",
-    "WorldDescription",
-]
+from bullet_sim.description.joints import JointDescription as JointDescription
+from bullet_sim.description.joints import SecondAxis as SecondAxis
+from bullet_sim.description.links import Collision as Collision
+from bullet_sim.description.links import Inertial as Inertial
+from bullet_sim.description.links import LinkDescription as LinkDescription
+from bullet_sim.description.links import Visual as Visual
+from bullet_sim.description.models import ModelDescription as ModelDescription
+from bullet_sim.description.models import Trajectory as Trajectory
+from bullet_sim.description.plugins import PluginDescription as PluginDescription
+from bullet_sim.description.scenes import Fog as Fog
+from bullet_sim.description.scenes import LightDescription as LightDescription
+from bullet_sim.description.scenes import SceneDescription as SceneDescription
+from bullet_sim.description.sensors import CameraDescription as CameraDescription
+from bullet_sim.description.sensors import ImuDescription as ImuDescription
+from bullet_sim.description.sensors import Lens as Lens
+from bullet_sim.description.sensors import Noise as Noise
+from bullet_sim.description.sensors import RayDescription as RayDescription
+from bullet_sim.description.sensors import SensorDescription as SensorDescription
+from bullet_sim.description.shapes import Box as Box
+from bullet_sim.description.shapes import Cylinder as Cylinder
+from bullet_sim.description.shapes import Generated as Generated
+from bullet_sim.description.shapes import Geometry as Geometry
+from bullet_sim.description.shapes import Heightmap as Heightmap
+from bullet_sim.description.shapes import ImageExtrusion as ImageExtrusion
+from bullet_sim.description.shapes import Mesh as Mesh
+from bullet_sim.description.shapes import Plane as Plane
+from bullet_sim.description.shapes import Polyline as Polyline
+from bullet_sim.description.shapes import Sphere as Sphere
+from bullet_sim.description.shapes import Strip as Strip
+from bullet_sim.description.shapes import TerrainLayer as TerrainLayer
+from bullet_sim.description.surfaces import Material as Material
+from bullet_sim.description.surfaces import Rgba as Rgba
+from bullet_sim.description.surfaces import Surface as Surface
+from bullet_sim.description.worlds import PhysicsDescription as PhysicsDescription
+from bullet_sim.description.worlds import SphericalDescription as SphericalDescription
+from bullet_sim.description.worlds import WorldDescription as WorldDescription

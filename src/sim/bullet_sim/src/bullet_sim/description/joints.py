@@ -1,7 +1,5 @@
 """Joints between links: axes, stops, losses and springs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.pose import IDENTITY, Pose, Vector3

@@ -1,7 +1,5 @@
 """Links: mass, and what is seen, touched and mounted on them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.description.plugins import PluginDescription

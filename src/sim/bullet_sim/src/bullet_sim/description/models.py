@@ -1,7 +1,5 @@
 """Models: links and joints, plugins, models nested in them, and an actor's way."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from bullet_sim.description.joints import JointDescription

@@ -1,7 +1,5 @@
 """A plugin's element as the file has it, not interpreted."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 

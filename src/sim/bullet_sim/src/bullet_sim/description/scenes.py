@@ -1,7 +1,5 @@
 """What is drawn beside the models: lights, fog, sky and background."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.description.surfaces import Rgba

@@ -1,7 +1,5 @@
 """Sensors on links: what they measure, how often and how badly; angles in rad, lengths in m."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 

@@ -1,7 +1,5 @@
 """How things look and how they touch: colours, textures, contact parameters."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.pose import Vector3

@@ -1,7 +1,5 @@
 """Worlds: physics, place on Earth, scene and all that is in them from the start."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.description.links import Visual

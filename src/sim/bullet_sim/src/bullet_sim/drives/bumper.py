@@ -1,7 +1,5 @@
 """Which of a round robot's three bumpers is pressed, from what touches it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 
@@ -19,10 +17,9 @@ def pressed_bumpers(contacts: Iterable[Contact], link: str, robot: Pose) -> set[
     pressed = set()
     heading = robot.rpy()[2]
     for contact in contacts:
-        ends = [name.rpartition("::")[0] for name in (contact.collision1, contact.collision2)]
-        if link not in ends:
+        if link not in contact.links:
             continue
-        sign = -1.0 if ends[0] == link else 1.0  # from the robot outwards
+        sign = -1.0 if contact.links[0] == link else 1.0  # from the robot outwards
         if not LOWEST <= contact.position[2] - robot.position[2] <= HIGHEST:
             continue
         angle = math.remainder(

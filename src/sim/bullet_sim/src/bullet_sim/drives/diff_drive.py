@@ -1,7 +1,5 @@
 """Differential drive: two velocity motors, with Gazebo's limit on wheel acceleration."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

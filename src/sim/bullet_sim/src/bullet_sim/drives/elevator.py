@@ -1,7 +1,5 @@
 """A lift: closes its door, goes to a floor, opens, waits, closes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from bullet_sim.joint import Joint

@@ -1,7 +1,5 @@
 """A model pushed over the plane: what it lacks in velocity, times a gain, is the force."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.control.controllers.planar_odometry import PlanarOdometry

@@ -1,7 +1,5 @@
 """Holds what fingers press from opposite sides, as friction alone does not in a simulation."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence
@@ -69,12 +67,11 @@ class Grasp:
         """Contacts by the scoped name of the thing's link, then of the finger's; thing first."""
         found: dict[str, dict[str, list[Contact]]] = defaultdict(lambda: defaultdict(list))
         for contact in self._world.contacts():
-            first, second = (name.rpartition("::")[0]
-                             for name in (contact.collision1, contact.collision2))
+            first, second = contact.links
             if second in self._fingers and self._may_be_held(first):
                 found[first][second].append(contact)
             elif first in self._fingers and self._may_be_held(second):
-                found[second][first].append(turned_round(contact))
+                found[second][first].append(contact.reversed())
         return found
 
     def _may_be_held(self, name: str) -> bool:
@@ -113,13 +110,6 @@ class Grasp:
         return any(abs(math.dist(touch.finger.pose.transform(touch.point), middle)
                        - touch.distance) > self._parameters.release_tolerance
                    for touch in self._touches)
-
-
-def turned_round(contact: Contact) -> Contact:
-    """The same contact seen from the other body."""
-    normal, force = (tuple(-part for part in v) for v in (contact.normal, contact.force))
-    return Contact(contact.collision2, contact.collision1, contact.position, normal,
-                   contact.depth, force)
 
 
 def _mean(vectors: Sequence[Vector3]) -> Vector3:

@@ -1,7 +1,5 @@
 """A winch that holds a link in the air, raises or lowers it, and releases it once."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.errors import SimulationError

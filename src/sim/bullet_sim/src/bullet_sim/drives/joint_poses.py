@@ -1,7 +1,5 @@
 """Plays a list of joint positions by resetting the joints, while one link keeps its pose."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Kobuki's base: two wheels with a time-out, odometry from wheels and gyroscope."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.errors import SimulationError

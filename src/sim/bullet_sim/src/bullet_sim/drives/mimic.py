@@ -1,7 +1,5 @@
 """A joint that follows another one: `multiplier` times its position, plus `offset`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.control.pid import Pid

@@ -1,7 +1,5 @@
 """A model that is moved over the plane as a whole, without wheels that would have to do it."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.model import Model

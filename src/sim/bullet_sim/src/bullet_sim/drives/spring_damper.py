@@ -1,7 +1,5 @@
 """An unseen hand: a spring and a critical damper pull a link to a wanted pose."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.link import Link, gravity_compensation

@@ -1,7 +1,5 @@
 """Tricycle drive: one wheel that is steered and driven, two that only roll."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

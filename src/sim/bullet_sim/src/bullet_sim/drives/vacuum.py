@@ -1,7 +1,5 @@
 """A suction cup: what comes near is carried along, and pulled to it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

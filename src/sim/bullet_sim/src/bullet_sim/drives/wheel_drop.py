@@ -1,7 +1,5 @@
 """Which wheels of a base have no ground contact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 from bullet_sim.physics.contacts import Contact
@@ -19,8 +17,7 @@ class WheelDrop:
 
     def dropped(self, contacts: Iterable[Contact], time: float) -> set[str]:
         """Names of the wheels that have touched nothing for a while, at `time` (s)."""
-        touching = {name.rpartition("::")[0] for contact in contacts
-                    for name in (contact.collision1, contact.collision2)}
+        touching = {link for contact in contacts for link in contact.links}
         for name, link in self._wheels.items():
             if link in touching or self._touched[name] > time:  # time was reset
                 self._touched[name] = time

@@ -1,7 +1,5 @@
 """Gazebo's named materials, such as `Gazebo/Grey`, read from a table in data/."""
 
-from __future__ import annotations
-
 import tomllib
 from functools import cache
 

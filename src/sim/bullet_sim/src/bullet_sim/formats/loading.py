@@ -1,7 +1,5 @@
 """Reads a model, light or world from its text: URDF or SDF, by the root element."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -11,11 +9,11 @@ from bullet_sim.description import LightDescription, ModelDescription, WorldDesc
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.mistakes import reading
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.sdf import model as sdf_model
-from bullet_sim.formats.sdf import world as sdf_world
 from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.schema import warn_of_unknown_elements
+from bullet_sim.formats.sdf.world import read_world
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf.robot import read_robot
 from bullet_sim.formats.xml_values import parse_xml, read_xml_file
@@ -45,7 +43,7 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
     if name and named is not None:
         named.set("name", name)
     with reading():
-        model = _read_root(root, Source(resources))
+        model = _read_root(root, Source(resources, _read_root))
     return replace(model, name=name) if name else model
 
 
@@ -75,10 +73,10 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     world = root.find("world") if root.tag in SDF_ROOTS else None
     if world is None:
         raise FormatError(f"{path} has no <world> in an <sdf> root (the root is <{root.tag}>)")
-    source = Source(resources).entering(path.resolve()).of_root(root)
+    source = Source(resources, _read_root).entering(path.resolve()).of_root(root)
     warn_of_unknown_elements(root, source, str(path))
     with reading(str(path)):
-        return sdf_world.read_world(world, source, _read_model, _read_include)
+        return read_world(world, source)
 
 
 def _parse_model(text: str) -> Element:
@@ -113,12 +111,12 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
     warn_of_unknown_elements(root, source, str(source.including[-1]) if source.including else "")
     model = _model_of(root)
     if model is not None:
-        return _read_model(model, source)
+        return read_model(model, source)
     # what spawn_model -database sends: a world that only includes the model
     include = root.find("world/include")
     if include is None:
         raise FormatError(f"no <model> in the <{root.tag}> text")
-    found = _read_include(include, source)
+    found = read_include(include, source)
     if not isinstance(found, ModelDescription):
         uri = (include.findtext("uri") or "").strip()
         raise FormatError(f"<include> of {uri!r} brings in no model")
@@ -130,18 +128,3 @@ def _model_of(root: Element) -> Element | None:
     """The one model of an SDF text."""
     model = root.find("model")
     return root.find("world/model") if model is None else model
-
-
-def _read_model(element: Element, source: Source) -> ModelDescription:
-    return sdf_model.read_model(element, source, _included_model)
-
-
-def _read_include(
-    include: Element, source: Source
-) -> ModelDescription | LightDescription | None:
-    return read_include(include, source, _read_root)
-
-
-def _included_model(include: Element, source: Source) -> ModelDescription | None:
-    found = _read_include(include, source)
-    return found if isinstance(found, ModelDescription) else None

@@ -1,7 +1,5 @@
 """Says what is wrong in a text and reads on without it, as sdformat does; so many times at most."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,7 +7,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import SimulationError, shortened
 
 logger = logging.getLogger(__name__)
 
@@ -58,13 +56,7 @@ def mistake(message: object) -> None:
         return
     said.lines.add(line)
     if len(said.lines) <= MOST_LINES:
-        logger.error("%s", _shortened(line))
-
-
-def _shortened(line: str) -> str:
-    """Both ends of a line that is too long: where it is, and what is done about it."""
-    half = LONGEST_LINE // 2
-    return line if len(line) <= LONGEST_LINE else f"{line[:half]} … {line[-half:]}"
+        logger.error("%s", shortened(line, LONGEST_LINE))
 
 
 def instead(error: SimulationError, used: object) -> None:

@@ -1,7 +1,5 @@
 """Parses the part of OGRE's material scripts that Gazebo models use: first pass, first texture."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Meshes of Gazebo's model library that shapes of data/models replace: their sizes and places."""
 
-from __future__ import annotations
-
 import functools
 import tomllib
 from collections.abc import Iterable
@@ -53,14 +51,10 @@ def _along(pose: Pose, factors: Vector3) -> Vector3:
 
 def prop_mesh(folder: str) -> PropMesh:
     """That of a folder of data/models."""
-    return _read().get(folder, PropMesh())
+    return read_prop_meshes(FILE).get(folder, PropMesh())
 
 
 @functools.cache
-def _read() -> dict[str, PropMesh]:
-    return read_prop_meshes(FILE)
-
-
 def read_prop_meshes(file: Path) -> dict[str, PropMesh]:
     """The file's tables. FormatError for an unknown key, a wrong count, a scale of 0."""
     with file.open("rb") as opened:

@@ -4,8 +4,6 @@ Gazebo's window saves a model with its meshes, not as an `<include>`. Our model 
 made of plain shapes, and they are taken for the mesh, as much larger as it is scaled.
 """
 
-from __future__ import annotations
-
 import logging
 import re
 from collections.abc import Callable, Iterator

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+from bullet_sim.description import ModelDescription
 from bullet_sim.formats.resources import Resources
 
 logger = logging.getLogger(__name__)
@@ -19,6 +21,8 @@ class Source:
     """One text with its SDF version; `said` and `scripts` are shared by everything it includes."""
 
     resources: Resources
+    # Of a file that an <include> names, SDF or URDF; the reader of URDF itself uses those of SDF.
+    read_root: Callable[[Element, Source], ModelDescription] | None = None
     version: tuple[int, int] = NEWEST_SDF
     folder: Path | None = None  # of the text's file
     said: set[str] = field(default_factory=set)

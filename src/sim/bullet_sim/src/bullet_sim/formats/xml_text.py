@@ -1,7 +1,5 @@
 """From bytes to XML elements, with bounds on size, depth and number, so that no text is a bomb."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

@@ -4,12 +4,10 @@ The readers that take a default give one error line and the default for what can
 sdformat does; the checks that do not (`numbers`, `not_negative`, `bounded`) raise FormatError.
 """
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Rgba
@@ -19,9 +17,9 @@ from bullet_sim.formats.xml_text import parse_xml, read_xml_file
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 __all__ = [
-    "amount", "bounded", "child_text", "colour", "flag", "integer", "length", "not_negative",
-    "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file", "shown", "size",
-    "vector", "vector_text",
+    "amount", "bounded", "child_text", "colour", "fields", "flag", "integer", "length",
+    "not_negative", "number", "numbers", "or_default", "parse_xml", "pose", "read_xml_file",
+    "shown", "size", "vector", "vector_text",
 ]
 
 TRUE_WORDS = ("true", "1")
@@ -96,18 +94,13 @@ def shown(value: float | Sequence[float] | Pose | str) -> str:
 
 def _number(
     parent: Element, path: str, default: float, where: str,
-    check: Callable[[Sequence[float], str], Sequence[float]] | None = None,
+    check: Callable[[Sequence[float], str], Sequence[float]] = lambda values, _: values,
 ) -> float:
     text = child_text(parent, path)
     if not text:
         return default
     where = f"{where} <{path}>"
-
-    def read() -> float:
-        values = numbers(text, 1, where)
-        return (check(values, where) if check else values)[0]
-
-    return or_default(read, default)
+    return or_default(lambda: check(numbers(text, 1, where), where)[0], default)
 
 
 def number(parent: Element, path: str, default: float, where: str) -> float:
@@ -167,6 +160,16 @@ def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
     count = 3 if len(text.split()) == 3 else 4
     return or_default(
         lambda: (*numbers(text, count, f"{where} <{path}>"), 1.0)[:4], default)
+
+
+def fields(read: Callable[..., Value], parent: Element, names: str, usual: Any, where: str,
+           folder: str = "", prefix: str = "") -> dict[str, Value]:
+    """What `read` gives for elements in `folder` that are named as the fields of a description.
+
+    `usual` has the defaults. `prefix` is what the fields' names have before those of the elements.
+    """
+    return {prefix + name: read(parent, folder + name, getattr(usual, prefix + name), where)
+            for name in names.split()}
 
 
 def pose(parent: Element, where: str, default: Pose = IDENTITY) -> Pose:

@@ -5,19 +5,17 @@ models made for it are drawn accordingly, so a Y_UP file stays as its numbers ar
 in their bind pose.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
 
 import numpy as np
 
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
+from bullet_sim.files import find_beside
 from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
 
 _log = logging.getLogger(__name__)
@@ -172,9 +170,8 @@ def _texture(value: Any, folder: Path) -> str | None:
     written = getattr(image, "path", None)
     if not written:
         return None
-    name = unquote(written.removeprefix("file://").replace("\\", "/"))
-    for path in (folder / name, folder / Path(name).name):
-        if path.is_file():
-            return str(path.resolve())
+    name = written.removeprefix("file://")
+    if path := find_beside(name, folder):
+        return str(path.resolve())
     _log.warning("a COLLADA mesh in %s: texture %s not found there; drawn without it", folder, name)
     return None

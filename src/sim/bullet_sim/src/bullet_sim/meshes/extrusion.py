@@ -1,7 +1,5 @@
 """Triangles of polylines, of pictures used as floor plans, and of roads."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,9 +1,6 @@
 """Triangles of the shapes that no mesh file holds: generated at first use, then cached."""
 
-from __future__ import annotations
-
 import functools
-from dataclasses import dataclass
 
 from bullet_sim.description import Generated, Heightmap, ImageExtrusion, Polyline, Strip
 from bullet_sim.errors import FormatError
@@ -13,14 +10,6 @@ from bullet_sim.meshes.images import check_image
 from bullet_sim.meshes.part import MeshPart
 
 
-@dataclass(frozen=True)
-class _Version:
-    """What the triangles depend on: an image written again is read again."""
-
-    shape: Generated
-    modified_ns: int
-
-
 def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
     """Parts of one material each, in the link frame; FormatError where there is nothing to see."""
     path = getattr(shape, "path", None)
@@ -28,21 +17,22 @@ def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
         modified_ns = check_image(path).st_mtime_ns if path else 0
     except FormatError as error:
         raise FormatError(f"image {error}") from None
-    parts = _made(_Version(shape, modified_ns))
+    parts = _made(shape, modified_ns)
     if not any(len(part.faces) for part in parts):
         raise FormatError(f"{type(shape).__name__} has no surface; give it a size and a height")
     return parts
 
 
 @functools.lru_cache(maxsize=32)
-def _made(version: _Version) -> tuple[MeshPart, ...]:
-    match version.shape:
-        case Heightmap() as shape:
+def _made(shape: Generated, _modified_ns: int) -> tuple[MeshPart, ...]:
+    """By the shape and when its file was written: an image written again is read again."""
+    match shape:
+        case Heightmap():
             return heightmap_parts(shape)
-        case ImageExtrusion() as shape:
+        case ImageExtrusion():
             return (image_part(shape),)
-        case Polyline() as shape:
+        case Polyline():
             return (polyline_part(shape),)
-        case Strip() as shape:
+        case Strip():
             return (strip_part(shape),)
-    raise TypeError(f"no triangles for {version.shape!r}")
+    raise TypeError(f"no triangles for {shape!r}")

@@ -1,7 +1,5 @@
 """Triangles of heightmaps: a grid of heights read from a grey image, in layers of one look each."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

@@ -1,11 +1,9 @@
 """Triangles of mesh files: loaded once, scaled, with the materials that the file itself names."""
 
-from __future__ import annotations
-
 import functools
 import logging
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -33,14 +31,6 @@ _trimesh_log.addHandler(logging.NullHandler())
 _trimesh_log.propagate = False  # a learner's terminal shows our own warning, once
 
 
-@dataclass(frozen=True)
-class _FileVersion:
-    """What a cached mesh depends on: a file written again is read again."""
-
-    geometry: Mesh
-    modified_ns: int
-
-
 def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """Parts of a file, one per material, in the mesh's own frame and in metres.
 
@@ -53,7 +43,7 @@ def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
         status = check_file(geometry.path, LARGEST_FILE, "export it with fewer triangles")
     except FormatError as error:
         raise FormatError(f"mesh {error}") from None
-    return _load(_FileVersion(geometry, status.st_mtime_ns))
+    return _load(geometry, status.st_mtime_ns)
 
 
 def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
@@ -73,8 +63,8 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
 
 
 @functools.lru_cache(maxsize=256)
-def _load(version: _FileVersion) -> tuple[MeshPart, ...]:
-    geometry = version.geometry
+def _load(geometry: Mesh, _modified_ns: int) -> tuple[MeshPart, ...]:
+    """By the mesh and when its file was written: a file written again is read again."""
     named = _read(Path(geometry.path), geometry.submesh)
     parts = [part for _, part in _chosen(named, geometry)]
     if geometry.submesh is not None and geometry.centre_submesh:

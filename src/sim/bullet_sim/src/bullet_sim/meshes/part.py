@@ -1,7 +1,5 @@
 """One drawable piece of a surface: triangles that share a material."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

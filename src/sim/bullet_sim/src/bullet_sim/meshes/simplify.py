@@ -4,8 +4,6 @@ Vertex clustering (Rossignac and Borrel, 1993): a pass over arrays, so that a mi
 part of a second; no corner moves farther than the diagonal of its cell.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

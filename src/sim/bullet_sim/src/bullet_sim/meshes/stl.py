@@ -3,8 +3,6 @@
 Read here and not by trimesh, whose import costs half a second of a simulator's start (measured).
 """
 
-from __future__ import annotations
-
 import re
 from itertools import zip_longest
 from pathlib import Path

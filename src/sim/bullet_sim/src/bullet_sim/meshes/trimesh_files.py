@@ -4,8 +4,6 @@ Gazebo Classic reads none of them; models written for newer tools do. The number
 no axis is turned, and glTF's are metres.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -3,8 +3,6 @@
 Read here and not by trimesh, which refuses polygons of four corners in a group of their own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise

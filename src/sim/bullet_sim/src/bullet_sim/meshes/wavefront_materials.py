@@ -1,13 +1,10 @@
 """The materials of a Wavefront OBJ file, from its MTL libraries."""
 
-from __future__ import annotations
-
 import logging
 from pathlib import Path
-from urllib.parse import unquote
 
 from bullet_sim.description import Material
-from bullet_sim.files import check_file
+from bullet_sim.files import check_file, find_beside
 
 LARGEST_LIBRARY = 4 * 2**20  # bytes
 _log = logging.getLogger(__name__)
@@ -19,7 +16,7 @@ def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
     """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning."""
     values: dict[str, Entry] = {}
     for name in libraries:
-        library = _found(name, path.parent)
+        library = find_beside(name, path.parent)
         if library is None:
             _log.warning("mesh %s: material library %s not found (searched: %s)",
                          path, name, path.parent)
@@ -75,17 +72,8 @@ def _texture(words: list[str] | None, mesh: Path) -> str | None:
     if not words:
         return None
     for name in (" ".join(words), words[-1]):
-        if path := _found(name, mesh.parent):
+        if path := find_beside(name, mesh.parent):
             return str(path.resolve())
     _log.warning("mesh %s: texture %s not found (searched: %s); drawn without it",
                  mesh, " ".join(words), mesh.parent)
-    return None
-
-
-def _found(name: str, folder: Path) -> Path | None:
-    """As written, or beside the file: libraries carry the paths of other machines."""
-    name = unquote(name.replace("\\", "/"))
-    for path in (folder / name, folder / Path(name).name):
-        if path.is_file():
-            return path
     return None

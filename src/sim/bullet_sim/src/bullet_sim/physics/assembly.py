@@ -4,8 +4,6 @@ The engine has one friction per link and no plane inside a compound shape, so co
 that differ in surface, and every plane, ride on a welded link of their own.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 from bullet_sim.description import (

@@ -6,11 +6,11 @@ Engines call this auto-disabling; ODE does it below 0.01 m/s and 0.01 rad/s. Our
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from typing import Protocol
+
+from bullet_sim.physics.assembly import Tree
 
 REST_SPEED = 2e-4  # m/s; by contacts alone a robot at rest creeps at 1.5e-5 (measured)
 REST_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
@@ -22,8 +22,16 @@ GROWTH = 1.5  # over these samples: more than that is the beginning of a fall
 NOTHING = 1e-3  # of what counts as still; below it growth is only that of rounding errors
 
 
-class Restable(Protocol):
-    """A body as seen from here."""
+class SimulatedBody(Protocol):
+    """A body as those see it who decide what the engine solves (`physics.body.Body`)."""
+
+    number: int  # the engine's
+    tree: Tree
+
+    @property
+    def auto_disables(self) -> bool:
+        """Whether nothing but contacts and gravity acts on it."""
+        ...
 
     def wants_to_move(self) -> bool:
         """Whether a motor has somewhere to go."""
@@ -37,12 +45,16 @@ class Restable(Protocol):
         """Record the loads of its joints in the last step before the rest."""
         ...
 
+    def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
+        """Have contacts correct no more of their depth in each step (s); None: as usual."""
+        ...
+
 
 class AutoDisable:
     """Asked before every step. What is changed from outside, by anybody, ends the rest."""
 
     def __init__(self):
-        self.bodies: list[Restable] = []
+        self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
         self.is_fast = False  # whether anything was brisk when last looked at
         self.found_nan = False  # whether a speed was no number when last looked at

@@ -1,7 +1,5 @@
 """Joints with two degrees of freedom, as chains of two joints with one: what the engine has."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 
 from bullet_sim.description import JointDescription

@@ -30,7 +30,10 @@ FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a 
 
 
 class Attachment(Protocol):
-    """A constraint or filter on the engine's body itself, made again whenever that is."""
+    """A constraint or filter on the engine's body itself, made again whenever that is.
+
+    It is false where it has nothing to do.
+    """
 
     bodies: list[Body]  # each has it in `attached`
 
@@ -43,14 +46,26 @@ class Attachment(Protocol):
         ...
 
 
+def fasten(attachment: Attachment) -> None:
+    """Attach it to its bodies, if it acts at all; what it made before a failure goes again."""
+    try:
+        attachment.attach()
+    except Exception:
+        attachment.detach()
+        raise
+    if attachment:
+        for body in attachment.bodies:
+            body.attached.append(attachment)
+
+
 class Body(BodyLinks, BodyJoints):
     """A loaded tree, whose links and joints go by name."""
 
     def __init__(self, client: PhysicsClient, tree: Tree, pose_world_model: Pose):
         self.tree = tree
-        self._client = client
+        self.client = client
         self.base_pose_model = tree.links[0].pose_parent
-        self._index = {link.name: number - 1 for number, link in enumerate(tree.links)}
+        self.index = {link.name: number - 1 for number, link in enumerate(tree.links)}
         self._physics_link = {link.name: link for link in tree.links}
         self._refused = set()
         self._find_joints()
@@ -73,7 +88,7 @@ class Body(BodyLinks, BodyJoints):
     # --- set-up
 
     def _create(self, frame: Pose) -> None:
-        self.number = self._client.load(self.tree, frame)
+        self.number = self.client.load(self.tree, frame)
         inertial = self.dynamics(BASE)
         self._pose_base_com = Pose(inertial[3], inertial[4])
         self._set_up_contacts()
@@ -81,8 +96,8 @@ class Body(BodyLinks, BodyJoints):
         self._steady = [each for each in (Springs(self), VelocityDecay(self)) if each]
         for link in self.tree.links:
             if link.collisions and link.collisions[0].laser_retro:
-                seen = self.number, self._index[link.name]
-                self._client.retro[seen] = link.collisions[0].laser_retro
+                seen = self.number, self.index[link.name]
+                self.client.retro[seen] = link.collisions[0].laser_retro
 
     def rebuild(self, links: dict[str, PhysicsLink]) -> None:
         """Give links of these names other masses, or joints other stops, in full motion.
@@ -92,8 +107,8 @@ class Body(BodyLinks, BodyJoints):
         """
         frame, base = self.base_frame(), self.tree.links[0].described
         at, twist = self.link_states()[base]
-        joints = {name: self.joint_state(name) for name in self._joint_index}
-        balls = {name: self._ball_state(name) for name in self._ball_index}
+        joints = {name: self.joint_state(name) for name in self.joint_index}
+        balls = {name: self._ball_state(name) for name in self.ball_index}
         motors = self._motors
         self.unload()
         self.tree = replace(self.tree, links=[
@@ -120,9 +135,9 @@ class Body(BodyLinks, BodyJoints):
     def load(self, frame: Pose, attach: bool = True) -> None:
         """Put it into the engine, still, with the base's frame at `frame` in the world."""
         self._create(frame)
-        self._client.planes.put(self.number, self.tree, frame)
+        self.client.planes.put(self.number, self.tree, frame)
         self._motors = {}
-        for name in self._joint_index:
+        for name in self.joint_index:
             self.release(name)
         for attachment in self.attached if attach else ():
             attachment.attach()
@@ -136,7 +151,7 @@ class Body(BodyLinks, BodyJoints):
 
     def change_joint(self, joint: str, **changes) -> None:
         """Other fields of its JointDescription: stops, damping, type."""
-        held = self.tree.links[self._joint_index[joint] + 1]
+        held = self.tree.links[self.joint_index[joint] + 1]
         self.rebuild({held.name: replace(held, joint=replace(held.joint, **changes))})
 
     def _set_up_contacts(self) -> None:
@@ -148,9 +163,9 @@ class Body(BodyLinks, BodyJoints):
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping
             if link.collisions:
-                com = self.com_in_link(self._index[link.name])
+                com = self.com_in_link(self.index[link.name])
                 values |= contact_values(link.collisions[0], self.tree.fixed, com, mass)
-            self.change(pybullet.changeDynamics, self._index[link.name], **values)
+            self.change(pybullet.changeDynamics, self.index[link.name], **values)
 
     def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
         """Have contacts correct no more of their depth in each step (s); None: as usual."""
@@ -163,7 +178,7 @@ class Body(BodyLinks, BodyJoints):
                 values = correcting_velocity_values(part, timestep)
             if values:
                 self.change_without_waking(
-                    pybullet.changeDynamics, self._index[link.name], **values)
+                    pybullet.changeDynamics, self.index[link.name], **values)
 
     def _mass(self) -> float:
         return sum(link.inertial.mass for link in self.tree.links)
@@ -184,7 +199,7 @@ class Body(BodyLinks, BodyJoints):
 
     def remove(self) -> None:
         """Take the body out of the world, also where the engine cannot find it any more."""
-        self._client.auto_disable.bodies.remove(self)
+        self.client.auto_disable.bodies.remove(self)
         for attachment in list(self.attached):
             with contextlib.suppress(EngineError):
                 attachment.detach()
@@ -195,9 +210,9 @@ class Body(BodyLinks, BodyJoints):
     def _destroy(self) -> None:
         if self.number == NOWHERE:
             return
-        self._client.planes.remove(self.number)
-        for seen in [seen for seen in self._client.retro if seen[0] == self.number]:
-            del self._client.retro[seen]
+        self.client.planes.remove(self.number)
+        for seen in [seen for seen in self.client.retro if seen[0] == self.number]:
+            del self.client.retro[seen]
         with contextlib.suppress(EngineError):
             self.change(pybullet.removeBody)
         self.number = NOWHERE
@@ -208,7 +223,7 @@ class Body(BodyLinks, BodyJoints):
     def auto_disables(self) -> bool:
         """Whether nothing but contacts and gravity acts on it."""
         return self.may_auto_disable and not (
-            self.tree.fixed or self._joint_index or self._ball_index or self.attached
+            self.tree.fixed or self.joint_index or self.ball_index or self.attached
             or self.acts_steadily)
 
     def speeds(self) -> tuple[float, float]:
@@ -216,13 +231,13 @@ class Body(BodyLinks, BodyJoints):
         linear, angular = self.read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
         total = sum(linear) + sum(angular)
-        for joint, index in self._joint_index.items():
+        for joint, index in self.joint_index.items():
             moved = abs(self.read(pybullet.getJointState, index)[1])
             total += moved
             if self.joint_description(joint).type == "prismatic":
                 speed = max(speed, moved)
             else:
                 rate = max(rate, moved)
-        for joint in self._ball_index:
+        for joint in self.ball_index:
             rate = max(rate, *map(abs, self._ball_state(joint)[1]))
         return (speed, rate) if total == total else (math.nan, math.nan)

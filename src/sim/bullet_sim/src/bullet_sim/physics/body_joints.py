@@ -21,21 +21,21 @@ class BodyJoints(EngineHandle):
 
     def _find_joints(self) -> None:
         joints = [link for link in self.tree.links if link.joint]
-        self._joint_index = {link.joint.name: self._index[link.name] for link in joints
+        self.joint_index = {link.joint.name: self.index[link.name] for link in joints
                              if link.joint.type != "ball"}
-        self._ball_index = {link.joint.name: self._index[link.name] for link in joints
+        self.ball_index = {link.joint.name: self.index[link.name] for link in joints
                             if link.joint.type == "ball"}
         self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
 
     def _set_up_joints(self) -> None:
         self._feedback: dict[int, deque[JointWrench]] = {}  # of measured joints
-        for index in self._ball_index.values():
+        for index in self.ball_index.values():
             self.change(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
                         targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
                         force=(0.0, 0.0, 0.0))  # the engine's default is a brake
         for link in self.tree.links[1:]:
             if link.carrier is not None and link.carrier.provide_feedback:
-                self.enable_feedback(self._index[link.name])
+                self.enable_feedback(self.index[link.name])
 
     def carried_by(self, joint: str) -> PhysicsLink:
         """The described link that a joint of the description carries."""
@@ -58,10 +58,6 @@ class BodyJoints(EngineHandle):
         """The described link that is the parent of an engine's link."""
         return next(each.described for each in self.tree.links if each.name == link.parent)
 
-    def joint_index(self, joint: str) -> int:
-        """The engine's number of a joint that can move."""
-        return self._joint_index[joint]
-
     def enable_feedback(self, index: int) -> None:
         """Enable the engine's force and torque sensor of the joint of that number."""
         if index not in self._feedback:
@@ -75,7 +71,7 @@ class BodyJoints(EngineHandle):
         would be reported for the whole rest.
         """
         rows = self._feedback.get(index)
-        if not rows or not self._client.auto_disable.disabled:
+        if not rows or not self.client.auto_disable.disabled:
             return self._last_effort(index)
         efforts, bore = zip(*rows, strict=True)
         return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
@@ -84,33 +80,33 @@ class BodyJoints(EngineHandle):
         """Record the last step's loads; as many steps as there are between two samples."""
         for index, rows in self._feedback.items():
             rows.append(self._last_effort(index))
-            while len(rows) > self._client.auto_disable.sample_steps:
+            while len(rows) > self.client.auto_disable.sample_steps:
                 rows.popleft()
 
     def _last_effort(self, index: int) -> JointWrench:
-        if index in self._ball_index.values():
+        if index in self.ball_index.values():
             return 0.0, self.read(pybullet.getJointStateMultiDof, index)[2]
         row = self.read(pybullet.getJointState, index)
         return row[3], row[2]
 
     def _ball_state(self, joint: str) -> tuple[Quaternion, Vector3]:
-        return self.read(pybullet.getJointStateMultiDof, self._ball_index[joint])[:2]
+        return self.read(pybullet.getJointStateMultiDof, self.ball_index[joint])[:2]
 
     def reset_ball(self, joint: str, turn: Quaternion = (0.0, 0.0, 0.0, 1.0),
                    rate: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Turn a ball joint at once; `rate` in rad/s about the child's axes."""
-        self.change(pybullet.resetJointStateMultiDof, self._ball_index[joint], turn, rate)
+        self.change(pybullet.resetJointStateMultiDof, self.ball_index[joint], turn, rate)
 
     def joint_state(self, joint: str) -> tuple[float, float]:
         """Position and rate: rad and rad/s, or m and m/s."""
-        row = self.read(pybullet.getJointState, self._joint_index[joint])
+        row = self.read(pybullet.getJointState, self.joint_index[joint])
         return row[0], row[1]
 
     def reset_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
         """Put a joint somewhere at once."""
         if not self._is_number("joint position", position, velocity):
             return
-        self.change(pybullet.resetJointState, self._joint_index[joint], position, velocity)
+        self.change(pybullet.resetJointState, self.joint_index[joint], position, velocity)
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a rate with at most `effort` (N m or N), until the next command.
@@ -123,20 +119,18 @@ class BodyJoints(EngineHandle):
         if not self._is_number("joint drive", velocity, effort):
             return
         self._motors[joint] = (velocity, effort)
-        self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
+        self.change(pybullet.setJointMotorControl2, self.joint_index[joint],
                     pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
 
     def drive_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step."""
         self._motors.pop(joint, None)
-        if self._is_number("joint effort", effort):
-            self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
-                        pybullet.TORQUE_CONTROL, force=effort)
+        self.add_effort(joint, effort)
 
     def add_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step, added to motors and others."""
         if self._is_number("joint effort", effort):
-            self.change(pybullet.setJointMotorControl2, self._joint_index[joint],
+            self.change(pybullet.setJointMotorControl2, self.joint_index[joint],
                         pybullet.TORQUE_CONTROL, force=effort)
 
     def motor(self, joint: str) -> tuple[float, float]:
@@ -150,24 +144,16 @@ class BodyJoints(EngineHandle):
 
     def joint_description(self, joint: str) -> JointDescription:
         """The joint as described."""
-        return self.tree.links[self._joint_index[joint] + 1].joint
-
-    def ball_names(self) -> list[str]:
-        """Ball joints, which have no single angle."""
-        return list(self._ball_index)
+        return self.tree.links[self.joint_index[joint] + 1].joint
 
     def is_locked(self, joint: str) -> bool:
         """Whether the engine holds it, as both its stops are at 0."""
         joint = self.joint_description(joint)
         return joint.type != "continuous" and joint.lower == joint.upper == 0.0
 
-    def joint_names(self) -> list[str]:
-        """Joints with one axis that can move, as the engine has them."""
-        return list(self._joint_index)
-
     def joint_group(self, joints: Iterable[str]) -> JointGroup:
         """Those of the joints that are this body's."""
-        indices = self._joint_index
+        indices = self.joint_index
         return JointGroup(self, {name: indices[name] for name in joints if name in indices})
 
     def wants_to_move(self) -> bool:

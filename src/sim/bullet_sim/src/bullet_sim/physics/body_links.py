@@ -1,7 +1,5 @@
 """The links of an engine body: where they are, how they move, and forces on them."""
 
-from __future__ import annotations
-
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.engine_handle import BASE, EngineHandle
 from bullet_sim.physics.quiet import pybullet
@@ -50,12 +48,6 @@ class BodyLinks(EngineHandle):
         row = self.read(pybullet.getLinkState, index, computeForwardKinematics=1)
         return Pose(row[4], row[5])
 
-    def centre(self, link: str) -> tuple[int, Pose]:
-        """The engine's number of a link, and where its centre of mass is in the world."""
-        index = self._index[link]
-        inertial = self.dynamics(index)
-        return index, self.engine_frame(index) * Pose(inertial[3], inertial[4])
-
     def set_base_frame(self, frame: Pose) -> None:
         """Put the base link's frame somewhere at once; joints keep their positions."""
         if not self._is_number("pose", *frame.position, *frame.orientation):
@@ -67,9 +59,9 @@ class BodyLinks(EngineHandle):
             # count at the new one.
             self.change_without_waking(
                 pybullet.resetBasePositionAndOrientation, FAR_AWAY, com.orientation)
-            self._client.change_without_waking(pybullet.performCollisionDetection)
+            self.client.change_without_waking(pybullet.performCollisionDetection)
         self.change(pybullet.resetBasePositionAndOrientation, com.position, com.orientation)
-        self._client.planes.put(self.number, self.tree, frame)
+        self.client.planes.put(self.number, self.tree, frame)
 
     def set_twist(self, twist: Twist, origin: Vector3) -> None:
         """Move as a rigid whole whose point `origin` (world) has that twist."""
@@ -83,7 +75,7 @@ class BodyLinks(EngineHandle):
 
     def apply_steady_force(self, link: str, force: Vector3) -> None:
         """As `apply_force`, of what acts in every step: it does not end the world's rest."""
-        index = self._index[link]
+        index = self.index[link]
         self.change_without_waking(pybullet.applyExternalForce, index, force,
                                    self._com_position(index), pybullet.WORLD_FRAME)
 
@@ -91,7 +83,7 @@ class BodyLinks(EngineHandle):
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
         if not self._is_number("force", *force, *torque):
             return
-        index = self._index[link]
+        index = self.index[link]
         where = self._com_position(index)
         self.change(pybullet.applyExternalForce, index, force, where, pybullet.WORLD_FRAME)
         if any(torque):

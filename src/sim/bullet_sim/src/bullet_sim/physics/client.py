@@ -1,7 +1,5 @@
 """One PyBullet world: connection, engine parameters, and a quiet importer."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 
@@ -33,7 +31,6 @@ FEWEST_ITERATIONS = 150
 EXACT, FAST = 1e-7, 1e-5
 STATIC_FILTER = (2, -3)  # Bullet's group and mask of what never moves: all but its like
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
-RAYS_AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 
 
 class PhysicsClient:
@@ -101,14 +98,6 @@ class PhysicsClient:
             if self.auto_disable.nearly_disabled:
                 for body in self.auto_disable.bodies:
                     body.keep_feedback()
-
-    def cast_rays(self, starts: list, ends: list) -> list:
-        """Rows of (body, link, fraction, position, normal); body -1 where nothing was hit."""
-        rows = []
-        for first in range(0, len(starts), RAYS_AT_ONCE):
-            some = slice(first, first + RAYS_AT_ONCE)
-            rows += self.read(pybullet.rayTestBatch, starts[some], ends[some])
-        return rows
 
     def load(self, tree: Tree, pose: Pose) -> int:
         """Make a body of a tree; returns its number. The importer's output is suppressed.

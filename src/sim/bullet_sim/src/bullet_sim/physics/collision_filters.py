@@ -4,12 +4,10 @@ Links of one model collide only where both say so with `<self_collide>`, and nev
 holds them together.
 """
 
-from __future__ import annotations
-
 import itertools
 
 from bullet_sim.description import ModelDescription
-from bullet_sim.physics.body import Body
+from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.quiet import pybullet
 
@@ -31,14 +29,10 @@ class CollisionFilters:
             link.name for link in model.links if model.self_collide or link.self_collide}
         self._joined = {frozenset((joint.parent, joint.child)) for joint in model.joints
                         if joint.type != "gearbox"}
-        try:
-            self.attach()
-        except Exception:
-            self.detach()
-            raise
-        if self._pairs or self._masked:
-            for body in bodies:
-                body.attached.append(self)
+        fasten(self)
+
+    def __bool__(self) -> bool:
+        return bool(self._pairs or self._masked)
 
     def attach(self) -> None:
         """Tell the engine."""

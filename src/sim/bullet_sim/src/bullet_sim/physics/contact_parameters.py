@@ -1,7 +1,5 @@
 """A link's contact parameters in the engine's terms, as near to ODE's as these come."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.description import Collision, Surface

@@ -6,14 +6,16 @@ the one on body 1. Nothing is read until somebody asks, so that it costs nothing
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from bullet_sim.description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
+from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.nearest import nearest_collision
 from bullet_sim.physics.quiet import pybullet
-from bullet_sim.pose import Pose, Vector3
+from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,16 @@ class Contact:
     normal: Vector3  # unit, from body 2 into body 1
     depth: float  # m, how far they are in each other; 0 or more
     force: Vector3  # N, of this point on body 1, friction included
+
+    @property
+    def links(self) -> tuple[str, str]:
+        """Scoped names of the links that touch."""
+        return self.collision1.rpartition("::")[0], self.collision2.rpartition("::")[0]
+
+    def reversed(self) -> Contact:
+        """The same contact seen from the other body."""
+        normal, force = (tuple(-part for part in v) for v in (self.normal, self.force))
+        return Contact(self.collision2, self.collision1, self.position, normal, self.depth, force)
 
 
 class Touched:
@@ -62,3 +74,40 @@ def read_contacts(client: PhysicsClient, bodies: Iterable[tuple[str, Body]]) -> 
             touched.name(body1, link1, on1), touched.name(body2, link2, on2),
             tuple(on2), tuple(normal), max(-distance, 0.0), force))
     return contacts
+
+
+def nearest_collision(collisions: list[Collision], point: Vector3) -> Collision:
+    """The collision whose surface is nearest to a point; both in one frame."""
+    if len(collisions) == 1:
+        return collisions[0]
+    return min(collisions, key=lambda collision: _gap(collision, point))
+
+
+def _gap(collision: Collision, point: Vector3) -> float:
+    arm = tuple(p - c for p, c in zip(point, collision.pose.position, strict=True))
+    local = rotate(conjugate(collision.pose.orientation), arm)
+    return abs(signed_distance(collision.geometry, local))
+
+
+def signed_distance(geometry: Geometry, point: Vector3) -> float:
+    """From a shape's surface, m, negative inside; a mesh counts as the box around it."""
+    x, y, z = point
+    match geometry:
+        case Sphere(radius):
+            return math.hypot(x, y, z) - radius
+        case Cylinder(radius, length):
+            return _outside((math.hypot(x, y) - radius, abs(z) - length / 2))
+        case Box(size):
+            return _outside([abs(p) - s / 2 for p, s in zip(point, size, strict=True)])
+        case Plane(normal, _):
+            return sum(n * p for n, p in zip(normal, point, strict=True)) / math.hypot(*normal)
+        case Mesh():
+            vertices, _ = collision_mesh(geometry)
+            low, high = vertices.min(axis=0), vertices.max(axis=0)
+            return _outside([max(a - p, p - b) for p, a, b in zip(point, low, high, strict=True)])
+    return math.hypot(x, y, z)
+
+
+def _outside(gaps) -> float:
+    """Distance from where all gaps are zero or less; inside, minus the way to the nearest side."""
+    return math.hypot(*(max(gap, 0.0) for gap in gaps)) + min(max(gaps), 0.0)

@@ -5,11 +5,9 @@ many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet doe
 something is so deep, all contacts of the world correct only a small part of their depth in a step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
+from bullet_sim.physics.auto_disable import SimulatedBody
 from bullet_sim.physics.quiet import pybullet
 
 CORRECTED = 0.08  # part of the depth in each step; PyBullet's own, of rigid contacts
@@ -20,21 +18,13 @@ LONGEST = 5.0  # s, simulated, after which the engine has its own way again
 DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
 
 
-class Placed(Protocol):
-    """A body as seen from here."""
-
-    def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
-        """Have contacts correct no more of their depth in each step (s); None: as usual."""
-        ...
-
-
 class CorrectingVelocityLimit:
     """Looks at the depths before each step, from when a body was placed until none is deep.
 
     `run` runs a pybullet function in the engine; `bodies` is the list of all that are there.
     """
 
-    def __init__(self, run: Callable, bodies: Sequence[Placed]):
+    def __init__(self, run: Callable, bodies: Sequence[SimulatedBody]):
         self._run = run
         self._bodies = bodies
         self._part = ALL

@@ -1,7 +1,5 @@
 """An engine body's number and tree, and the engine's functions called with that number."""
 
-from __future__ import annotations
-
 import logging
 import math
 
@@ -19,30 +17,23 @@ class EngineHandle:
 
     tree: Tree
     number: int  # the engine's
-    _client: PhysicsClient
-    _index: dict[str, int]  # physics link -> the engine's number of it and of its joint
+    client: PhysicsClient  # of the engine that it is in
+    index: dict[str, int]  # physics link -> the engine's number of it and of its joint
+    joint_index: dict[str, int]  # of joints with one axis that can move, as the engine has them
+    ball_index: dict[str, int]  # of ball joints, which have no single angle
     _refused: set[str]  # quantities already reported as not finite
-
-    @property
-    def client(self) -> PhysicsClient:
-        """The engine that it is in."""
-        return self._client
 
     def change(self, function, *args, **kwargs):
         """Run a pybullet function that changes this body; the world is stepped again."""
-        return self._client.change(function, self.number, *args, **kwargs)
+        return self.client.change(function, self.number, *args, **kwargs)
 
     def change_without_waking(self, function, *args, **kwargs):
         """The same of what acts in every step: a world at rest stays there."""
-        return self._client.change_without_waking(function, self.number, *args, **kwargs)
+        return self.client.change_without_waking(function, self.number, *args, **kwargs)
 
     def read(self, function, *args, **kwargs):
         """Run a pybullet function that reads this body's state."""
-        return self._client.read(function, self.number, *args, **kwargs)
-
-    def index(self, link: str) -> int:
-        """The engine's number of a physics link; BASE for the first."""
-        return self._index[link]
+        return self.client.read(function, self.number, *args, **kwargs)
 
     def dynamics(self, index: int) -> tuple:
         """PyBullet's row of a link: mass, friction, principal inertia, centre of mass ..."""

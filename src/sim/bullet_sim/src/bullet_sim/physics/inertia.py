@@ -5,8 +5,6 @@ The engine stops a link from turning at all when its principal moments break the
 small for its size: contacts then turn it round within a step. ODE takes both as they are.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Sequence
@@ -17,6 +15,7 @@ import numpy as np
 from bullet_sim.description import Box, Collision, Cylinder, Geometry, Inertial, Plane, Sphere
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.meshes.loading import collision_mesh
+from bullet_sim.pose import symmetric_matrix
 
 log = logging.getLogger(__name__)
 
@@ -35,7 +34,7 @@ def check_inertial(inertial: Inertial) -> None:
     values = (inertial.mass, *inertial.inertia, *inertial.pose.position)
     if not all(map(math.isfinite, values)) or inertial.mass <= 0:
         raise SimulationError("mass must be above 0, and mass, centre of mass and inertia finite")
-    moments = np.linalg.eigvalsh(_tensor(inertial))
+    moments = np.linalg.eigvalsh(symmetric_matrix(inertial.inertia))
     if moments[0] <= 0:
         raise SimulationError(
             f"this is no inertia: its principal moments would be "
@@ -43,16 +42,11 @@ def check_inertial(inertial: Inertial) -> None:
             "ixz and iyz are too large for ixx, iyy and izz")
 
 
-def _tensor(inertial: Inertial) -> np.ndarray:
-    xx, xy, xz, yy, yz, zz = inertial.inertia
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
 def sound_inertial(inertial: Inertial, collisions: Sequence[Collision], where: str) -> Inertial:
     """The same where it is possible; else with the least moments that are, and a line in the log.
     """
     mass = min(max(inertial.mass, LIGHTEST), HEAVIEST)
-    moments, axes = np.linalg.eigh(_tensor(inertial))
+    moments, axes = np.linalg.eigh(symmetric_matrix(inertial.inertia))
     least = mass * (THINNEST * max(_size(collisions), SMALLEST)) ** 2
     sound = _possible(moments, least)
     if mass == inertial.mass and np.allclose(sound, moments, rtol=ROUNDING, atol=0.0):

@@ -7,16 +7,12 @@ Unlike there, the means over that second count, and a body that touches none of 
 a ball that rolls slowly rolls.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from operator import mul
-from typing import Protocol
 
-from bullet_sim.physics.assembly import Tree
-from bullet_sim.physics.auto_disable import SAMPLE_PERIOD
+from bullet_sim.physics.auto_disable import SAMPLE_PERIOD, SimulatedBody
 from bullet_sim.physics.quiet import pybullet
 
 SPEED = 0.1  # m/s, of the mean over SAMPLES: Gazebo's threshold (ODEPhysics.cc)
@@ -33,25 +29,13 @@ PUSHES = (pybullet.applyExternalForce, pybullet.applyExternalTorque, pybullet.re
 FIRST, SECOND = 1, 2  # columns of getContactPoints: the bodies that touch
 
 
-class Disablable(Protocol):
-    """A body as seen from here."""
-
-    number: int  # the engine's
-    tree: Tree
-
-    @property
-    def auto_disables(self) -> bool:
-        """Whether nothing but contacts and gravity acts on it."""
-        ...
-
-
 class IslandSleeping:
     """`after_step` is called after every step, `changed` for every change.
 
     `run` runs a pybullet function without waking anything; `bodies` is the list of all there are.
     """
 
-    def __init__(self, run: Callable, bodies: Sequence[Disablable]):
+    def __init__(self, run: Callable, bodies: Sequence[SimulatedBody]):
         self._run = run
         self._bodies = bodies
         self._poses: dict[int, deque] = {}  # by number, of looks between which it was quiet

@@ -5,8 +5,6 @@ low do not lift the wheels. The engine's contacts push from the first: casters b
 wheels would carry the robot, and these spin. Hence the casters' shapes are put up a little.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bounds of physics parameters: outside of them a step takes too long, or its result is useless."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Iterable

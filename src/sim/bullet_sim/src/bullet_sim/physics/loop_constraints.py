@@ -1,14 +1,12 @@
 """Joints that close a loop, screws' threads and gearboxes: constraints between links of a model."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 
 from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
-from bullet_sim.physics.body import Body
+from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.quiet import pybullet
@@ -34,19 +32,15 @@ class LoopConstraints:
         self.bodies = bodies
         self._loose = loose
         self._constraints: list[int] = []
-        try:
-            self.attach()
-        except Exception:
-            self.detach()
-            raise
-        if self._constraints:
-            for body in bodies:
-                body.attached.append(self)
+        fasten(self)
+
+    def __bool__(self) -> bool:
+        return bool(self._constraints)
 
     def attach(self) -> None:
         """Put the constraints in."""
         for body in self.bodies:
-            for name in body.joint_names():
+            for name in body.joint_index:
                 if name.endswith(TRAVEL):
                     self._make(*_thread(body, name))
         for joint in self._loose:
@@ -76,7 +70,7 @@ class LoopConstraints:
         raise KeyError(name)
 
     def _com_in_model(self, body: Body, link: PhysicsLink) -> Pose:
-        index = body.index(link.name)
+        index = body.index[link.name]
         if index == BASE:
             return body.base_pose_model * body.com_in_link(BASE)
         described = next(d for d in self._model.links if d.name == link.described)
@@ -89,7 +83,7 @@ class LoopConstraints:
         body2, link2 = self._place(joint.child)
         frames = [self._com_in_model(*place).inverse() * frame
                   for place in ((body1, link1), (body2, link2))]
-        ends = (body1.number, body1.index(link1.name), body2.number, body2.index(link2.name))
+        ends = (body1.number, body1.index[link1.name], body2.number, body2.index[link2.name])
         if joint.type in ("fixed", "prismatic"):
             kind = pybullet.JOINT_FIXED if joint.type == "fixed" else pybullet.JOINT_PRISMATIC
             yield (*ends, kind, joint.axis, *(f.position for f in frames),
@@ -126,7 +120,7 @@ class LoopConstraints:
                 described = next(d for d in self._model.links if d.name == held.described)
                 own = rotate((described.pose * held.offset).orientation, held.joint.axis)
                 same = sum(a * b for a, b in zip(wanted, own, strict=True)) > 0
-                return body, body.index(held.name), 1.0 if same == (held.name == link) else -1.0
+                return body, body.index[held.name], 1.0 if same == (held.name == link) else -1.0
         return None
 
 
@@ -140,6 +134,6 @@ def _points(joint: JointDescription) -> list[Vector3]:
 def _thread(body: Body, travel: str) -> tuple[tuple, dict]:
     """A screw's travel m and turn rad: travel + turn / thread_pitch = 0."""
     turn = travel.removesuffix(TRAVEL)
-    ends = body.number, body.joint_index(travel), body.number, body.joint_index(turn)
+    ends = body.number, body.joint_index[travel], body.number, body.joint_index[turn]
     ratio = 1.0 / body.joint_description(turn).thread_pitch
     return (*ends, pybullet.JOINT_GEAR, (0.0, 0.0, 1.0), NO_PIVOT, NO_PIVOT), {"gearRatio": ratio}

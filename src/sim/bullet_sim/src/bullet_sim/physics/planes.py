@@ -4,8 +4,6 @@ A course is a plane on the ground plane. With both, each wheel has two contacts 
 solver shares the load out between them, which doubles its work and halves its accuracy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from bullet_sim.description import Collision, Plane

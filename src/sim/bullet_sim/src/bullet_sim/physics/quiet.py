@@ -1,7 +1,5 @@
 """PyBullet, imported and called with its output suppressed: learners read the terminal."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import os

@@ -1,7 +1,5 @@
 """Force and torque in a joint, as Gazebo gives them to a force-torque sensor."""
 
-from __future__ import annotations
-
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.body import Body
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
@@ -16,7 +14,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     is a force downwards. The effort of a stop that is being pressed against is missing along the
     axis. Zero until the step after the first call, unless the joint asked for feedback.
     """
-    index = body.index(link.name)
+    index = body.index[link.name]
     body.enable_feedback(index)
     effort, row = body.joint_effort(index)
     # The engine: of the parent on the child, about its centre of mass, in its principal axes.
@@ -39,7 +37,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
         return _negative(rotate(out, force)), _negative(rotate(out, torque))
     # The engine's child is the described parent: the wrench on the described child is its negative.
     parent = next(other for other in body.tree.links if other.name == link.parent)
-    here, there = (body.engine_frame(body.index(name)) for name in (link.name, parent.name))
+    here, there = (body.engine_frame(body.index[name]) for name in (link.name, parent.name))
     turn = multiply(conjugate(there.orientation), here.orientation)
     out = multiply(parent.offset.orientation, turn)
     return rotate(out, force), rotate(out, torque)

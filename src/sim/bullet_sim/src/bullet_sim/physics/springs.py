@@ -5,8 +5,6 @@ instead of coming to rest (a wheel of 1e-5 kg m^2 with a damping of 0.7, as many
 coefficient is cut to what brings the joint there within a step or two, which looks the same.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -23,8 +21,8 @@ class Springs:
 
     def __init__(self, body: BodyJoints):
         self._body = body
-        described = [(body.joint_index(name), body.joint_description(name))
-                     for name in body.joint_names()]
+        described = [(body.joint_index[name], body.joint_description(name))
+                     for name in body.joint_index]
         needed = [joint for _, joint in described if joint.damping or joint.spring_stiffness]
         inertia = _inertias(body, len(described)) if needed else []
         self._springs: list[tuple[int, float, float]] = []  # joint, stiffness, rest position
@@ -52,10 +50,10 @@ class Springs:
 
 def _inertias(body: BodyJoints, joints: int) -> list[float]:
     """What each joint has to move when all others are free: kg m^2, or kg."""
-    if body.ball_names():  # the engine has no mass matrix for these: the child's own mass counts
-        return [_own_inertia(body, name) for name in body.joint_names()]
-    positions = [body.joint_state(name)[0] for name in body.joint_names()]
-    moving = [index for index, name in enumerate(body.joint_names()) if not body.is_locked(name)]
+    if body.ball_index:  # the engine has no mass matrix for these: the child's own mass counts
+        return [_own_inertia(body, name) for name in body.joint_index]
+    positions = [body.joint_state(name)[0] for name in body.joint_index]
+    moving = [index for index, name in enumerate(body.joint_index) if not body.is_locked(name)]
     rows = body.read(pybullet.calculateMassMatrix, [positions[index] for index in moving])
     free = np.linalg.pinv(np.array(rows))[-len(moving):, -len(moving):] if moving else ()
     inertias = [math.inf] * joints
@@ -65,5 +63,5 @@ def _inertias(body: BodyJoints, joints: int) -> list[float]:
 
 
 def _own_inertia(body: BodyJoints, joint: str) -> float:
-    mass, _, diagonal = body.dynamics(body.joint_index(joint))[:3]
+    mass, _, diagonal = body.dynamics(body.joint_index[joint])[:3]
     return mass if body.joint_description(joint).type == "prismatic" else min(diagonal)

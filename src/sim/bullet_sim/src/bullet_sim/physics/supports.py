@@ -3,8 +3,6 @@
 On flat ground in the model's frame, joints at zero.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator

@@ -6,8 +6,6 @@ wide as an eighth of the track, and points behind an axle set wheels without mot
 So they did on meshes: one that is about round rolls as the circle around it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Writes the URDF that the engine imports: masses, joints and collision shapes, no visuals."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Iterable
 from pathlib import Path

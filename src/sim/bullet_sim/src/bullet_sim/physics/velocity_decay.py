@@ -3,8 +3,6 @@
 The engine's own damping is one for all links of a body and grows with the square of the speed.
 """
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.physics.body_links import BodyLinks
@@ -31,7 +29,7 @@ class VelocityDecay:
         """Forces and torques that take that part in the next step."""
         step = self._body.client.timestep
         for name, linear, angular in self._links:
-            index = self._body.index(name)
+            index = self._body.index[name]
             com, velocity, rate = self._body.com_motion(index)
             mass, _, moments = self._body.dynamics(index)[:3]
             if math.hypot(*velocity) > SLOWEST:

@@ -1,8 +1,6 @@
 """Welds made while the world runs: of two links, or of a link to a place in the world."""
 
-from __future__ import annotations
-
-from bullet_sim.physics.body import Body
+from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose
 
@@ -21,21 +19,19 @@ class Weld:
         self._body, self._link = body, link
         self._other, self._other_link = other, other_link
         self.bodies = [body] if other is None else [body, other]
-        holder = IDENTITY if other is None else other.engine_frame(other.index(other_link))
-        self._pose_holder_link = holder.inverse() * body.engine_frame(body.index(link))
+        holder = IDENTITY if other is None else other.engine_frame(other.index[other_link])
+        self._pose_holder_link = holder.inverse() * body.engine_frame(body.index[link])
         self._constraint: int | None = None
-        self.attach()
-        for each in self.bodies:
-            each.attached.append(self)
+        fasten(self)
 
     def attach(self) -> None:
         """Put the constraint in, if both bodies are there."""
         if self._constraint is not None or not all(each.is_loaded for each in self.bodies):
             return
         held = self._held()
-        index, _ = self._body.centre(self._link)
+        index = self._body.index[self._link]
         holder = ((WORLD_BODY, -1) if self._other is None else
-                  (self._other.number, self._other.index(self._other_link)))
+                  (self._other.number, self._other.index[self._other_link]))
         client = self._body.client
         self._constraint = client.change(
             pybullet.createConstraint, self._body.number, index, *holder, pybullet.JOINT_FIXED,
@@ -51,10 +47,10 @@ class Weld:
 
     def _held(self) -> Pose:
         """Where the link's centre of mass is held: seen from the holder's, or in the world."""
-        held = self._pose_holder_link * self._body.com_in_link(self._body.index(self._link))
+        held = self._pose_holder_link * self._body.com_in_link(self._body.index[self._link])
         if self._other is None:
             return held
-        com = self._other.com_in_link(self._other.index(self._other_link))
+        com = self._other.com_in_link(self._other.index[self._other_link])
         return com.inverse() * held
 
     def shift(self, change: Pose) -> None:

@@ -1,7 +1,5 @@
 """A renderer's input and output."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

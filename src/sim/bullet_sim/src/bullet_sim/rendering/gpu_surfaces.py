@@ -1,7 +1,5 @@
 """Triangles and materials on the graphics card, uploaded once for all links that look alike."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary
@@ -11,10 +9,10 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import Fog, Material
+from bullet_sim.meshes.images import load_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
 from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
-from bullet_sim.rendering.textures import load_image
 
 LIGHTS_BINDING, SURFACE_BINDING = 0, 1
 _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}

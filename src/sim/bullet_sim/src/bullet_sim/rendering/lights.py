@@ -1,7 +1,5 @@
 """The scene's lights as the bytes of the shader's `Lights` block."""
 
-from __future__ import annotations
-
 import logging
 import math
 

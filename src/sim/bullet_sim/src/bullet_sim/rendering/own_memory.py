@@ -5,8 +5,6 @@ quick for what lasts a moment (see the environment hook of bullet_sim_ros). But 
 lasts leave holes there, which the next do not always fit into: memory goes up and down by them.
 """
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import math

@@ -1,7 +1,5 @@
 """Boxes, cylinders, spheres and planes as triangles with normals and image coordinates."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ camera frame (x forward, y left, z up) falls at column (width - 1) / 2 - f y / x
 (height - 1) / 2 - f z / x, with f the focal length in pixels.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from bullet_sim.pose import Pose

@@ -1,7 +1,5 @@
 """The protocol of renderers, and the choice of one."""
 
-from __future__ import annotations
-
 import logging
 import math
 import os

@@ -1,10 +1,8 @@
 """What there is to see: lights, and links with surfaces and poses, as data without a renderer."""
 
-from __future__ import annotations
-
 import itertools
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from weakref import WeakValueDictionary
 
@@ -91,17 +89,12 @@ class Scene(SceneState):
     def __init__(self, description: SceneDescription = SceneDescription()):
         super().__init__(description, {}, {}, next(_versions))
         self._shapes: WeakValueDictionary[tuple[Visual, ...], LinkShape] = WeakValueDictionary()
-        self._visuals: dict[LinkKey, tuple[Visual, ...]] = {}
+        self.visuals: dict[LinkKey, tuple[Visual, ...]] = {}  # of each link
 
     def frozen(self) -> SceneState:
         """As it is now; another thread may draw it while the scene changes."""
         return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version,
                           dict(self.images))
-
-    @property
-    def visuals(self) -> Mapping[LinkKey, tuple[Visual, ...]]:
-        """The visuals of each link."""
-        return self._visuals
 
     def add_light(self, light: LightDescription) -> None:
         """Poses and directions of lights are in the world.
@@ -109,7 +102,7 @@ class Scene(SceneState):
         NameTaken if there is one of that name.
         """
         if light.name in self.lights:
-            raise NameTaken(f"the scene already has a light named {light.name!r}")
+            raise NameTaken(f"a light named {light.name!r} is already there")
         self.lights[light.name] = light
         self.version = next(_versions)
 
@@ -132,18 +125,18 @@ class Scene(SceneState):
         if shape is None:
             shape = self._shapes[wanted] = link_shape(wanted)
         self.nodes[key] = Node(shape, pose)
-        self._visuals[key] = wanted
+        self.visuals[key] = wanted
         self.version = next(_versions)
 
     def add_visual(self, key: LinkKey, visual: Visual) -> None:
         """Show one visual more on a link that is there."""
         pose = self.nodes.pop(key).pose
-        self.add_link(key, (*self._visuals[key], visual), pose)
+        self.add_link(key, (*self.visuals[key], visual), pose)
 
     def remove_model(self, model: str) -> None:
         """All links of a model; a model without links in the scene is no error."""
         for key in [key for key in self.nodes if key[0] == model]:
-            del self.nodes[key], self._visuals[key]
+            del self.nodes[key], self.visuals[key]
             self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:

@@ -10,8 +10,6 @@ Every description is an object with its class's name under "is" and its fields, 
 Files go by their absolute path; textures that are no files are left out by who draws.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any

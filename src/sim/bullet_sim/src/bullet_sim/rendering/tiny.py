@@ -5,8 +5,6 @@ what glows only has the colour of it.
 It has a physics client of its own that never steps: bodies without mass stand where links are.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 

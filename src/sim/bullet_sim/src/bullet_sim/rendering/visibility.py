@@ -1,7 +1,5 @@
 """What of a scene can be in the picture, and in which order to draw it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A camera on a link: colour pictures, and depth along the optical axis."""
 
-from __future__ import annotations
-
 import logging
 import math
 from dataclasses import dataclass, replace

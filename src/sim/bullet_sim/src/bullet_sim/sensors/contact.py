@@ -1,7 +1,5 @@
 """Contact sensor: what the collisions of a link touch, pair by pair."""
 
-from __future__ import annotations
-
 import logging
 from dataclasses import dataclass, field
 
@@ -56,20 +54,19 @@ class ContactSensor:
         pairs: dict[tuple[str, str], TouchingPair] = {}
         for contact in self._world.contacts():
             if contact.collision1 in self._own:
-                self._note(pairs, contact, contact.collision1, contact.collision2, 1.0)
+                self._note(pairs, contact)
             elif contact.collision2 in self._own:
-                self._note(pairs, contact, contact.collision2, contact.collision1, -1.0)
+                self._note(pairs, contact.reversed())
         return list(pairs.values())
 
-    def _note(self, pairs: dict[tuple[str, str], TouchingPair], contact: Contact, own: str,
-              other: str, sign: float) -> None:
-        pair = pairs.setdefault((own, other), TouchingPair(own, other))
-        force = tuple(sign * part for part in contact.force)
-        link = self._world.link(own.rpartition("::")[0])
+    def _note(self, pairs: dict[tuple[str, str], TouchingPair], contact: Contact) -> None:
+        names = contact.collision1, contact.collision2
+        pair = pairs.setdefault(names, TouchingPair(*names))
+        link = self._world.link(contact.links[0])
         centre = (link.pose * link.description.inertial.pose).position
         arm = tuple(p - c for p, c in zip(contact.position, centre, strict=True))
         pair.positions.append(contact.position)
-        pair.normals.append(tuple(sign * part for part in contact.normal))
+        pair.normals.append(contact.normal)
         pair.depths.append(contact.depth)
-        pair.forces.append(force)
-        pair.torques.append(cross(arm, force))
+        pair.forces.append(contact.force)
+        pair.torques.append(cross(arm, contact.force))

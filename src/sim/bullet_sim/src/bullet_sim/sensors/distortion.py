@@ -4,8 +4,6 @@ With x, y the pinhole's coordinates over the focal length and r^2 = x^2 + y^2, a
 x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y likewise with p1, p2 swapped.
 """
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

@@ -1,7 +1,5 @@
 """From the flat world to latitude and longitude, on the WGS84 ellipsoid."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Ground truth: pose and twist of a link as the world has them, seen from another frame."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.link import Link

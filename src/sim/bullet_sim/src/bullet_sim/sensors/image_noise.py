@@ -1,7 +1,5 @@
 """Gaussian noise on pictures, quick enough for every frame of a large camera."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 

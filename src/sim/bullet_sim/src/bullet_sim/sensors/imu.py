@@ -1,7 +1,5 @@
 """Gazebo's IMU sensor: accelerometer (gravity included), gyroscope and orientation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

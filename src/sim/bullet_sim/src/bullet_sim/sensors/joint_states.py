@@ -1,7 +1,5 @@
 """Positions and rates of named joints at one moment."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

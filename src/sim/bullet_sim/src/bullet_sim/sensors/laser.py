@@ -1,7 +1,5 @@
 """Laser range finder: rays against collision shapes, with REP 117's infinities."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

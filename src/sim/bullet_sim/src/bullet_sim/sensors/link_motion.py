@@ -1,7 +1,5 @@
 """The true motion of a link in world axes: orientation, rate of turn, acceleration."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from bullet_sim.link import Link

@@ -1,11 +1,9 @@
 """Net force and torque on a link, by Newton and Euler from how its momentum changes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from bullet_sim.link import Link
-from bullet_sim.pose import rotation_matrix
+from bullet_sim.pose import rotation_matrix, symmetric_matrix
 from bullet_sim.twist import shifted_twist
 from bullet_sim.world import World
 
@@ -35,8 +33,7 @@ class NetForce:
         inertial, frame = self._link.description.inertial, self._link.pose
         centre = frame * inertial.pose
         twist = shifted_twist(self._link.twist, frame.position, centre.position)
-        xx, xy, xz, yy, yz, zz = inertial.inertia
         turn = rotation_matrix(centre.orientation)
-        tensor = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
+        tensor = turn @ symmetric_matrix(inertial.inertia) @ turn.T
         return np.concatenate([inertial.mass * np.array(twist.linear),
                                tensor @ np.array(twist.angular)])

@@ -1,7 +1,5 @@
 """Gazebo's noise on readings: `<noise>` of SDF, gaussian and gaussian_quantized."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

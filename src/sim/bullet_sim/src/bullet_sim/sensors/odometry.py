@@ -1,7 +1,5 @@
 """Odometry: where a robot is, by the truth of the world or by counting its wheels."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Rows of rays from a sensor: what laser scanners, range finders and 3D lidars have in common."""
 
-from __future__ import annotations
-
 import logging
 import math
 
@@ -54,6 +52,13 @@ class RayFan:
                                      matrix[:3, 3] + beams * ray.range_max)
         distances = ray.range_min + hits.fraction * (ray.range_max - ray.range_min)
         return distances.reshape(self.shape), hits.retro.reshape(self.shape)
+
+    def nearest(self) -> float:
+        """Distance to the nearest thing, m, as sonars and range finders measure it.
+
+        Where nothing is near it is range_max. The ray's own SDF noise is not added.
+        """
+        return float(self.cast()[0].min())
 
 
 def fewer_rays(columns: int, rows: int) -> tuple[int, int]:

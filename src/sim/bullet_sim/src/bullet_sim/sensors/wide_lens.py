@@ -4,8 +4,6 @@ A point at the angle theta from the optical axis is seen at r = c1 f fun(theta /
 middle of the picture, where r is 1 at half the picture's width: SDF's `<lens>`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

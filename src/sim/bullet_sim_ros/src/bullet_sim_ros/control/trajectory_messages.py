@@ -14,7 +14,7 @@ from bullet_sim.control.trajectory.request import (
     TrajectoryRequest,
 )
 from bullet_sim.control.trajectory.segment import Waypoint
-from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance
+from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.parameters import ControllerParameters
 
@@ -46,7 +46,7 @@ def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) ->
     """
     return GoalTolerances(_replaced(default.path, goal.path_tolerance),
                           _replaced(default.goal, goal.goal_tolerance),
-                          default.replaced_time(goal.goal_time_tolerance.to_sec()))
+                          chosen(goal.goal_time_tolerance.to_sec(), default.time))
 
 
 def _replaced(default: dict[str, Tolerance],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sensor_msgs.msg import Range
 
-from bullet_sim.sensors.range_finder import RangeFinder
+from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
@@ -16,7 +16,7 @@ class RangePlugin(SensorPlugin):
 
     def __init__(self, context: PluginContext):
         p = context.parameters
-        self._finder = RangeFinder(context.world, context.link, context.sensor)
+        self._fan = RayFan(context.world, context.link, context.sensor)
         super().__init__(context, Range, p.topic("/range"), p.text("frameName", "/world"),
                          noise=f"{context.sensor_name} range")
         ultrasound = p.text("radiation", "ultrasound") == "ultrasound"
@@ -26,7 +26,7 @@ class RangePlugin(SensorPlugin):
 
     def measure(self) -> Range:
         """The distance now, or range_max."""
-        ray, distance = self._finder.ray, self._finder.sample()
+        ray, distance = self._fan.ray, self._fan.nearest()
         if distance < ray.range_max:
             distance = min(float(self.disturbed(distance)), ray.range_max)
         return Range(radiation_type=self._radiation, field_of_view=self._field_of_view,

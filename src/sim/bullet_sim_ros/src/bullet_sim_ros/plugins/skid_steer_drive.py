@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Twist
 
-from bullet_sim.drives.skid_steer import SkidSteer
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.commands import subscribe_commands
@@ -24,8 +24,10 @@ class SkidSteerDrivePlugin:
         left, right = (
             [context.model.joint(p.text(f"{side}{place}Joint", f"{side}_{place.lower()}_joint"))
              for place in ("Front", "Rear")] for side in ("left", "right"))
-        self._drive = SkidSteer(left, right, p.number("wheelSeparation", 0.4),
-                                p.number("wheelDiameter", 0.15), p.number("torque", 5.0))
+        parameters = DiffDriveParameters(
+            p.number("wheelSeparation", 0.4), p.number("wheelDiameter", 0.15),
+            wheel_torque=p.number("torque", 5.0))
+        self._axles = [DiffDrive(*wheels, parameters) for wheels in zip(left, right, strict=True)]
         covariance = convert.planar_covariance(
             p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4),
             p.number("covariance_yaw", 1e-2))
@@ -34,12 +36,18 @@ class SkidSteerDrivePlugin:
             pose_covariance=covariance, twist_covariance=covariance)
         subscribe_commands(context, namespace, p.text("commandTopic", "cmd_vel"), self._command)
         context.every(p.number("updateRate", 100.0), self._update)
-        context.on_reset(self._drive.stop)
+        context.on_reset(self._stop)
 
     def _command(self, msg: Twist) -> None:
-        self._drive.command(msg.linear.x, msg.angular.z)
+        for axle in self._axles:
+            axle.command(msg.linear.x, msg.angular.z)
+
+    def _stop(self) -> None:
+        for axle in self._axles:
+            axle.stop()
 
     def _update(self) -> None:
         if self._output.wanted():
             self._output.publish(true_odometry(self._context.world, self._context.model))
-        self._drive.update()
+        for axle in self._axles:
+            axle.update(0.0)  # s; they follow the command at once

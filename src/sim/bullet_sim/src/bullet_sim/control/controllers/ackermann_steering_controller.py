@@ -1,13 +1,11 @@
 """Ackermann steering as a bicycle: one driven rear wheel, one steered front wheel."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 
 @dataclass(frozen=True)
@@ -19,9 +17,7 @@ class AckermannGeometry:
     steering_multiplier: float = 1.0  # what the odometry multiplies the steering joint's angle by
 
     def __post_init__(self):
-        for name in ("wheelbase", "wheel_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "wheelbase", "wheel_radius")
 
 
 class AckermannSteering(MobileBase):

@@ -1,7 +1,5 @@
 """The latest command of a controller, and how long it is valid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by rounding
@@ -38,26 +36,21 @@ class Commands:
 
 
 class TimedCommand:
-    """Some numbers and when they came; after `timeout` s they are zeros."""
+    """Some numbers and when they came (`time`, s, simulated); after `timeout` s they are zeros."""
 
     def __init__(self, size: int, timeout: float):
         self._zeros = (0.0,) * size
-        self._timeout = timeout
+        self.timeout = timeout
         self.clear()
-
-    @property
-    def time(self) -> float:
-        """When the last one came (s, simulated); minus infinity before the first."""
-        return self._time
 
     def give(self, time: float, *values: float) -> None:
         """A new command."""
-        self._time, self._values = time, values
+        self.time, self._values = time, values
 
     def clear(self) -> None:
         """Forget it."""
-        self._time, self._values = float("-inf"), self._zeros
+        self.time, self._values = float("-inf"), self._zeros  # before the first
 
     def at(self, time: float) -> tuple[float, ...]:
         """What to do now. A command from the future is one from before a reset of time: too old."""
-        return self._values if 0.0 <= time - self._time <= self._timeout else self._zeros
+        return self._values if 0.0 <= time - self.time <= self.timeout else self._zeros

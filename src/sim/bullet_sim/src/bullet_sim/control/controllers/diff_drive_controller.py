@@ -1,13 +1,11 @@
 """Differential drive: wheels on two sides, turned by the difference of their speeds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 
 @dataclass(frozen=True)
@@ -19,9 +17,7 @@ class DiffDriveGeometry:
     right_radius: float
 
     def __post_init__(self):
-        for name in ("wheel_separation", "left_radius", "right_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "wheel_separation", "left_radius", "right_radius")
 
 
 class DiffDrive(MobileBase):
@@ -53,9 +49,6 @@ class DiffDrive(MobileBase):
         left = (self._travelled[0] - before[0]) * g.left_radius
         right = (self._travelled[1] - before[1]) * g.right_radius
         return (left + right) / 2, 0.0, (right - left) / g.wheel_separation
-
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning
 
 
 def _mean_angle(wheels: Sequence[CommandHandle]) -> float:

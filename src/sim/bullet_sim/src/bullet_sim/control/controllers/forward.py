@@ -1,7 +1,5 @@
 """Hands commands on to the joints as they are."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bullet_sim.control.controllers.commands import Commands

@@ -1,7 +1,5 @@
 """Four wheels, each driven and each steered, with no scrub: all turn about one point."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +7,7 @@ from dataclasses import dataclass
 from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 # m/s; slower than this the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
 CRAWL = 1e-3
@@ -25,9 +23,7 @@ class FourWheelGeometry:
     wheel_radius: float
 
     def __post_init__(self):
-        for name in ("track", "wheelbase", "wheel_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "track", "wheelbase", "wheel_radius")
 
     def places(self) -> tuple[tuple[float, float], ...]:
         """Of the wheels from the middle: front left, front right, rear left, rear right."""
@@ -102,9 +98,6 @@ class FourWheelSteering(MobileBase):
         angles = [steering.joint.position for steering in self._steering]
         twist = measured_twist(self._geometry, speeds, angles)
         return tuple(rate * elapsed for rate in twist)
-
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning
 
 
 def wheel_commands(geometry: FourWheelGeometry, forward: float, front: float,

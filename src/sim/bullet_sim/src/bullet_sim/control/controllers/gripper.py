@@ -1,7 +1,5 @@
 """A gripper's one joint: moves to a position, and detects arrival and stalling."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Mecanum drive: four wheels whose rollers are at 45 degrees to the axle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +7,7 @@ from bullet_sim.control.controllers.commands import TimedCommand
 from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import check_lengths
 
 # What leftward speed and yaw rate add to a wheel's rim speed: front left, back left, back right,
 # front right. Seen from above the rollers' axes make an X; those on the ground a diamond.
@@ -24,9 +22,7 @@ class MecanumGeometry:
     wheel_radius: float
 
     def __post_init__(self):
-        for name in ("reach", "wheel_radius"):
-            if not getattr(self, name) > 0.0:
-                raise SimulationError(f"{name} is {getattr(self, name):g} m; it must be above 0")
+        check_lengths(self, "reach", "wheel_radius")
 
 
 class MecanumDrive(MobileBase):
@@ -77,6 +73,3 @@ class MecanumDrive(MobileBase):
         leftward = sum(way * sideways for way, (sideways, _) in zip(ways, SIGNS, strict=True))
         turned = sum(way * around for way, (_, around) in zip(ways, SIGNS, strict=True))
         return sum(ways), leftward, turned / g.reach
-
-    def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        return forward, turning

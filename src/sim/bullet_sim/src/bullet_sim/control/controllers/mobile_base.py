@@ -1,7 +1,5 @@
 """What all drives of a robot's base share: a command with a time-out, limits, and odometry."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -69,9 +67,9 @@ class MobileBase(ABC):
     def _moved(self) -> tuple[float, float, float]:
         """Forward and leftward (m) and turn (rad) by the wheels since the last call."""
 
-    @abstractmethod
     def _twist(self, forward: float, turning: float) -> tuple[float, float]:
         """Speed (m/s) and rate of yaw (rad/s) that such a command means."""
+        return forward, turning
 
     @abstractmethod
     def _drive(self, forward: float, turning: float) -> None:

@@ -1,7 +1,5 @@
 """Dead reckoning on the plane: adds up small motions and smooths the speeds over the last few."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 

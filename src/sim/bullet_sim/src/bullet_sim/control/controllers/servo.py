@@ -1,7 +1,5 @@
 """A PID from the error of a joint's position or velocity to its command: effort or velocity."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 

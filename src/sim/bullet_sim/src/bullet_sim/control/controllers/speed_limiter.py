@@ -1,7 +1,5 @@
 """Keeps a commanded speed within bounds of velocity, acceleration and jerk."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 UNBOUNDED = (float("-inf"), float("inf"))

@@ -1,7 +1,5 @@
 """Follows a trajectory with some joints, and evaluates its goal."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum

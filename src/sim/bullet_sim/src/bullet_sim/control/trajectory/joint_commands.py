@@ -1,7 +1,5 @@
 """How a joint of each command interface is made to follow its desired state."""
 
-from __future__ import annotations
-
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.control.pid import Pid
 from bullet_sim.control.trajectory.segment import Waypoint

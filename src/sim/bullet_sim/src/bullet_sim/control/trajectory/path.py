@@ -1,7 +1,5 @@
 """One joint's whole trajectory: segments in a row."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Sequence
 

@@ -1,15 +1,13 @@
 """A requested trajectory, checked and joined to the one that is being followed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bullet_sim.control.angles import shortest_angular_distance
 from bullet_sim.control.trajectory.path import Path
 from bullet_sim.control.trajectory.segment import Segment, Waypoint
 from bullet_sim.errors import SimulationError
+from bullet_sim.pose import shortest_angular_distance
 
 
 class InvalidTrajectory(SimulationError):

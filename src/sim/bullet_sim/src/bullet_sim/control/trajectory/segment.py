@@ -1,7 +1,5 @@
 """One joint's way between two moments: a line, a cubic or a quintic polynomial of time."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 SHORTEST = 1e-9  # s; in less time than this a joint is simply at the end

@@ -24,9 +24,9 @@ class Tolerance:
         return None
 
     def replaced(self, position: float, velocity: float, acceleration: float) -> Tolerance:
-        """With a goal's wishes: above 0 replaces, below 0 switches off, 0 leaves as it is."""
-        return Tolerance(_chosen(position, self.position), _chosen(velocity, self.velocity),
-                         _chosen(acceleration, self.acceleration))
+        """With a goal's wishes, see `chosen`."""
+        return Tolerance(chosen(position, self.position), chosen(velocity, self.velocity),
+                         chosen(acceleration, self.acceleration))
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,9 @@ class GoalTolerances:
     goal: dict[str, Tolerance] = field(default_factory=dict)
     time: float = 0.0  # s after the end within which the goal tolerances must be met
 
-    def replaced_time(self, time: float) -> float:
-        """A goal's wish for `time`, by the same rule."""
-        return _chosen(time, self.time)
 
-
-def _chosen(wish: float, default: float) -> float:
+def chosen(wish: float, default: float) -> float:
+    """By the wish of a goal: above 0 replaces, below 0 switches off, 0 leaves as it is."""
     if wish > 0.0:
         return wish
     return 0.0 if wish < 0.0 else default

@@ -4,8 +4,6 @@ As in Gazebo it is a model that has no collisions but those of links of its own:
 ray sensors do not. Skin and animation files are not read; a plain figure stands for the person.
 """
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import (

@@ -1,14 +1,21 @@
 """Reads the `<camera>` of an SDF sensor: image, clip, noise, distortion and wide-angle lens."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import CameraDescription, Lens
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.noise import read_noise
-from bullet_sim.formats.xml_values import child_text, flag, integer, number, pose, shown, vector
+from bullet_sim.formats.xml_values import (
+    child_text,
+    fields,
+    flag,
+    integer,
+    number,
+    pose,
+    shown,
+    vector,
+)
 
 DISTORTION = ("k1", "k2", "p1", "p2", "k3")  # the order of OpenCV and of camera_info
 LENSES = {  # type: c1, c2, function of r = c1 f fun(theta / c2)
@@ -31,11 +38,9 @@ def read_camera(element: Element, sensor: str) -> CameraDescription:
         name=name,
         pose=pose(element, where),
         horizontal_fov=number(element, "horizontal_fov", usual.horizontal_fov, where),
-        width=integer(element, "image/width", usual.width, where),
-        height=integer(element, "image/height", usual.height, where),
+        **fields(integer, element, "width height", usual, where, "image/"),
         format=child_text(element, "image/format", usual.format),
-        near=number(element, "clip/near", usual.near, where),
-        far=number(element, "clip/far", usual.far, where),
+        **fields(number, element, "near far", usual, where, "clip/"),
         noise=read_noise(element.find("noise"), where),
         distortion=tuple(number(element, f"distortion/{key}", 0.0, where) for key in DISTORTION),
         distortion_centre=vector(element, "distortion/center", usual.distortion_centre, where),
@@ -66,9 +71,8 @@ def _lens(element: Element | None, where: str) -> Lens:
     return Lens(
         c1=c1,
         c2=c2,
-        c3=number(element, own + "c3", usual.c3, where) if kind == "custom" else usual.c3,
         function=function,
-        f=number(element, own + "f", usual.f, where) if kind == "custom" else usual.f,
+        **(fields(number, element, "c3 f", usual, where, own) if kind == "custom" else {}),
         scale_to_hfov=flag(element, "scale_to_hfov", usual.scale_to_hfov),
         cutoff_angle=number(element, "cutoff_angle", usual.cutoff_angle, where),
         env_texture_size=integer(element, "env_texture_size", usual.env_texture_size, where),

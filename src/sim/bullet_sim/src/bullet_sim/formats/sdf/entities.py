@@ -1,7 +1,5 @@
 """What a `<world>` contains: models, actors, populations, lights and roads, where it puts them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element
@@ -10,14 +8,21 @@ from bullet_sim.description import LightDescription, ModelDescription, Visual
 from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.sdf.actor import read_actor
 from bullet_sim.formats.sdf.frames import Frames, relative_to
+from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.population import read_population
 from bullet_sim.formats.sdf.road import read_road
 from bullet_sim.formats.source import Source
 
 Entity = ModelDescription | LightDescription
-IncludeReader = Callable[[Element, Source], Entity | None]
-ModelReader = Callable[[Element, Source], ModelDescription]
+READERS: dict[str, Callable[[Element, Source], Entity | Visual | None]] = {
+    "model": read_model,
+    "actor": read_actor,
+    "light": lambda element, _: read_light(element),
+    "road": read_road,
+    "include": read_include,
+}
 
 
 @dataclass
@@ -36,9 +41,7 @@ class Entities:
         there[name] = replace(entity, name=name)
 
 
-def read_entities(
-    element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
-) -> Entities:
+def read_entities(element: Element, source: Source) -> Entities:
     """All entities of a world, in the world's frame."""
     frames = Frames(source, f"world {element.get('name', 'default')}")
     for frame in element.findall("frame"):
@@ -46,7 +49,7 @@ def read_entities(
     found = []
     entities = Entities()
     for child in element:
-        for entity in or_without(_read, child, source, read_model, read_include) or ():
+        for entity in or_without(_read, child, source) or ():
             if isinstance(entity, Visual):
                 name = _own_name(entity.name, "road", entities.roads, source)
                 entities.roads[name] = entity
@@ -62,24 +65,11 @@ def read_entities(
     return entities
 
 
-def _read(child: Element, source: Source, read_model: ModelReader,
-          read_include: IncludeReader) -> list[Entity | Visual]:
+def _read(child: Element, source: Source) -> list[Entity | Visual]:
     """What one element of a world brings; nothing where it is no such thing."""
     if child.tag == "population":
-        return read_population(child, source, read_model)
-    match child.tag:
-        case "model":
-            entity = read_model(child, source)
-        case "actor":
-            entity = read_actor(child, source)
-        case "light":
-            entity = read_light(child)
-        case "road":
-            entity = read_road(child, source)
-        case "include":
-            entity = read_include(child, source)
-        case _:
-            entity = None
+        return read_population(child, source)
+    entity = READERS[child.tag](child, source) if child.tag in READERS else None
     return [] if entity is None else [entity]
 
 

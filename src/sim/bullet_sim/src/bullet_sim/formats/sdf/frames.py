@@ -1,7 +1,5 @@
 """Resolves SDF pose frames: `relative_to`, `frame`, `attached_to`, within one model."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.formats.source import Source

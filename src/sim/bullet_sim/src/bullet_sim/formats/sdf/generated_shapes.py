@@ -1,7 +1,5 @@
 """Reads the shapes that are made, not loaded: `<heightmap>`, `<polyline>`, `<image>`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from xml.etree.ElementTree import Element
 

@@ -1,8 +1,5 @@
 """Reads `<include>`: finds the model folder and its SDF file, and applies the overrides."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -15,22 +12,20 @@ from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
 
-RootReader = Callable[[Element, Source], ModelDescription]
+Found = ModelDescription | LightDescription
 MANIFESTS = ("model.config", "manifest.xml")
 DEEPEST = 30  # files that include each other
 MOST_FILES = 2000  # of one world: a few files that include each other twice are a million
 
 
-def read_include(
-    include: Element, source: Source, read_root: RootReader
-) -> ModelDescription | LightDescription | None:
+def read_include(include: Element, source: Source) -> Found | None:
     """What an include brings in; None, with one error line, where it cannot be had."""
     uri = child_text(include, "uri")
     if len(source.files) >= MOST_FILES:
         source.warn_once(f"more than {MOST_FILES} <include>s; the rest is left out", "includes")
         return None
     try:
-        return _read(include, uri, source, read_root)
+        return _read(include, uri, source)
     except ResourceNotFound as error:
         mistake(f"<include>: {error}; going on without it")
     except SimulationError as error:
@@ -38,9 +33,7 @@ def read_include(
     return None
 
 
-def _read(
-    include: Element, uri: str, source: Source, read_root: RootReader
-) -> ModelDescription | LightDescription:
+def _read(include: Element, uri: str, source: Source) -> Found:
     if not uri:
         raise FormatError("no <uri>; write <uri>model://NAME</uri>")
     file = model_file(source.resources.resolve(uri, source.folder))
@@ -56,27 +49,19 @@ def _read(
         if root.tag != "robot" and root.find("model") is None and light is not None:
             found = read_light(light)
         else:
-            found = read_root(root, inner)
-    place = _placed_light if isinstance(found, LightDescription) else overridden
-    return place(found, include)
+            found = source.read_root(root, inner)
+    return _overridden(found, include)
 
 
-def overridden(model: ModelDescription, include: Element) -> ModelDescription:
-    """A model with the include's own name, pose, static flag and further plugins."""
+def _overridden(found: Found, include: Element) -> Found:
+    """With the include's own name and pose; a model also with its static flag and plugins."""
     where = f"<include> of {child_text(include, 'uri')}"
-    return replace(
-        model,
-        name=child_text(include, "name", model.name),
-        pose=pose(include, where, model.pose),
-        static=flag(include, "static", model.static),
-        plugins=model.plugins + read_plugins(include),
-    )
-
-
-def _placed_light(light: LightDescription, include: Element) -> LightDescription:
-    where = f"<include> of {child_text(include, 'uri')}"
-    return replace(light, name=child_text(include, "name", light.name),
-                   pose=pose(include, where, light.pose))
+    found = replace(found, name=child_text(include, "name", found.name),
+                    pose=pose(include, where, found.pose))
+    if isinstance(found, LightDescription):
+        return found
+    return replace(found, static=flag(include, "static", found.static),
+                   plugins=found.plugins + read_plugins(include))
 
 
 def model_file(found: Path) -> Path:

@@ -1,7 +1,5 @@
 """Reads SDF joints, bringing old files' model-frame axes into the joint frame."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from xml.etree.ElementTree import Element
@@ -14,6 +12,7 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import (
     amount,
     child_text,
+    fields,
     flag,
     number,
     numbers,
@@ -95,12 +94,9 @@ def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
                         getattr(UNLIMITED, key))
         for key in LIMITS if (text := child_text(axis, f"limit/{key}"))
     }
-    return limits | {
-        "damping": amount(axis, "dynamics/damping", 0.0, where),
-        "friction": amount(axis, "dynamics/friction", 0.0, where),
-        "spring_reference": number(axis, "dynamics/spring_reference", 0.0, where),
-        "spring_stiffness": number(axis, "dynamics/spring_stiffness", 0.0, where),
-    }
+    dynamics = "dynamics/"
+    return (limits | fields(amount, axis, "damping friction", UNLIMITED, where, dynamics)
+            | fields(number, axis, "spring_reference spring_stiffness", UNLIMITED, where, dynamics))
 
 
 def read_limit(text: str, key: str, where: str) -> float:

@@ -1,11 +1,9 @@
 """Reads SDF `<light>` elements."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import LightDescription
-from bullet_sim.formats.xml_values import colour, flag, number, pose, vector
+from bullet_sim.formats.xml_values import colour, fields, flag, number, pose, vector
 
 
 def read_light(element: Element, inside: str = "") -> LightDescription:
@@ -17,15 +15,9 @@ def read_light(element: Element, inside: str = "") -> LightDescription:
         name=name,
         type=element.get("type", usual.type),
         pose=pose(element, where),
-        diffuse=colour(element, "diffuse", usual.diffuse, where),
-        specular=colour(element, "specular", usual.specular, where),
+        **fields(colour, element, "diffuse specular", usual, where),
         direction=vector(element, "direction", usual.direction, where),
         cast_shadows=flag(element, "cast_shadows", usual.cast_shadows),
-        range=number(element, "attenuation/range", usual.range, where),
-        constant=number(element, "attenuation/constant", usual.constant, where),
-        linear=number(element, "attenuation/linear", usual.linear, where),
-        quadratic=number(element, "attenuation/quadratic", usual.quadratic, where),
-        inner_angle=number(element, "spot/inner_angle", usual.inner_angle, where),
-        outer_angle=number(element, "spot/outer_angle", usual.outer_angle, where),
-        falloff=number(element, "spot/falloff", usual.falloff, where),
+        **fields(number, element, "range constant linear quadratic", usual, where, "attenuation/"),
+        **fields(number, element, "inner_angle outer_angle falloff", usual, where, "spot/"),
     )

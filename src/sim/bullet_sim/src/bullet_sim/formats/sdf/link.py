@@ -1,7 +1,5 @@
 """Reads SDF links: inertia, visuals, collisions, sensors and lights."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import TypeVar
 from xml.etree.ElementTree import Element

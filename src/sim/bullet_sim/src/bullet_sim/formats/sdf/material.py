@@ -1,7 +1,5 @@
 """Reads SDF `<material>`: colours, named materials and OGRE scripts found through their URIs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element

@@ -1,8 +1,6 @@
 """Reads SDF models with their nested models into one flat description."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
@@ -10,19 +8,17 @@ from bullet_sim.description import ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import all_that_can, mistake, or_without
 from bullet_sim.formats.sdf.frames import MODEL, Frames, add_model_frames, relative_to
+from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.joint import read_joint
 from bullet_sim.formats.sdf.link import read_link
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import flag, pose
 
-IncludeReader = Callable[[Element, Source], ModelDescription | None]
 NOT_SUPPORTED = ("gripper", "urdf")
 
 
-def read_model(
-    element: Element, source: Source, read_include: IncludeReader, inside: str = ""
-) -> ModelDescription:
+def read_model(element: Element, source: Source, inside: str = "") -> ModelDescription:
     """A `<model>`; links of nested models are named `nested::link`, as Gazebo scopes them.
 
     FormatError without a name or a link.
@@ -36,7 +32,7 @@ def read_model(
             source.warn_once(f"{where}: <{tag}> is not supported, left out")
     frames = Frames(source, name)
     add_model_frames(frames, element, where)
-    nested = _place(_nested_models(element, source, read_include, where), frames)
+    nested = _place(_nested_models(element, source, where), frames)
     links = all_that_can(read_link, without_twins(element, "link", where), source, where, frames)
     links += [link for model in nested for link in model.links]
     if not links:
@@ -64,17 +60,17 @@ def read_model(
 
 
 def _nested_models(
-    element: Element, source: Source, read_include: IncludeReader, where: str
+    element: Element, source: Source, where: str
 ) -> Iterator[tuple[ModelDescription, str]]:
     """Nested models and the frames their poses are given in."""
     for nested in element.findall("model"):
-        model = or_without(read_model, nested, source, read_include, where)
+        model = or_without(read_model, nested, source, where)
         if model is not None:
             yield model, relative_to(nested)
     for include in element.findall("include"):
-        model = read_include(include, source)
-        if model is not None:
-            yield model, relative_to(include)
+        found = read_include(include, source)
+        if isinstance(found, ModelDescription):
+            yield found, relative_to(include)
 
 
 def _place(

@@ -1,11 +1,9 @@
 """Reads SDF's noise models, of any sensor and of the axes of an IMU."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import ImuDescription, Noise
-from bullet_sim.formats.xml_values import child_text, number
+from bullet_sim.formats.xml_values import child_text, fields, number
 
 AXES = ("x", "y", "z")
 
@@ -16,8 +14,8 @@ def read_noise(element: Element | None, where: str, kind: str = "gaussian") -> N
         return Noise()
     return Noise(
         type=child_text(element, "type", element.get("type", kind)),
-        **{name: number(element, name, 0.0, f"{where} <noise>")
-           for name in ("mean", "stddev", "bias_mean", "bias_stddev", "precision")},
+        **fields(number, element, "mean stddev bias_mean bias_stddev precision", Noise(),
+                 f"{where} <noise>"),
     )
 
 

@@ -3,8 +3,6 @@
 Where the copies stand depends on the population's name alone: each run has the same world.
 """
 
-from __future__ import annotations
-
 import math
 import zlib
 from collections.abc import Callable, Iterator
@@ -15,19 +13,17 @@ import numpy as np
 
 from bullet_sim.description import ModelDescription
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import amount, child_text, integer, pose, vector
 from bullet_sim.pose import Pose, Vector3
 
-ModelReader = Callable[[Element, Source], ModelDescription]
 MOST_MODELS = 1000
 CANDIDATES = 20  # tried for each place of an even spread
 DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z")
 
 
-def read_population(
-    element: Element, source: Source, read_model: ModelReader
-) -> list[ModelDescription]:
+def read_population(element: Element, source: Source) -> list[ModelDescription]:
     """The copies, called `NAME_clone_0` and so on.
 
     FormatError without a <model>, and for an unknown distribution.

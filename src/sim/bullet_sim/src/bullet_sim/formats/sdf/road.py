@@ -1,7 +1,5 @@
 """Reads `<road>`: a band on the ground that is drawn and touches nothing."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Material, Strip, Visual

@@ -1,7 +1,5 @@
 """Enlarges the shapes of a model: what the scale tool of Gazebo's window leaves in a `<state>`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from bullet_sim.description import (

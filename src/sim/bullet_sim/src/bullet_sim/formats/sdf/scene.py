@@ -1,13 +1,11 @@
 """Reads the `<scene>` of an SDF world: ambient light, background, sky and fog."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Fog, SceneDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
-from bullet_sim.formats.xml_values import child_text, colour, flag, number, shown
+from bullet_sim.formats.xml_values import child_text, colour, fields, flag, number, shown
 
 FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
         "constant": "exp", "quadratic": "exp2"}  # the last two are how SDF's own text calls them
@@ -20,8 +18,7 @@ def read_scene(element: Element | None, world: str) -> SceneDescription:
         return usual
     where = f"{world} <scene>"
     return SceneDescription(
-        ambient=colour(element, "ambient", usual.ambient, where),
-        background=colour(element, "background", usual.background, where),
+        **fields(colour, element, "ambient background", usual, where),
         shadows=flag(element, "shadows", usual.shadows),
         sky=element.find("sky") is not None,
         fog=_fog(element.find("fog"), f"{where} <fog>"),
@@ -40,7 +37,5 @@ def _fog(element: Element | None, where: str) -> Fog:
     return Fog(
         type=FOGS[kind],
         colour=colour(element, "color", usual.colour, where),
-        start=number(element, "start", usual.start, where),
-        end=number(element, "end", usual.end, where),
-        density=number(element, "density", usual.density, where),
+        **fields(number, element, "start end density", usual, where),
     )

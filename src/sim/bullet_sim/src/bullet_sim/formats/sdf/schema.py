@@ -1,7 +1,5 @@
 """Reports unknown elements of an SDF text: most often they are misspelt."""
 
-from __future__ import annotations
-
 import difflib
 import tomllib
 from collections.abc import Iterator

@@ -1,17 +1,11 @@
 """Reads SDF sensors, cameras, rays and `<plugin>` elements."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import (
-    PluginDescription,
-    RayDescription,
-    SensorDescription,
-)
+from bullet_sim.description import PluginDescription, RayDescription, SensorDescription
 from bullet_sim.formats.sdf.camera import read_camera
 from bullet_sim.formats.sdf.noise import read_imu, read_noise
-from bullet_sim.formats.xml_values import flag, integer, number, pose
+from bullet_sim.formats.xml_values import fields, flag, integer, number, pose
 
 # Sensors that need a `<camera>` or `<ray>`: sdformat makes a missing one of defaults.
 CAMERAS = ("camera", "wideanglecamera", "multicamera", "depth", "depth_camera", "rgbd_camera")
@@ -51,15 +45,9 @@ def _ray(element: Element, where: str) -> RayDescription:
     across, up = "scan/horizontal/", "scan/vertical/"
     return RayDescription(
         samples=integer(element, across + "samples", usual.samples, where),
-        resolution=number(element, across + "resolution", usual.resolution, where),
-        min_angle=number(element, across + "min_angle", usual.min_angle, where),
-        max_angle=number(element, across + "max_angle", usual.max_angle, where),
+        **fields(number, element, "resolution min_angle max_angle", usual, where, across),
         vertical_samples=integer(element, up + "samples", usual.vertical_samples, where),
-        vertical_resolution=number(element, up + "resolution", usual.vertical_resolution, where),
-        vertical_min_angle=number(element, up + "min_angle", usual.vertical_min_angle, where),
-        vertical_max_angle=number(element, up + "max_angle", usual.vertical_max_angle, where),
-        range_min=number(element, "range/min", usual.range_min, where),
-        range_max=number(element, "range/max", usual.range_max, where),
-        range_resolution=number(element, "range/resolution", usual.range_resolution, where),
+        **fields(number, element, "resolution min_angle max_angle", usual, where, up, "vertical_"),
+        **fields(number, element, "min max resolution", usual, where, "range/", "range_"),
         noise=read_noise(element.find("noise"), where),
     )

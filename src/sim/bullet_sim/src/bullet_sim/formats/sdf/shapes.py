@@ -1,7 +1,5 @@
 """Reads SDF geometry, visuals, collisions and their surfaces."""
 
-from __future__ import annotations
-
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import (
@@ -26,6 +24,7 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import (
     amount,
     child_text,
+    fields,
     flag,
     integer,
     length,
@@ -105,15 +104,12 @@ def read_surface(element: Element | None, where: str) -> Surface:
     usual = Surface()
     if element is None:
         return usual
-    friction, contact = "friction/ode/", "contact/ode/"
+    friction = "friction/ode/"
     return Surface(
         mu=_friction(number(element, friction + "mu", usual.mu, where)),
         mu2=_friction(number(element, friction + "mu2", usual.mu2, where)),
         fdir1=vector(element, friction + "fdir1", usual.fdir1, where),
-        kp=number(element, contact + "kp", usual.kp, where),
-        kd=number(element, contact + "kd", usual.kd, where),
-        min_depth=number(element, contact + "min_depth", usual.min_depth, where),
-        max_vel=number(element, contact + "max_vel", usual.max_vel, where),
+        **fields(number, element, "kp kd min_depth max_vel", usual, where, "contact/ode/"),
         restitution=_restitution(element, where),
         collide_bitmask=integer(
             element, "contact/collide_bitmask", usual.collide_bitmask, where),

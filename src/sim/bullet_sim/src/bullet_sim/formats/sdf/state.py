@@ -1,16 +1,19 @@
 """Applies the `<state>` of a saved world: its poses win over those the models were written with."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.description import (
+    JointDescription,
+    LightDescription,
+    ModelDescription,
+    WorldDescription,
+)
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.scale import scaled_model
-from bullet_sim.formats.sdf.state_joints import with_saved_joints
 from bullet_sim.formats.xml_values import (
     child_text,
     not_negative,
@@ -20,9 +23,11 @@ from bullet_sim.formats.xml_values import (
     shown,
     vector,
 )
-from bullet_sim.pose import Pose
+from bullet_sim.pose import IDENTITY, Pose
 
 UNSCALED = (1.0, 1.0, 1.0)
+TURNING = ("revolute", "continuous")
+NOTHING = 1e-9  # rad or m
 LATEST = 4e9  # s; ROS counts to 2**32
 
 
@@ -83,7 +88,7 @@ def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
     model = scaled_model(model, scale)
     saved = dict(_link_poses(state, "", where))
     if model.joints and not model.static:
-        return with_saved_joints(model, saved)
+        return _with_saved_joints(model, saved)
     to_model = model.pose.inverse()  # link poses are saved in the world frame
     return replace(
         model,
@@ -100,3 +105,33 @@ def _link_poses(state: Element, scope: str, where: str) -> Iterator[tuple[str, P
             yield scope + link.get("name", ""), pose(link, f"{where}, link {link.get('name')!r}")
     for nested in state.findall("model"):
         yield from _link_poses(nested, f"{scope}{nested.get('name', '')}::", where)
+
+
+def _with_saved_joints(model: ModelDescription, saved: Mapping[str, Pose]) -> ModelDescription:
+    """The model with `start` of its joints of one axis; `saved` are link poses in the world.
+
+    The links' own poses stay as they were written: with these every joint is at zero.
+    """
+    written = {link.name: model.pose * link.pose for link in model.links}
+    now = {**written, **{name: pose for name, pose in saved.items() if name in written}}
+    return replace(model, joints=tuple(
+        replace(joint, start=_position(joint, written, now)) for joint in model.joints))
+
+
+def _position(joint: JointDescription, written: Mapping[str, Pose],
+              now: Mapping[str, Pose]) -> float:
+    """Angle (rad) or travel (m) between the written and the present pose of the child."""
+    length = math.hypot(*joint.axis)
+    known = joint.child in now and joint.parent in ("world", *now)
+    if joint.type not in (*TURNING, "prismatic") or not known or length == 0.0:
+        return 0.0
+    before, after = (poses.get(joint.parent, IDENTITY).inverse() * poses[joint.child] * joint.pose
+                     for poses in (written, now))
+    moved = before.inverse() * after
+    x, y, z, w = moved.orientation
+    parts = (x, y, z) if joint.type in TURNING else moved.position
+    along = sum(a * b for a, b in zip(joint.axis, parts, strict=True)) / length
+    if joint.type in TURNING:
+        along = math.remainder(2.0 * math.atan2(along, w), math.tau)
+    position = min(max(along, joint.lower), joint.upper)
+    return position if abs(position) > NOTHING else 0.0

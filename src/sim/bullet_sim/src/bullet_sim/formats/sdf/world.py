@@ -1,25 +1,21 @@
 """Reads SDF worlds: models, lights, physics, scene and the poses of a saved `<state>`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import PhysicsDescription, WorldDescription
+from bullet_sim.description import PhysicsDescription, SphericalDescription, WorldDescription
 from bullet_sim.formats.mistakes import all_that_can
-from bullet_sim.formats.sdf.entities import IncludeReader, ModelReader, read_entities
+from bullet_sim.formats.sdf.entities import read_entities
 from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.scene import read_scene
 from bullet_sim.formats.sdf.sensor import read_plugins
-from bullet_sim.formats.sdf.spherical_coordinates import read_spherical
 from bullet_sim.formats.sdf.state import apply_state
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import integer, number, vector
+from bullet_sim.formats.xml_values import fields, integer, number, vector
 
 
-def read_world(
-    element: Element, source: Source, read_model: ModelReader, read_include: IncludeReader
-) -> WorldDescription:
+def read_world(element: Element, source: Source) -> WorldDescription:
     """A `<world>`, its models in the order of the file."""
     where = f"world {element.get('name', 'default')!r}"
     usual = WorldDescription()
@@ -27,26 +23,26 @@ def read_world(
     # In <physics> up to SDF 1.5.
     old_gravity = vector(physics, "gravity", usual.gravity, where)
     old_field = vector(physics, "magnetic_field", usual.magnetic_field, where)
-    entities = read_entities(element, source, read_model, read_include)
+    entities = read_entities(element, source)
     world = WorldDescription(
         name=element.get("name", usual.name),
         gravity=vector(element, "gravity", old_gravity, where),
         magnetic_field=vector(element, "magnetic_field", old_field, where),
         physics=_read_physics(physics, where),
         scene=read_scene(element.find("scene"), where),
-        spherical=read_spherical(element.find("spherical_coordinates"), where),
+        spherical=_spherical(element.find("spherical_coordinates"), where),
         models=tuple(entities.models.values()),
         lights=tuple(entities.lights.values()),
         plugins=read_plugins(element),
         scenery=tuple(entities.roads.items()),
     )
     for state in element.findall("state"):
-        world = apply_state(_with_insertions(world, state, source, read_model), state)
+        world = apply_state(_with_insertions(world, state, source), state)
     return world
 
 
 def _with_insertions(
-    world: WorldDescription, state: Element, source: Source, read_model: ModelReader
+    world: WorldDescription, state: Element, source: Source
 ) -> WorldDescription:
     """Entities that were inserted after the world was opened; those that the file has are kept."""
     models = {model.name: model for model in world.models}
@@ -68,7 +64,7 @@ def _physics_element(element: Element) -> Element:
 def _read_physics(element: Element, world: str) -> PhysicsDescription:
     where = f"{world} <physics>"
     usual = PhysicsDescription()
-    solver, limits = "ode/solver/", "ode/constraints/"
+    solver = "ode/solver/"
     old_step = number(element, solver + "dt", usual.max_step_size, where)  # names of SDF 1.2
     old_rate_hz = number(element, "update_rate", usual.real_time_update_rate, where)
     return PhysicsDescription(
@@ -81,12 +77,18 @@ def _read_physics(element: Element, world: str) -> PhysicsDescription:
             element, solver + "precon_iters", usual.precon_iterations, where
         ),
         sor=number(element, solver + "sor", usual.sor, where),
-        cfm=number(element, limits + "cfm", usual.cfm, where),
-        erp=number(element, limits + "erp", usual.erp, where),
-        contact_max_correcting_vel=number(
-            element, limits + "contact_max_correcting_vel", usual.contact_max_correcting_vel, where
-        ),
-        contact_surface_layer=number(
-            element, limits + "contact_surface_layer", usual.contact_surface_layer, where
-        ),
+        **fields(number, element, "cfm erp contact_max_correcting_vel contact_surface_layer", usual,
+                 where, "ode/constraints/"),
     )
+
+
+def _spherical(element: Element | None, world: str) -> SphericalDescription | None:
+    """Where on Earth the world is; None where the file does not say.
+
+    Of surface models there is WGS84 alone, of world frames east-north-up, whatever is written.
+    """
+    if element is None:
+        return None
+    return SphericalDescription(**fields(
+        number, element, "latitude_deg longitude_deg elevation heading_deg",
+        SphericalDescription(), f"{world} <spherical_coordinates>"))

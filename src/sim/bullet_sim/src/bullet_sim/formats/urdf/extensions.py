@@ -1,7 +1,5 @@
 """What `<gazebo>` tags add to a URDF's links and joints, written into SDF elements."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement

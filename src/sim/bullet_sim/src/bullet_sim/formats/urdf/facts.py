@@ -1,7 +1,5 @@
 """Properties of a URDF for controllers: limits of joints, where they are, wheel radii."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 

@@ -1,7 +1,5 @@
 """Reads URDF joints that move, or that are kept although fixed, with their `<gazebo>` tags."""
 
-from __future__ import annotations
-
 import logging
 from functools import partial
 from xml.etree.ElementTree import Element

@@ -1,7 +1,5 @@
 """Writes a URDF link's shapes as SDF elements, so that `<gazebo>` tags can merge into them."""
 
-from __future__ import annotations
-
 from functools import partial
 from xml.etree.ElementTree import Element, SubElement
 

@@ -21,7 +21,7 @@ from bullet_sim.description import (
 from bullet_sim.formats.urdf.extensions import put
 from bullet_sim.formats.urdf.tree import UrdfJoint, UrdfTree
 from bullet_sim.formats.xml_values import numbers, or_default, vector_text
-from bullet_sim.pose import IDENTITY, Pose, rotation_matrix
+from bullet_sim.pose import IDENTITY, Pose, rotation_matrix, symmetric_matrix
 
 LUMP = "_fixed_joint_lump__"
 OFFSETS = ("xyzOffset", "rpyOffset")
@@ -102,15 +102,10 @@ def combined(parent: Inertial | None, child: Inertial | None, origin: Pose) -> I
     for part in parts:
         turn = rotation_matrix(part.pose.orientation)
         arm = np.array(part.pose.position) - centre
-        tensor += turn @ _matrix(part) @ turn.T
+        tensor += turn @ symmetric_matrix(part.inertia) @ turn.T
         tensor += part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # parallel axes
     six = tuple(float(tensor[i, j]) for i, j in zip(*np.triu_indices(3), strict=True))
     return Inertial(mass=mass, pose=Pose(tuple(map(float, centre))), inertia=six)
-
-
-def _matrix(inertial: Inertial) -> np.ndarray:
-    ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
-    return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
 
 
 def _moved(part, origin: Pose):

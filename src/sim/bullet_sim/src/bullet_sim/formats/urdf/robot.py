@@ -1,7 +1,5 @@
 """Reads a URDF robot by Gazebo's rules: `<gazebo>` tags, lumping, links without mass dropped."""
 
-from __future__ import annotations
-
 import copy
 from xml.etree.ElementTree import Element
 

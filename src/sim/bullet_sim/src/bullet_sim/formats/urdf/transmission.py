@@ -4,8 +4,6 @@ What cannot be used is left out with a line that says why, as transmission_inter
 gazebo_ros_control's DefaultRobotHWSim do; their types and reductions have no effect there either.
 """
 
-from __future__ import annotations
-
 import logging
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element

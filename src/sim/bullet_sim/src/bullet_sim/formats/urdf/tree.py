@@ -1,7 +1,5 @@
 """The bones of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import partial

@@ -4,8 +4,6 @@ A simulator drops links without mass and lumps others (`urdf.py`); who draws a r
 transforms, as rviz does, needs each link.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 

@@ -1,7 +1,5 @@
 """What went wrong in a xacro file, as one line for people: where, what, what to type."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -26,7 +26,6 @@ from bullet_sim.formats.xacro.substitutions import (
     guarded_eval,
     resolver,
 )
-from bullet_sim.formats.xacro.unexpanded import unanswered_inside
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
 
@@ -40,6 +39,14 @@ _ROBOT_TAGS = frozenset([
     "disable_collisions", "disable_default_collisions", "enable_collisions", "end_effector",
     "group", "group_state", "joint_property", "link_sphere_approximation", "passive_joint",
     "virtual_joint",
+])
+BLOCK = "insert_block"  # nothing else has a tag of this name
+_CONDITIONS = frozenset(["if", "unless"])
+_TAGS_OF_URDF = frozenset([
+    "acceleration", "actuator", "axis", "box", "calibration", "capsule", "child", "collision",
+    "color", "cylinder", "dynamics", "geometry", "hardwareInterface", "inertia", "inertial",
+    "joint", "limit", "link", "mass", "material", "mechanicalReduction", "mesh", "mimic", "origin",
+    "parent", "role", "safety_controller", "sphere", "texture", "type", "verbose", "visual",
 ])
 
 
@@ -74,7 +81,7 @@ class Attempt:
         """Tags that look like calls of undefined macros."""
         root = self.document.documentElement
         tags = [element.tagName for element in elements(root)]
-        inside = unanswered_inside(root, self.macros)
+        inside = _unanswered_inside(root, self.macros)
         if root.tagName == "robot":
             return [tag for tag in tags if tag not in _ROBOT_TAGS] + inside
         return [tag for tag in tags if tag in KEYWORDS] + inside
@@ -84,6 +91,22 @@ class Attempt:
         children = elements(self.document.documentElement)
         names = Counter((child.tagName, child.getAttribute("name")) for child in children)
         return all(n == 1 for (tag, _), n in names.items() if tag in ("link", "joint"))
+
+
+def _unanswered_inside(root: minidom.Element, macros: Collection[str]) -> list[str]:
+    """Tags below the top level that want the prefix: keywords, and calls of these macros.
+
+    In a `<gazebo>` tag and in SDF only blocks count: a macro may be named as SDF's `<camera>`.
+    """
+    found = [BLOCK] * len(root.getElementsByTagName(BLOCK))
+    if root.tagName != "robot":
+        return found
+    calls = _CONDITIONS | set(macros) - _TAGS_OF_URDF
+    for part in root.childNodes:
+        if part.nodeType == part.ELEMENT_NODE and part.tagName != "gazebo":
+            found += [element.tagName for element in part.getElementsByTagName("*")
+                      if element.tagName in calls]
+    return found
 
 
 def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
@@ -123,8 +146,9 @@ def _private_state(
     """Fresh module variables for one expansion; the old ones come back afterwards."""
     budget = Budget()
     fresh = {
-        "message": messages.message, "warning": messages.warning, "error": messages.error,
-        "print_location": messages.print_location, "verbosity": 1, "all_includes": [],
+        "message": messages.at(logging.INFO), "warning": messages.at(logging.WARNING),
+        "error": messages.at(logging.ERROR),
+        "print_location": lambda: None, "verbosity": 1, "all_includes": [],  # each line has a place
         "filestack": None, "macrostack": None, "substitution_args_context": {"filename": ""},
         "parse": parse, "LEXER": LEXER, "replace_node": budget.replace_node,
         "safe_eval": noted_eval(safe_eval), "eval_text": budget.eval_text,
@@ -165,21 +189,13 @@ class _Messages:
     def __init__(self) -> None:
         self.lines: list[tuple[int, str]] = []
 
-    def message(self, *words: object, **_: object) -> None:
-        self._add(logging.INFO, words)
+    def at(self, level: int) -> Callable[..., None]:
+        """A function of xacro's that keeps a line, to be logged when the expansion is over."""
+        def keep(*words: object, **_: object) -> None:
+            text = one_line(" ".join(map(str, words)))
+            self.lines.append((level, f"{place('xacro')}: {text}"))
 
-    def warning(self, *words: object, **_: object) -> None:
-        self._add(logging.WARNING, words)
-
-    def error(self, *words: object, **_: object) -> None:
-        self._add(logging.ERROR, words)
-
-    def print_location(self) -> None:
-        """Nothing: every line names its place."""
-
-    def _add(self, level: int, words: tuple[object, ...]) -> None:
-        text = one_line(" ".join(map(str, words)))
-        self.lines.append((level, f"{place('xacro')}: {text}"))
+        return keep
 
 
 def _finder(find_package: FindPackage | None) -> FindPackage:

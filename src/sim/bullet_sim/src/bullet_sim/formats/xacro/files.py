@@ -1,7 +1,5 @@
 """Expands xacro files with PyPI's xacro, and old ones as the releases they were written for did."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Mapping
@@ -10,9 +8,8 @@ from pathlib import Path
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro.expansion import Attempt, FindPackage, Run, attempt
-from bullet_sim.formats.xacro.legacy import Legacy
 from bullet_sim.formats.xacro.limits import TooLarge
-from bullet_sim.formats.xacro.melodic import Melodic
+from bullet_sim.formats.xacro.older_releases import Legacy, Melodic
 
 _LOCK = threading.Lock()  # xacro keeps its state in module variables: one expansion at a time
 _LOGGER = logging.getLogger(__name__)

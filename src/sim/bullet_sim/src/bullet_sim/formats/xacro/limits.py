@@ -1,7 +1,5 @@
 """Bounds of an expansion: how many parts it may have, and what one process may take for it."""
 
-from __future__ import annotations
-
 import gc
 import mmap
 import os

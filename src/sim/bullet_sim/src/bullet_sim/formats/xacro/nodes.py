@@ -1,7 +1,5 @@
 """xacro's work on its document, in time that grows with the size and not with its square."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 from types import CodeType

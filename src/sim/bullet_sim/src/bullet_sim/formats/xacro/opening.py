@@ -1,7 +1,5 @@
 """How xacro's files are opened: plain ones only, so large, so many, and none within itself."""
 
-from __future__ import annotations
-
 import errno
 import os
 from pathlib import Path

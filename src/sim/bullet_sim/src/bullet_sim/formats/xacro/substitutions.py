@@ -1,7 +1,5 @@
 """`$(…)` in xacro files: what ROS 1's xacro supports and PyPI's does not."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import re

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from sensor_msgs.msg import Range
 
-from bullet_sim.sensors.range_finder import RangeFinder
+from bullet_sim.sensors.ray_fan import RayFan
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
@@ -16,7 +16,7 @@ class HectorSonarPlugin(common.HectorSensor):
     """10 Hz by default, whatever the sensor's rate; what is nearer than range_max has errors."""
 
     def __init__(self, context: PluginContext):
-        self._finder = RangeFinder(context.world, context.link, context.sensor)
+        self._fan = RayFan(context.world, context.link, context.sensor)
         super().__init__(context, Range, "sonar", "/sonar_link", queue_size=1)
         self._error = self.add_error(f"{context.link.name} {context.sensor.name}", 1)
         self.offer(self._error)
@@ -24,7 +24,7 @@ class HectorSonarPlugin(common.HectorSensor):
 
     def measure(self) -> Range:
         """The distance now, or range_max."""
-        ray, distance = self._finder.ray, self._finder.sample()
+        ray, distance = self._fan.ray, self._fan.nearest()
         measured = float(self._error.apply(np.array([distance]), self.elapsed())[0])
         if distance < ray.range_max:
             distance = min(max(measured, ray.range_min), ray.range_max)
