@@ -15,13 +15,13 @@ from pathlib import Path
 import rospkg
 import rospy
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.interruption import interruptible
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Family
 from evaluation.lesson_pictures import LESSONS, Photographer
 from evaluation.navigation_pictures import SCENES, Stage
 from evaluation.rviz_screen import Screen
+from evaluation.session.failure import RunError
+from evaluation.session.interruption import interruptible
+from evaluation.session.launch import Launched
+from evaluation.session.processes import Family
 
 COURSE = "course"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.bench import cpu, main
+from evaluation.bench import main
 from evaluation.bench.acceptance import CRITERIA, Criterion, judge
 from evaluation.bench.figures import figure, percentile, ratio
 from evaluation.bench.frame_age import frame_ages, real_time_factor
@@ -25,8 +25,9 @@ from evaluation.bench.results import (
     write_json,
 )
 from evaluation.bench.ros_run import read_lines
-from evaluation.course_run.failure import RunError
-from evaluation.program import NOT_RUN
+from evaluation.session import cpu
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_RUN
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "bench.py"
 

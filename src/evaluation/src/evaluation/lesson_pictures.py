@@ -18,10 +18,10 @@ from gazebo_msgs.srv import GetWorldProperties
 from sensor_msgs.msg import Image
 from std_srvs.srv import Empty
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.names import WORLD
 from evaluation.picture import FONT, PAPER, TEXT, write_text
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.names import WORLD
 
 WINDOW_WIDTH_PX, BAR_PX, GAP_PX = 640, 34, 14
 LETTER_PX, LINE_PX = 10, 21

@@ -18,10 +18,10 @@ from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import Twist
 from std_srvs.srv import Empty
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Child
 from evaluation.rviz_screen import Screen, save
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.processes import Child
 
 LIMIT, END_LIMIT = 180.0, 20.0  # s, wall, for whatever is waited for, and for a launch to end
 LOOK = 0.05  # s, wall

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import rospkg
 
-from evaluation.bench import simulator
 from evaluation.bench.probes.follower import CLOCK, FRAME
 from evaluation.bench.ros_run import START_LIMIT, RosRun, read_lines
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.processes import Child
+from evaluation.session import simulator
+from evaluation.session.failure import RunError
+from evaluation.session.processes import Child
 
 LESSON = "05follower_proporation.py"
 COURSE_LAUNCH = ("learning_topic", "0course.launch", "gui:=false", "model:=waffle")
@@ -77,7 +77,8 @@ class Follower:
 def launch_course(run: RosRun, *arguments: str) -> Child:
     """0course.launch without a screen; returns when the waffle stands in it."""
     launched = run.launch(*COURSE_LAUNCH, *arguments)
-    simulator.wait_for_model(run)
+    run.wait(lambda: simulator.WAFFLE in simulator.models(), START_LIMIT,
+             f"model {simulator.WAFFLE}")
     return launched
 
 

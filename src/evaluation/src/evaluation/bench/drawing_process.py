@@ -18,7 +18,7 @@ from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
 from evaluation.bench.course import Course
 from evaluation.bench.pybullet_drawing import PybulletDrawing
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 
 OURS, TINY, PLUGIN = "ours", "tiny", "plugin"
 SAYS = {OURS: "our renderer", TINY: "TinyRenderer", PLUGIN: "PyBullet's EGL plugin"}

@@ -7,8 +7,8 @@ import platform
 import time
 from pathlib import Path
 
-from evaluation.bench import cpu
-from evaluation.course_run.report import versions
+from evaluation.session import cpu
+from evaluation.session.versions import versions
 
 
 def describe() -> dict:

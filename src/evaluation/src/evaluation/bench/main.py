@@ -18,8 +18,8 @@ from evaluation.bench.results import (
     write_json,
 )
 from evaluation.bench.settings import Settings
-from evaluation.course_run.failure import RunError
-from evaluation.program import NOT_RUN, PASSED, chart_writer, complain, run_program
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_RUN, PASSED, chart_writer, complain, run_program
 
 
 def main(arguments: list[str]) -> int:

@@ -9,7 +9,7 @@ import rospkg
 
 from evaluation.bench.ros_run import ros_run
 from evaluation.bench.settings import Settings
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 
 LIMIT = 600.0  # s, wall
 QUICK_DURATION = 15.0  # s, simulated

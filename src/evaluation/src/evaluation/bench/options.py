@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.command_line import Parser
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
+from evaluation.trial.command_line import Parser
 
 PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
          "memory")

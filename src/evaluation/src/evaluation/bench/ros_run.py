@@ -15,9 +15,9 @@ from pathlib import Path
 import rosgraph
 
 from evaluation.bench.settings import Settings
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import describe_exit
-from evaluation.course_run.processes import Child, Family
+from evaluation.session.failure import RunError
+from evaluation.session.launch import describe_exit
+from evaluation.session.processes import Child, Family
 
 POLL = 0.02  # s, wall
 MASTER_LIMIT, START_LIMIT, END_LIMIT = 20.0, 60.0, 10.0  # s, wall

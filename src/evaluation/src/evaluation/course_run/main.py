@@ -8,26 +8,22 @@ from pathlib import Path
 
 import cv2
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.fingerprints import Fingerprints
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.observer import Observer
 from evaluation.course_run.options import Options, parse_options
-from evaluation.course_run.processes import Family, strip_terminal_codes
 from evaluation.course_run.progress import Progress
-from evaluation.course_run.report import (
-    conditions,
-    frame_figures,
-    summarize,
-    table,
-    versions,
-    write_report,
-)
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
+from evaluation.course_run.report import conditions, summarize, table, write_report
+from evaluation.course_run.video import Film
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
-from evaluation.program import NOT_PASSED, PASSED, run_program
+from evaluation.session.failure import RunError
+from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
+from evaluation.session.fingerprints import Fingerprints
+from evaluation.session.frames import frame_figures
+from evaluation.session.launch import Launched
+from evaluation.session.observer import Observer
+from evaluation.session.processes import Family, strip_terminal_codes
+from evaluation.session.versions import versions
 from evaluation.track import TrackError, TrackFile, build_track, load_track_file
+from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 
 RESULTS = ("path.png", "run.mp4", "report.json")
 LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.rendering.renderer import Renderer, open_renderer
-from evaluation.course_run.failure import RunError
 from evaluation.detector.dataset import SHARD, fitted, holds, write_set
 from evaluation.detector.drawing import draw_picture
+from evaluation.session.failure import RunError
 
 Shard = tuple[Path, range]  # a file, and the seeds of its pictures
 

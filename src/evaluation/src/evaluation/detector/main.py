@@ -7,8 +7,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from evaluation.command_line import Parser
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
+from evaluation.trial.command_line import Parser
 
 DONE, NOT_GOOD, NOT_RUN = 0, 1, 2
 PICTURES, TESTED = 6000, 500

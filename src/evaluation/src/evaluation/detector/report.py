@@ -13,7 +13,6 @@ from ai_robot_tracking.detection.decoding import Detections
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.picture import annotated
 
-from evaluation.course_run.failure import RunError
 from evaluation.detector.classes import CLASSES
 from evaluation.detector.dataset import TEST_FIRST
 from evaluation.detector.draw_sets import open_drawing
@@ -28,6 +27,7 @@ from evaluation.detector.scoring import (
     milliseconds,
     recall_by_size,
 )
+from evaluation.session.failure import RunError
 
 SIZES_PX = (12.0, 20.0, 32.0, 64.0, 128.0, 480.1)
 SHEET_COLUMNS, SHEET_ROWS, TILE = 4, 2, (320, 240)  # px

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from evaluation.course_run.failure import RunError
 from evaluation.detector.classes import CLASSES
 from evaluation.detector.dataset import INPUT_HEIGHT, INPUT_WIDTH, PictureSet, read_sets
 from evaluation.detector.export import ExportError, export
 from evaluation.detector.network import Detector
 from evaluation.detector.training import Plan, Progress, train
+from evaluation.session.failure import RunError
 
 
 def run_training(

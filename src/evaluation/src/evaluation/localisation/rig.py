@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from collections.abc import Callable
 
@@ -19,15 +20,14 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from evaluation.bench import simulator
-from evaluation.bench.cpu import processes
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.localisation.options import Options
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.progress import Progress
-from evaluation.navigation.watch import MAP, ROBOT, Watch
-from evaluation.yards.rig import pose_message
+from evaluation.house.ground import Ground
+from evaluation.house.progress import Progress
+from evaluation.house.watch import MAP, ROBOT, Watch
+from evaluation.session import simulator
+from evaluation.session.cpu import processes
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.simulator import pose_message
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall
@@ -39,8 +39,8 @@ TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36, a
 class Rig:
     """Made once a run; all of its calls may raise RunError."""
 
-    def __init__(self, options: Options, ground: Ground, launched: Launched, map_file: str,
-                 progress: Progress):
+    def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
+                 map_file: str, progress: Progress):
         self._launched, self._ground, self._progress = launched, ground, progress
         launched.start_roscore()
         self.watch = Watch(launched.master_uri)

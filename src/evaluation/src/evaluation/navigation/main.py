@@ -8,20 +8,20 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Family
-from evaluation.course_run.report import versions
+from evaluation.house.ground import Ground
+from evaluation.house.progress import Progress
+from evaluation.house.watch import Watch
 from evaluation.navigation.film import Film
-from evaluation.navigation.ground import Ground
 from evaluation.navigation.options import Options, parse_options
 from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
-from evaluation.navigation.progress import Progress
 from evaluation.navigation.report import lines, read_map_frame, write_report
 from evaluation.navigation.score import Result
-from evaluation.navigation.watch import Watch
-from evaluation.program import NOT_PASSED, PASSED, run_program
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.processes import Family
+from evaluation.session.versions import versions
+from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 

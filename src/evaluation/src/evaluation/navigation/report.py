@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from evaluation.house.records import Contact
 from evaluation.navigation.driver import Way
 from evaluation.navigation.options import Options
-from evaluation.navigation.records import Contact
 from evaluation.navigation.score import (
     LEAST_AGREEMENT,
     MOST_ATE,

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import cv2
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Family, strip_terminal_codes
-from evaluation.course_run.status_line import StatusLine
-from evaluation.program import NOT_PASSED, PASSED, run_program
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.processes import Family, strip_terminal_codes
+from evaluation.session.status_line import StatusLine
 from evaluation.tracking.options import Options, parse_options
 from evaluation.tracking.report import lines, path_picture, summarize, write_report
 from evaluation.tracking.run import TrackRun
+from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 
 RESULTS = ("path.png", "run.mp4", "report.json")
 

@@ -11,8 +11,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.course_run.report import fingerprint, frame_figures, versions
+from evaluation.lap import fingerprint
 from evaluation.picture import FAINT, GRID, PAPER, draw_line, write_text
+from evaluation.session.frames import frame_figures
+from evaluation.session.versions import versions
 from evaluation.tracking.room import FAR, NEAR, TARGET, Room
 from evaluation.tracking.run import TrackRun
 from evaluation.tracking.score import BAND, SETTLED, TrackScorer

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import yaml
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.observer import Observer
-from evaluation.course_run.status_line import StatusLine
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.observer import Observer
+from evaluation.session.resources import find_package
+from evaluation.session.status_line import StatusLine
 from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, annotated_topic
 from evaluation.tracking.film import Film
 from evaluation.tracking.options import Options

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import time
 
-from evaluation.bench import simulator
 from evaluation.bench.course_drive import (
     COMMANDS,
     Follower,
@@ -24,7 +23,8 @@ from evaluation.bench.marked_lap import marked_lap
 from evaluation.bench.parts.step import bare_step_time
 from evaluation.bench.ros_run import RosRun, ros_run
 from evaluation.bench.settings import Settings
-from evaluation.course_run.processes import Child
+from evaluation.session import simulator
+from evaluation.session.processes import Child
 
 SIZE = (640, 480)
 WINDOWS, WINDOW = 5, 4.0  # s, wall

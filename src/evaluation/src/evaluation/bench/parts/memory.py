@@ -13,7 +13,6 @@ import statistics
 import time
 from collections.abc import Sequence
 
-from evaluation.bench import simulator
 from evaluation.bench.course_drive import (
     SIMULATOR,
     Follower,
@@ -21,11 +20,12 @@ from evaluation.bench.course_drive import (
     fast_arguments,
     launch_course,
 )
-from evaluation.bench.cpu import memory
 from evaluation.bench.figures import Figure, figure
 from evaluation.bench.parts.fast import SIZE, send_circle
 from evaluation.bench.ros_run import RosRun, read_lines, ros_run
 from evaluation.bench.settings import Settings
+from evaluation.session import simulator
+from evaluation.session.cpu import memory
 
 LOOKS = 200  # at the memory, over a leg
 CAMERA_SHARE = 0.25  # of MEMORY_S, for the leg with the camera

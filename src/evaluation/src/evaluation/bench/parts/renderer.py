@@ -16,7 +16,7 @@ from evaluation.bench.course import Course
 from evaluation.bench.drawing_process import OURS, PLUGIN, TINY, DrawingProcess, Task
 from evaluation.bench.figures import Figure, figure, percentile, ratio
 from evaluation.bench.settings import Settings
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 
 SIZES = ((320, 240), (640, 480), (1280, 720), (1920, 1080))  # px
 RUNS, FRAMES = 5, 3  # places of a lap; timed frames of each turn, of which the median counts

@@ -13,13 +13,13 @@ import rospkg
 
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
-from evaluation.bench import simulator
 from evaluation.bench.course import Course, drive_of
-from evaluation.bench.cpu import memory
 from evaluation.bench.figures import Figure, figure, ratio
 from evaluation.bench.parts.memory import SIMULATOR, growth_percent
 from evaluation.bench.ros_run import START_LIMIT, ros_run
 from evaluation.bench.settings import Settings
+from evaluation.session import simulator
+from evaluation.session.cpu import memory
 
 TIMES, QUICK_TIMES = 1000, 200
 LOOKS = 50  # measurements on the way

@@ -12,11 +12,11 @@ from pathlib import Path
 import rospkg
 
 from bullet_sim.formats.xacro.files import expand
-from evaluation.bench import simulator
 from evaluation.bench.figures import Figure, figure
 from evaluation.bench.parts.growth import grid
 from evaluation.bench.ros_run import START_LIMIT, RosRun, read_lines, ros_run
 from evaluation.bench.settings import Settings
+from evaluation.session import simulator
 
 COUNT, TOPICS_EACH = 10, 2
 RUNS = 3

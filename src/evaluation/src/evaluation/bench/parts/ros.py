@@ -15,7 +15,6 @@ import os
 import statistics
 import time
 
-from evaluation.bench import simulator
 from evaluation.bench.course_drive import (
     FOLLOWER,
     SIMULATOR,
@@ -24,12 +23,13 @@ from evaluation.bench.course_drive import (
     camera_arguments,
     launch_course,
 )
-from evaluation.bench.cpu import CpuMeter
 from evaluation.bench.figures import Figure, figure, percentile
 from evaluation.bench.frame_age import frame_ages, real_time_factor
 from evaluation.bench.marked_lap import marked_lap
 from evaluation.bench.ros_run import RosRun, ros_run
 from evaluation.bench.settings import Settings
+from evaluation.session import simulator
+from evaluation.session.cpu import CpuMeter
 
 SIZES = {"1080p": (1920, 1080), "720p": (1280, 720)}
 WINDOWS, WINDOW = {"1080p": 7, "720p": 4}, 10.0  # s, wall

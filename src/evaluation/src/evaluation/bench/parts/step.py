@@ -20,7 +20,7 @@ from bullet_sim.physics.quiet import pybullet
 from evaluation.bench.course import Course, drive_of
 from evaluation.bench.figures import Figure, figure, ratio
 from evaluation.bench.settings import Settings
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 
 RUNS = 11
 BLOCK, BLOCKS = 200, 5  # steps between two nudges (too few to fall asleep); blocks of a run
