@@ -16,13 +16,14 @@ LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine keeps up with more
 class Parser(argparse.ArgumentParser):
     """Knows options by their whole names; its errors are RunErrors."""
 
-    def __init__(self, **settings: object) -> None:
+    def __init__(self, package: str = "evaluation", **settings: object) -> None:
         super().__init__(**{"allow_abbrev": False, **settings})
+        self._package = package  # that the program belongs to
 
     def error(self, message: str) -> None:
         """RunError that says where the options are listed."""
         program = self.prog.split()[0]  # a verb follows
-        raise RunError(f"{message} (see: rosrun evaluation {program} --help)")
+        raise RunError(f"{message} (see: rosrun {self._package} {program} --help)")
 
     def add_whole(self, flag: str, default: int, text: str, *, variable: str = "",
                   most: int = MOST) -> None:
