@@ -135,6 +135,11 @@ def strip_terminal_codes(text: str) -> str:
     return _TERMINAL_CODES.sub("", text)
 
 
+def read_log(path: Path) -> list[str]:
+    """A log's lines."""
+    return strip_terminal_codes(path.read_text(encoding="utf-8", errors="replace")).splitlines()
+
+
 def end_with_parent(number: int) -> None:
     """Between fork and exec: have the kernel send this signal when our parent dies."""
     _libc.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)

@@ -38,9 +38,9 @@ class Session:
         """Do this before the processes end."""
         self._at_end.callback(act)
 
-    def launched(self, vehicle: str) -> Launched:
+    def launched(self, vehicle: str, driver: str = "") -> Launched:
         """A ROS master and launch files of this run's own; logs go to OUT/log."""
-        return Launched(self.family, self.out / "log", vehicle=vehicle)
+        return Launched(self.family, self.out / "log", driver, vehicle)
 
     def start_drive(self, command: list[str], folder: Path,
                     environment: Mapping[str, str] | None = None) -> DriveProcess:
