@@ -9,7 +9,7 @@ import cv2
 
 from evaluation.course_run.options import Options, parse_options
 from evaluation.course_run.progress import Progress
-from evaluation.course_run.report import conditions, summarize, table, write_report
+from evaluation.course_run.report import conditions, followers_table, summarize, write_report
 from evaluation.course_run.video import Film
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
@@ -139,7 +139,7 @@ class CourseRun(LiveDrive):
         picture = path_picture(self.track_file, self.drive, *_titles(follower, summary))
         cv2.imwrite(str(out / "path.png"), picture)
         runs = write_report(out, follower, summary)
-        self.progress.say("\n" + table(runs, follower))
+        self.progress.say("\n" + followers_table(runs, follower))
         unanswered = summary["frames_dropped"]
         if self.options.fast and unanswered:
             self.progress.say(f"{unanswered} images without a command: no run will repeat this one")

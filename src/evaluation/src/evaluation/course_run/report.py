@@ -7,6 +7,8 @@ from pathlib import Path
 
 from evaluation.course_run.options import Options
 from evaluation.lap import LapScorer, fingerprint
+from evaluation.trial.report import write_json
+from evaluation.trial.table import cell, table
 
 COLUMNS = (  # heading, key, factor, digits
     ("laps", "laps_closed", 1, 0),
@@ -67,7 +69,7 @@ def conditions(options: Options) -> dict:
 
 def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
     """Write report.json and <follower>.json; returns the latest run of each follower, by name."""
-    _write(folder / f"{Path(follower).stem}.json", {"follower": follower, **run})
+    write_json({"follower": follower, **run}, folder / f"{Path(follower).stem}.json")
     runs = {follower: run}
     for path in sorted(folder.glob("*.json")):
         if path.name != "report.json":
@@ -79,33 +81,17 @@ def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
         name: {key: known[name].get(key) for key in ("outcome", *(column[1] for column in COLUMNS))}
         for name in known
     }
-    _write(folder / "report.json", {"follower": follower, **run, "followers": side_by_side})
+    write_json({"follower": follower, **run, "followers": side_by_side}, folder / "report.json")
     return side_by_side
 
 
-def table(runs: dict[str, dict], current: str) -> str:
+def followers_table(runs: dict[str, dict], current: str) -> str:
     """All followers' figures, a row each; the present run's row is marked."""
     rows = [["  follower", *(heading for heading, *_ in COLUMNS), "outcome"]]
     for name, run in runs.items():
-        cells = [_cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
+        cells = [cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
         rows.append([f"{'>' if name == current else ' '} {name}", *cells, run["outcome"]])
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    last = len(widths) - 1
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if column in (0, last) else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    )
-
-
-def _cell(value: float | None, factor: float, digits: int) -> str:
-    return "-" if value is None else f"{value * factor:.{digits}f}"
-
-
-def _write(path: Path, values: dict) -> None:
-    path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+    return table(rows, left=(0, len(COLUMNS) + 1))
 
 
 def _read(path: Path) -> dict:

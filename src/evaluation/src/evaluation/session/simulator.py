@@ -35,24 +35,24 @@ def simulated_time() -> float:
 
 def pause() -> None:
     """Have time stand still."""
-    _call("/gazebo/pause_physics", Empty)
+    call("/gazebo/pause_physics", Empty)
 
 
 def unpause() -> None:
     """Have time go on."""
-    _call("/gazebo/unpause_physics", Empty)
+    call("/gazebo/unpause_physics", Empty)
 
 
 def spawn_urdf(name: str, text: str, namespace: str, x: float, y: float) -> None:
     """Spawn a model at a place (m)."""
     pose = Pose()
     pose.position.x, pose.position.y, pose.orientation.w = x, y, 1.0
-    _call("/gazebo/spawn_urdf_model", SpawnModel, name, text, namespace, pose, "world")
+    call("/gazebo/spawn_urdf_model", SpawnModel, name, text, namespace, pose, "world")
 
 
 def delete(name: str) -> None:
     """Take a model out."""
-    _call("/gazebo/delete_model", DeleteModel, name)
+    call("/gazebo/delete_model", DeleteModel, name)
 
 
 def subscribers(topic: str) -> list[str]:
@@ -62,12 +62,17 @@ def subscribers(topic: str) -> list[str]:
 
 
 def _world() -> object:
-    return _call("/gazebo/get_world_properties", GetWorldProperties)
+    return call("/gazebo/get_world_properties", GetWorldProperties)
 
 
-def _call(name: str, kind: type, *arguments: object) -> object:
-    """The answer; RunError if there is none, or if it is no."""
+def call(name: str, kind: type, *arguments: object, wait: float | None = None) -> object:
+    """A service's answer; RunError if there is none, or if it is no.
+
+    `wait`: s, wall, in which the service has to be there; None: it has to be there now.
+    """
     try:
+        if wait is not None:
+            rospy.wait_for_service(name, wait)
         answer = rospy.ServiceProxy(name, kind)(*arguments)
     except FAILURES as error:
         raise RunError(f"service {name}: {error}") from error

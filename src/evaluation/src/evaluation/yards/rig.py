@@ -7,6 +7,7 @@ import os
 import queue
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import actionlib
@@ -18,9 +19,8 @@ from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
 
-from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
-from evaluation.session.simulator import FAILURES, WAFFLE, Place, models, place_of, pose_message
+from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message
 from evaluation.yards.judge import Sample
 from evaluation.yards.sdf import PERSON_TOPIC
 
@@ -31,6 +31,7 @@ UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalS
 
 SLOW = "missed its desired rate"  # move_base's own words
 LOOK_PERIOD = 0.02  # s, wall
+call_service = partial(call, wait=ANSWER_LIMIT)
 
 
 class Rig:
@@ -63,16 +64,16 @@ class Rig:
         Its costmaps know only what it sees from there.
         """
         for name in sorted(self._there):
-            self._call("gazebo/delete_model", DeleteModel, name)
+            call_service("/gazebo/delete_model", DeleteModel, name)
             self._there.discard(name)
         state = ModelState(model_name=WAFFLE, pose=pose_message(start), reference_frame="world")
-        self._call("gazebo/set_model_state", SetModelState, state)
+        call_service("/gazebo/set_model_state", SetModelState, state)
         for name, (text, place) in models.items():
-            self._call("gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
+            call_service("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
                        "world")
             self._there.add(name)
         self.pause(FRESH)
-        self._call("move_base/clear_costmaps", Empty)
+        call_service("/move_base/clear_costmaps", Empty)
         self.pause(FRESH)
         self.samples()
         self.recoveries.clear()
@@ -145,12 +146,3 @@ class Rig:
 
     def _take_recovery(self, message: RecoveryStatus) -> None:
         self.recoveries.append(message.recovery_behavior_name)
-
-    def _call(self, name: str, kind: type, *arguments: object) -> None:
-        try:
-            rospy.wait_for_service(name, ANSWER_LIMIT)
-            answer = rospy.ServiceProxy(name, kind)(*arguments)
-        except FAILURES as error:
-            raise RunError(f"service /{name}: {error}") from error
-        if not getattr(answer, "success", True):
-            raise RunError(f"service /{name}: {answer.status_message}")
