@@ -4,7 +4,7 @@ import itertools
 import random
 
 import pytest
-from sim_viewer.dead_man import HOLD, STOP, Command, DeadMan, HandleTaken
+from sim_viewer.dead_man import HOLD, STOP, Command, DeadMan, DrivenByAnother
 
 AHEAD = Command(0.2, 0.0)
 LEFT = Command(0.0, 1.0)
@@ -52,7 +52,7 @@ def test_the_first_driver_must_let_go_before_it_drives_again(handle):
     handle.press("ann", AHEAD, 0.0)
     handle.press("bob", LEFT, 0.1)
     for tick in range(2, 8):
-        with pytest.raises(HandleTaken):
+        with pytest.raises(DrivenByAnother):
             handle.press("ann", AHEAD, tick * PERIOD)
     assert handle.release("ann") == []
     assert handle.press("ann", AHEAD, 0.8) == [AHEAD]
@@ -62,7 +62,7 @@ def test_who_still_presses_does_not_get_the_handle_when_the_other_lets_go(handle
     handle.press("ann", AHEAD, 0.0)
     handle.press("bob", LEFT, 0.1)
     handle.release("bob")
-    with pytest.raises(HandleTaken):
+    with pytest.raises(DrivenByAnother):
         handle.press("ann", AHEAD, 0.2)
     assert handle.press("ann", AHEAD, 0.2 + HOLD) == [AHEAD]
 
@@ -88,7 +88,7 @@ def test_whatever_comes_nothing_moves_for_longer_than_a_command(seed):
         try:
             pressed = chance.random() < 0.8
             new = handle.press(client, AHEAD, now) if pressed else handle.release(client)
-        except HandleTaken:
+        except DrivenByAnother:
             new = []
         sent += [(now, command) for command in new]
     due = handle.until

@@ -14,7 +14,7 @@ from sim_viewer.context import Node
 from sim_viewer.meshes import Meshes, mesh_bytes
 from sim_viewer.options import Options
 from sim_viewer.page_scene import page_scene
-from sim_viewer.scene import Stage
+from sim_viewer.scene import SceneBroadcast
 from sim_viewer.simulator_source import SimulatorSource
 
 from bullet_sim import pose as poses
@@ -143,17 +143,17 @@ def test_poses_are_read_from_the_messages_bytes():
 
 
 def test_what_only_trembles_is_not_sent():
-    stage, sent = Stage(types.SimpleNamespace(shared=lambda kind: None)), []
-    stage._watchers[lambda data, keep=False: sent.append(data)] = "poses"
+    broadcast, sent = SceneBroadcast(types.SimpleNamespace(shared=lambda kind: None)), []
+    broadcast._watchers[lambda data, keep=False: sent.append(data)] = "poses"
     rows = np.float32([[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]])
-    stage._take(("robot::base",), rows)
+    broadcast._take(("robot::base",), rows)
     assert sent == [{"names": ("robot::base",)}, rows.tobytes()]
     for _ in range(5):  # 1 micrometre to and fro
-        stage._take(("robot::base",), rows + np.float32(1e-6))
-        stage._take(("robot::base",), rows)
+        broadcast._take(("robot::base",), rows + np.float32(1e-6))
+        broadcast._take(("robot::base",), rows)
     assert len(sent) == 2
     for step in range(1, 21):  # slow, and all the same on its way
-        stage._take(("robot::base",), rows + np.float32(2e-6 * step))
+        broadcast._take(("robot::base",), rows + np.float32(2e-6 * step))
     assert len(sent) > 4
 
 

@@ -43,8 +43,8 @@ def test_all_topics_include_those_with_one_side():
 
 
 def test_quiet_hides_the_log_the_clock_and_this_page():
-    loud = draw(STATE, "active", quiet=False, own="/sim_viewer")
-    assert {"/rosout", "/clock", "/sim_viewer"} <= names(loud)
+    everything = draw(STATE, "active", quiet=False, own="/sim_viewer")
+    assert {"/rosout", "/clock", "/sim_viewer"} <= names(everything)
     quiet = draw(STATE, "all", quiet=True, own="/sim_viewer")
     assert not {"/rosout", "/clock", "/sim_viewer"} & names(quiet)
 

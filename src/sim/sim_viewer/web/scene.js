@@ -3,7 +3,7 @@
 import { element } from "./dom.js";
 import { t } from "./language.js";
 import { Links } from "./scene/links.js";
-import { Stage } from "./scene/stage.js";
+import { Viewport } from "./scene/viewport.js";
 
 export const title = "3D";
 
@@ -28,7 +28,7 @@ function roomy(ball, factor) {
 
 class Tab {
   constructor(parent, link) {
-    this._box = element("div", { class: "stage" });
+    this._box = element("div", { class: "viewport" });
     this._hint = element("p", { class: "hint", text: t(
       "Nothing to show yet: start a world, such as `roslaunch learning_topic 0course.launch`, " +
       "or a robot with robot_description and tf.",
@@ -45,7 +45,7 @@ class Tab {
       button("From above", "俯视", () => this._overview(true))), this._hint);
     this._links = new Links(() => this._look());
     try {
-      this._stage = new Stage(this._box, this._links.root);
+      this._viewport = new Viewport(this._box, this._links.root);
     } catch (error) {
       this._hint.textContent = t("This browser has no WebGL: ", "此浏览器没有 WebGL：") + error.message;
       return;
@@ -59,7 +59,7 @@ class Tab {
   close() {
     document.removeEventListener("visibilitychange", this._onHide);
     this._rest();
-    this._stage?.close();
+    this._viewport?.close();
   }
 
   _watch() {
@@ -78,7 +78,7 @@ class Tab {
   _show(scene) {
     this._hint.hidden = scene.links.length > 0;
     const ground = !scene.links.length || scene.links.some((link) => link.plane !== null);
-    this._stage.setBackground(scene.background, scene.sky, ground);
+    this._viewport.setBackground(scene.background, scene.sky, ground);
     this._links.show(scene);
     const names = [...this._links.models.keys()];
     const chosen = this._follow.value;
@@ -97,29 +97,29 @@ class Tab {
       return;
     }
     this._links.move(new Float32Array(data.buffer, data.byteOffset, data.byteLength / 4));
-    this._stage.draw();
+    this._viewport.draw();
     if (!this._placed && data.byteLength) {
       this._placed = true;
       this._look();
     }
     const place = this._follow.value && this._place();
-    if (place && this._followed) this._stage.shift(place.clone().sub(this._followed));
+    if (place && this._followed) this._viewport.shift(place.clone().sub(this._followed));
     this._followed = place || null;
   }
 
   /** Models or meshes are new; until the person turns the view, it shows the robot. */
   _look() {
-    if (!this._stage) return;
-    if (!this._stage.touched) this._lookAtRobot();
-    this._stage.draw();
+    if (!this._viewport) return;
+    if (!this._viewport.touched) this._lookAtRobot();
+    this._viewport.draw();
   }
 
   _startFollowing() {
     this._chosen = true;
     this._followed = this._place();
     const ball = this._follow.value && roomy(this._links.bounds(this._follow.value), CLOSE);
-    this._stage.touched = true;
-    if (ball) this._stage.lookAt(ball);
+    this._viewport.touched = true;
+    if (ball) this._viewport.lookAt(ball);
   }
 
   _place() {
@@ -128,14 +128,14 @@ class Tab {
 
   _lookAtRobot() {
     const ball = roomy(this._links.bounds(robotOf(this._links)), CLOSE);
-    if (ball) this._stage.lookAt(ball);
+    if (ball) this._viewport.lookAt(ball);
   }
 
   _overview(down) {
-    this._stage.touched = this._chosen = true;
+    this._viewport.touched = this._chosen = true;
     this._follow.value = "";
     const ball = this._links.bounds(null, LARGEST);
-    if (ball) this._stage.lookAt(ball, down);
+    if (ball) this._viewport.lookAt(ball, down);
   }
 }
 

@@ -23,7 +23,7 @@ class Command:
 STOP = Command(0.0, 0.0)
 
 
-class HandleTaken(Exception):
+class DrivenByAnother(Exception):
     """Another client drives now; this one must let go of its keys before it may drive again."""
 
 
@@ -49,12 +49,12 @@ class DeadMan:
     def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
         """A command of a client. Who comes last gets the handle, and its first command is a stop.
 
-        So two people never pull at one robot in turn: the earlier one gets HandleTaken until
+        So two people never pull at one robot in turn: the earlier one gets DrivenByAnother until
         nothing came from it for the length of a command, or it released.
         """
         if now - self._ousted.get(client, -math.inf) < self._hold:
             self._ousted[client] = now
-            raise HandleTaken
+            raise DrivenByAnother
         self._ousted.pop(client, None)
         due = self.expire(now)
         taken = self._driver not in (None, client)

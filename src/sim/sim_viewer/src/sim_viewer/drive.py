@@ -58,7 +58,7 @@ class Drive:
     def release(self, client: int) -> None:
         """The client released the controls, or disconnected."""
         if self._guard is not None:
-            self._tell({"do": "release", "client": client})
+            self._send_to_guard({"do": "release", "client": client})
 
     def close(self) -> None:
         """The node ends, and the guard with its input: nothing is left driving."""
@@ -107,7 +107,7 @@ class Drive:
         for topic, kind in topics.items():
             try:
                 await self.open(topic, kind)
-                self._tell({"do": "stop", "topic": topic})
+                self._send_to_guard({"do": "stop", "topic": topic})
             except Refused as error:
                 rospy.logwarn("%s: %s", topic, error)
 
@@ -116,7 +116,7 @@ class Drive:
         number, waiting = self._number, self._loop.create_future()
         self._answers[number] = waiting
         try:
-            self._tell({**order, "number": number})
+            self._send_to_guard({**order, "number": number})
             done, _ = await asyncio.wait([waiting], timeout=TIMEOUT)
         finally:
             del self._answers[number]
@@ -124,7 +124,7 @@ class Drive:
             raise Refused("the process that drives does not answer; press again")
         return waiting.result()
 
-    def _tell(self, order: dict[str, Any]) -> None:
+    def _send_to_guard(self, order: dict[str, Any]) -> None:
         line = json.dumps(order).encode() + b"\n"  # so short that a pipe takes all of it or nothing
         try:
             if self._guard.stdin.write(line) is None:
@@ -150,7 +150,10 @@ async def drive_topics(context: Context) -> list[dict[str, str]]:
 
 @operation("drive_open", control=True)
 async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]:
-    """Get ready to drive, so that the first key is not lost while connections are made."""
+    """Get ready to drive, so that the first key is not lost while connections are made.
+
+    Refused where no robot listens.
+    """
     name = _legal(topic)
     found = await context.run_in_thread(driven_topics)
     if name not in found:
@@ -162,7 +165,7 @@ async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]
 @operation("drive", control=True)
 async def drive(context: Context, linear: float, angular: float, topic: str = "cmd_vel") -> None:
     """A key is held. The first message on a topic only opens it: what waits may be overtaken by a
-    release, and must not drive after that."""
+    release, and must not drive after that. Refused: too fast, no such topic, another drives."""
     if max(abs(linear), abs(angular)) > FASTEST:
         raise Refused(f"drive: {linear:g} m/s and {angular:g} rad/s are more than {FASTEST:g}")
     driven, name = context.node.shared(Drive), _legal(topic)

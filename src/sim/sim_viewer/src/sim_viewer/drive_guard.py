@@ -27,7 +27,7 @@ import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import Twist
 
-from sim_viewer.dead_man import STOP, Command, HandleTaken
+from sim_viewer.dead_man import STOP, Command, DrivenByAnother
 from sim_viewer.handles import Handles
 
 FLUSH = 0.1  # s in which rospy's threads send what was published last
@@ -94,7 +94,7 @@ class Guard:
         try:
             self._handles.press(order["client"], order["topic"],
                                 Command(order["linear"], order["angular"]))
-        except HandleTaken:
+        except DrivenByAnother:
             taken = True
         self._answer({"number": order["number"], "taken": taken})
 

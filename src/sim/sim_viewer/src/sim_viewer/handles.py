@@ -23,7 +23,7 @@ class Handles:
         self._timer.start()
 
     def press(self, client: Hashable, topic: str, command: Command) -> None:
-        """Pass a command on; HandleTaken if another client drives this topic.
+        """Pass a command on; DrivenByAnother if another client drives this topic.
 
         A client drives one topic: what it drove before is stopped.
         """

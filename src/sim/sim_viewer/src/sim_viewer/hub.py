@@ -33,7 +33,10 @@ class Hub:
         self._sockets: set[web.WebSocketResponse] = set()
 
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
-        """The handler of /ws: returns when the connection has ended."""
+        """The handler of /ws: returns when the connection has ended.
+
+        HTTPServiceUnavailable where too many pages are open.
+        """
         if len(self._sockets) >= MOST_BROWSERS:
             raise web.HTTPServiceUnavailable(text=f"{MOST_BROWSERS} pages are open already\n")
         socket = web.WebSocketResponse(max_msg_size=LARGEST_MESSAGE, heartbeat=PING_PERIOD,
@@ -80,7 +83,7 @@ class Client:
             async for message in self._socket:
                 if message.type is WSMsgType.TEXT:
                     self._take(message.data)
-                    await self._outbox.room()
+                    await self._outbox.wait_for_space()
         finally:
             sender.cancel()
 

@@ -74,14 +74,14 @@ class Stream:
         try:
             self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)
         except Refused as error:
-            self._tell({"error": str(error)})
+            self._send_to_all({"error": str(error)})
         except Exception as error:  # of a message that somebody else made
             rospy.logwarn_throttle(10, f"{self._subscriber.resolved_name}: {error}")
-            self._tell({"error": f"{type(error).__name__}: {error}"})
+            self._send_to_all({"error": f"{type(error).__name__}: {error}"})
         else:
-            self._tell(self._last)
+            self._send_to_all(self._last)
 
-    def _tell(self, data: Any) -> None:
+    def _send_to_all(self, data: Any) -> None:
         for send in self._watchers:
             send(data)
 
@@ -113,7 +113,7 @@ class ImageWatch:
 
     def __init__(self, context: Context, args: dict[str, Any], send: Callable[..., None]):
         self._context, self._send = context, send
-        self._wished = argument(args, "topic", str)
+        self._requested = argument(args, "topic", str)
         width = argument(args, "width", int, WIDTH_PX)
         self._width = max(WIDTHS_PX.start, min(width, WIDTHS_PX.stop - 1))
         self._streams: Streams = context.node.shared(Streams)
@@ -122,7 +122,7 @@ class ImageWatch:
     async def start(self) -> None:
         """The compressed topic serves where there is one."""
         master = self._context.node.shared(MasterView)
-        topic, kind = await self._context.run_in_thread(_find, master, self._wished)
+        topic, kind = await self._context.run_in_thread(_find, master, self._requested)
         self._topic = topic
         self._streams.add(topic, kind, self._width, self._send)
 

@@ -57,7 +57,7 @@ class Meshes:
         return {path: number for number, path in self._textures.items() if Path(path).is_file()}
 
     async def serve_mesh(self, request: web.Request) -> web.Response:
-        """The handler of /mesh/N."""
+        """The handler of /mesh/N; HTTPNotFound for what the scene has no more."""
         part = self._parts.get(int(request.match_info["number"]))
         if part is None:
             raise web.HTTPNotFound(text="no such mesh in the present scene\n")
@@ -65,7 +65,7 @@ class Meshes:
                             content_type="application/octet-stream")
 
     async def serve_texture(self, request: web.Request) -> web.StreamResponse:
-        """The handler of /texture/N."""
+        """The handler of /texture/N; HTTPNotFound likewise."""
         path = self._textures.get(int(request.match_info["number"]))
         if path is None:
             raise web.HTTPNotFound(text="no such texture in the present scene\n")

@@ -39,7 +39,10 @@ class Options:
 
 
 def read_options() -> Options:
-    """From the node's private parameters; where a token is needed and none is set, one is made."""
+    """From the node's private parameters; where a token is needed and none is set, one is made.
+
+    OptionError: a value of another type, or a port that is none.
+    """
     options = Options(
         port=_read("port", int, Options.port),
         address=_read("address", str, Options.address),

@@ -21,8 +21,8 @@ class Outbox:
         self._answers: deque[str] = deque()
         self._watched: dict[int, deque[tuple[bool, str | bytes]]] = {}
         self._something = asyncio.Event()
-        self._room = asyncio.Event()
-        self._room.set()
+        self._has_space = asyncio.Event()
+        self._has_space.set()
         self._ended = False
 
     def answer(self, message: dict[str, Any]) -> None:
@@ -30,16 +30,16 @@ class Outbox:
         self._answers.append(encode(message))
         self._something.set()
         if len(self._answers) >= MOST_ANSWERS and not self._ended:
-            self._room.clear()
+            self._has_space.clear()
 
-    async def room(self) -> None:
+    async def wait_for_space(self) -> None:
         """Waits until the browser has read enough of its answers, or has disconnected."""
-        await self._room.wait()
+        await self._has_space.wait()
 
     def end(self) -> None:
         """Nothing will be sent any more."""
         self._ended = True
-        self._room.set()
+        self._has_space.set()
 
     def open(self, watch: int) -> None:
         """From now on there is mail of this watch."""
@@ -74,7 +74,7 @@ class Outbox:
         """Waits for something to send; watches take turns."""
         while True:
             if self._answers:
-                self._room.set()
+                self._has_space.set()
                 return self._answers.popleft()
             for watch, mail in self._watched.items():
                 if mail:

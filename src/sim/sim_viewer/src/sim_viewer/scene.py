@@ -45,7 +45,7 @@ class Source(Protocol):
         ...
 
 
-class Stage:
+class SceneBroadcast:
     """The scene for all browsers: the simulator's while there is one, else the robot's."""
 
     def __init__(self, node: Node):
@@ -145,19 +145,19 @@ class Stage:
 
 
 class _Watch:
-    """Of the stage that all browsers share."""
+    """Of the broadcast that all browsers share."""
 
     what = ""
 
     def __init__(self, context: Context, args: dict[str, Any], send: Send):
-        self._stage: Stage = context.node.shared(Stage)
+        self._broadcast: SceneBroadcast = context.node.shared(SceneBroadcast)
         self._send = send
 
     async def start(self) -> None:
-        self._stage.add(self._send, self.what)
+        self._broadcast.add(self._send, self.what)
 
     async def stop(self) -> None:
-        self._stage.remove(self._send)
+        self._broadcast.remove(self._send)
 
 
 @watchable("scene")

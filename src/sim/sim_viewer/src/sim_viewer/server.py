@@ -41,7 +41,7 @@ class Server:
         self._runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
 
     async def start(self) -> int:
-        """Bind and serve; returns the port, the next free one if the wished one is taken."""
+        """Bind and serve; returns the port, the next free one if that one is taken, or NoPort."""
         await self._runner.setup()
         options = self._options
         last = min(options.port + PORTS_TRIED, 65536)

@@ -67,7 +67,8 @@ def listing(folder: Path) -> list[dict[str, Any]]:
 
 
 def contents(path: Path) -> dict[str, Any]:
-    """`{duration: s, start, messages, topics: [{name, type, count}]}`, as `rosbag info`."""
+    """`{duration: s, start, messages, topics: [{name, type, count}]}`, as `rosbag info`; Refused
+    for a bag that is damaged or was not closed."""
     try:
         with rosbag.Bag(str(path)) as bag:
             topics = bag.get_type_and_topic_info().topics

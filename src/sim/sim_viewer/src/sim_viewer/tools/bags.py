@@ -27,6 +27,7 @@ class Child:
     """`record` or `play` of package rosbag; interrupted when this process dies, which closes a bag.
 
     Not by the command `rosbag`: it takes a second to start, and loses the bag if stopped before.
+    Refused where rosbag is not installed.
     """
 
     def __init__(self, program: str, arguments: list[str], path: Path):
@@ -83,7 +84,10 @@ class Bags:
         self.note = ""  # why something ended by itself
 
     def record(self, name: str, topics: list[str]) -> str:
-        """Begin; no topics: all. Call it from a thread that lives as long as the process."""
+        """Begin; no topics: all. Call it from a thread that lives as long as the process.
+
+        Refused: one is being recorded, the name, the topics, a full disk.
+        """
         for topic in topics:
             check_topic(topic)
         with self._lock:
@@ -98,7 +102,10 @@ class Bags:
         return path.name
 
     def play(self, name: str, rate: float, loop: bool, clock: bool) -> str:
-        """Begin; the same thread rule as for `record`."""
+        """Begin; the same thread rule as for `record`.
+
+        Refused: one is being played, the rate, no bag.
+        """
         if not RATES[0] <= rate <= RATES[1]:
             raise Refused(f"rate is {rate:g}; give {RATES[0]:g} to {RATES[1]:g}")
         with self._lock:

@@ -25,7 +25,8 @@ Step = str | int
 
 
 def split_topic(path: str, topics: Iterable[str]) -> tuple[str, str]:
-    """The longest of `topics` that `path` begins with, and what follows it without its slash."""
+    """The longest of `topics` that `path` begins with, and what follows it without its slash;
+    Refused where there is none."""
     fitting = [t for t in topics if path == t or path.startswith((t + "/", t + "["))]
     if not fitting:
         raise Refused(f"{path}: no such topic. The Topics tab lists what there is")
@@ -34,7 +35,7 @@ def split_topic(path: str, topics: Iterable[str]) -> tuple[str, str]:
 
 
 def parse_steps(path: str) -> list[Step]:
-    """`pose/position/x` and `ranges[10]` as the names and indices that lead there."""
+    """`pose/position/x` and `ranges[10]` as the names and indices that lead there; else Refused."""
     steps: list[Step] = []
     for part in [part for part in path.split("/") if part]:
         if part.isascii() and part.isdigit() and len(part) < 10:
@@ -67,7 +68,8 @@ def expand(path: str, message_class: type) -> list[str]:
 
 
 def field_type(message_class: type, steps: list[Step]) -> str:
-    """ROS's name for the type at the end of `steps`, such as `float64` or `float32[]`."""
+    """ROS's name for the type at the end of `steps`, such as `float64` or `float32[]`;
+    Refused where a step leads nowhere."""
     kind = message_class._type
     for step in steps:
         if isinstance(step, int):

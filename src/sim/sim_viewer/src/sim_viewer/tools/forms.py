@@ -22,6 +22,7 @@ class PlainLoader(yaml.SafeLoader):
     """YAML without anchors and aliases, by which a short text can expand to a huge one."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
+        """As SafeLoader's; YAMLError for anchors and aliases."""
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
             raise yaml.YAMLError("anchors (&) and aliases (*) are not allowed here")

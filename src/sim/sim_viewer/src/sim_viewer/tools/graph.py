@@ -84,14 +84,15 @@ def _flows(state: SystemState) -> list[Flow]:
 
 
 def _without_quiet(state: SystemState, own: str) -> SystemState:
-    def loud(part: dict[str, list[str]]) -> dict[str, list[str]]:
+    def filtered(part: dict[str, list[str]]) -> dict[str, list[str]]:
         kept = {name: [node for node in nodes
                        if node not in (own, own + GUARD) and not node.startswith(QUIET_NODES)]
                 for name, nodes in part.items()
                 if name not in QUIET_TOPICS and not name.endswith(QUIET_ENDINGS)}
         return {name: nodes for name, nodes in kept.items() if nodes}
 
-    return SystemState(loud(state.publishers), loud(state.subscribers), loud(state.services))
+    return SystemState(
+        filtered(state.publishers), filtered(state.subscribers), filtered(state.services))
 
 
 def _nodes(state: SystemState) -> list[str]:

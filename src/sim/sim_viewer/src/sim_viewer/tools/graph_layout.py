@@ -1,4 +1,4 @@
-"""Places for a directed graph's nodes and curves for its edges, by Graphviz' dot."""
+"""Places for a directed graph's nodes and curves for its edges, by Graphviz."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ edge [dir=none];"""
 SEARCH = "nslimit=2; nslimit1=2; mclimit=0.5;"
 MOST_CURVED = 300  # edges; with more, curves around the nodes take most of dot's time
 FAST_SEARCH = "nslimit=0.3; nslimit1=0.3; mclimit=0.1; splines=line;"
-LONGEST = 5.0  # s; beyond it dot is ended
+BY_SPRINGS = "layout=sfdp; overlap=prism; splines=line;"  # not layered: 1 s for 1500 edges
+LONGEST = 5.0  # s for each way of laying out
 
 
 class LayoutError(Exception):
@@ -37,16 +38,23 @@ class Layout:
 def layout(names: dict[str, str], edges: Iterable[Edge]) -> Layout:
     """Layered from left to right; `names` are what is written on each node.
 
-    With more than MOST_CURVED edges all are straight, and may cross nodes. The same graph gives
-    the same layout. LayoutError where there is none.
+    With more than MOST_CURVED edges all are straight, and may cross nodes; a graph that cannot be
+    layered within LONGEST is laid out by springs. The same graph gives the same layout.
+    LayoutError where there is none.
     """
     nodes = sorted(names)
     number = {node: str(index) for index, node in enumerate(nodes)}
     lines = [f"{number[node]} [label={_quoted(names[node])}];" for node in nodes]
     pairs = sorted(set(edges))
     lines += [f"{number[source]} -> {number[target]};" for source, target in pairs]
+    graph = STYLE + "\n" + "\n".join(lines)
     search = SEARCH if len(pairs) <= MOST_CURVED else FAST_SEARCH
-    return _parsed(_dot(f"digraph {{ {search} {STYLE}\n" + "\n".join(lines) + "\n}"), nodes)
+    for way in (search, BY_SPRINGS):
+        try:
+            return _parsed(_dot(f"digraph {{ {way} {graph} }}"), nodes)
+        except subprocess.TimeoutExpired:
+            continue
+    raise LayoutError("the graph takes too long to lay out; filter by part of a name")
 
 
 def _quoted(text: str) -> str:
@@ -59,9 +67,6 @@ def _dot(source: str) -> str:
                               timeout=LONGEST, check=True)
     except FileNotFoundError:
         raise LayoutError("there is no command dot; type: sudo apt-get install graphviz") from None
-    except subprocess.TimeoutExpired:
-        raise LayoutError(f"the graph takes longer than {LONGEST:g} s to lay out; "
-                          "filter by part of a name") from None
     except subprocess.CalledProcessError as error:
         raise LayoutError(f"dot failed: {error.stderr.strip()[:200]}") from None
     return done.stdout

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import asyncio
 import threading
 from typing import Any
@@ -12,7 +13,7 @@ from sim_viewer.registry import Refused
 from sim_viewer.tools.master import MasterView
 
 
-class Paced:
+class Paced(abc.ABC):
     """Subclasses give `open`, `collect` and `close`; all three run in worker threads, may block and
     may raise Refused. What `collect` cannot do is sent as `{"error": line}`."""
 
@@ -29,14 +30,14 @@ class Paced:
         self._ended = False
         self._last_error = ""
 
-    def open(self) -> None:
+    def open(self) -> None:  # noqa: B027 (not every tool subscribes)
         """Subscribe to what `collect` needs."""
 
+    @abc.abstractmethod
     def collect(self) -> Any:
         """What is new, or None."""
-        raise NotImplementedError
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 (likewise)
         """Unsubscribe; called even where `open` failed half way."""
 
     async def start(self) -> None:

@@ -36,7 +36,7 @@ async def pause(context: Any, paused: bool = True) -> None:
 
 @operation("reset", control=True)
 async def reset(context: Any, what: str = "world") -> None:
-    """`world`: models back to where they began; `simulation`: time to 0 as well."""
+    """`world`: models back to where they began; `simulation`: time to 0 as well; Refused else."""
     if what not in RESETS:
         raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
     await context.run_in_thread(call_empty, await _find_simulator(context) + RESETS[what])
@@ -48,6 +48,7 @@ async def step(context: Any, steps: int = 1) -> dict[str, float]:
 
     The ROS interface of Gazebo itself cannot step, so there this lets go and stops at the first
     /clock that is late enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
+    Refused: a number of steps out of bounds, no simulator.
     """
     if not 0 < steps <= MOST_STEPS:
         raise Refused(f"steps is {steps}; give 1 to {MOST_STEPS}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import time
 from collections import deque
 from itertools import pairwise
@@ -50,9 +51,9 @@ class OneTopic(Paced):
         self.kind: type | None = None
         self.subscriber: rospy.Subscriber | None = None
 
+    @abc.abstractmethod
     def take(self, message: Any) -> None:
         """Called by rospy's threads for each message, raw: few of them need to be read."""
-        raise NotImplementedError
 
     def open(self) -> None:
         self.kind = self.master.message_class(self.topic)

@@ -46,7 +46,7 @@ function drawnByProcessor() {
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-export class Stage {
+export class Viewport {
   constructor(parent, root) {
     const slow = drawnByProcessor();
     this._renderer = new THREE.WebGLRenderer({ antialias: !slow });

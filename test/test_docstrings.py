@@ -4,24 +4,27 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-import bullet_sim_ros.errors
+import pytest
 
-PACKAGE = Path(bullet_sim_ros.errors.__file__).parent
+SIM = Path(__file__).resolve().parent.parent / "src/sim"
+PACKAGES = ("bullet_sim_ros", "sim_viewer")  # bullet_sim has a stricter test of its own
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def leaving(function: ast.FunctionDef) -> Iterator[ast.AST]:
+def leaving(function: Function) -> Iterator[ast.AST]:
     """Nodes of a function but those in a `try`, and those of functions made inside of it."""
     waiting = list(function.body)
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.Try):
             waiting += [*node.handlers, *node.orelse, *node.finalbody]
-        elif not isinstance(node, (ast.FunctionDef, ast.Lambda)):
+        elif not isinstance(node, (*FUNCTIONS, ast.Lambda)):
             yield node
             waiting += ast.iter_child_nodes(node)
 
 
-def raised(function: ast.FunctionDef, private: dict[str, ast.FunctionDef]) -> set[str]:
+def raised(function: Function, private: dict[str, Function]) -> set[str]:
     """Class names of the errors."""
     found, seen, waiting = set(), set(), [function]
     while waiting:
@@ -40,11 +43,11 @@ def raised(function: ast.FunctionDef, private: dict[str, ast.FunctionDef]) -> se
 def silent(tree: ast.Module) -> list[str]:
     """What should name its errors, and does not."""
     private = {node.name: node for node in ast.walk(tree)
-               if isinstance(node, ast.FunctionDef) and node.name.startswith("_")}
+               if isinstance(node, FUNCTIONS) and node.name.startswith("_")}
     lines = []
     for owner in [tree, *(node for node in tree.body if isinstance(node, ast.ClassDef))]:
         for node in owner.body:
-            if not isinstance(node, ast.FunctionDef):
+            if not isinstance(node, FUNCTIONS):
                 continue
             # What is registered, as by @plugin(...), may raise PluginError when made: said there.
             made = node.name == "__init__" and not owner.decorator_list
@@ -56,8 +59,10 @@ def silent(tree: ast.Module) -> list[str]:
     return lines
 
 
-def test_public_functions_name_the_errors_that_they_raise():
-    found = [f"{path.relative_to(PACKAGE)}:{line}" for path in sorted(PACKAGE.rglob("*.py"))
+@pytest.mark.parametrize("package", PACKAGES)
+def test_public_functions_name_the_errors_that_they_raise(package: str):
+    folder = SIM / package / "src" / package
+    found = [f"{path.relative_to(folder)}:{line}" for path in sorted(folder.rglob("*.py"))
              for line in silent(ast.parse(path.read_text(encoding="utf-8")))]
     assert not found, "\n".join(found)
 
