@@ -139,6 +139,11 @@ def test_a_trial_on_one_line(took, said):
     assert said in trial_line(replace(GOOD.trials[0], took=took))
 
 
+def test_the_drives_on_one_line():
+    assert trial_line(GOOD.tracking) == "tracking: 3.0 cm, 1.0° off in the mean"
+    assert trial_line(GOOD.load) == "load: 6 % of a core"
+
+
 # --- steering
 
 

@@ -162,8 +162,12 @@ def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     return float(times[first]) if first < len(times) else None
 
 
-def trial_line(trial: Trial) -> str:
+def trial_line(trial: Trial | Tracking | Load) -> str:
     """One on one line."""
+    if isinstance(trial, Tracking):
+        return f"tracking: {trial.off * 100:.1f} cm, {trial.off_deg:.1f}° off in the mean"
+    if isinstance(trial, Load):
+        return f"load: {trial.percent:.0f} % of a core"
     found = "not found" if trial.took is None else f"found after {trial.took:.1f} s"
     late = "" if trial.right or trial.took is None else ", too late"
     end = (", no pose at the end" if trial.off is None else

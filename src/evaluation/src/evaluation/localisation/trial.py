@@ -102,7 +102,7 @@ class LocalisationTrial(protocol.Trial):
         return Results.of_all(results).passed
 
     def line(self, result: Result) -> str:
-        return trial_line(result) if isinstance(result, Trial) else f"{result.name}: {result}"
+        return trial_line(result)
 
     def table(self, results: Sequence[Result]) -> str:
         return summary_table(Results.of_all(results))

@@ -3,10 +3,13 @@
 import os
 import struct
 import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 
-from evaluation.rviz_screen import HEIGHT_PX, WIDTH_PX, Screen, _read_xwd
+sys.path.insert(0, str(Path(__file__).parent.parent / "tools" / "lesson_pictures"))
+from rviz_screen import HEIGHT_PX, WIDTH_PX, Screen, _read_xwd
 
 
 def test_a_picture_of_two_rows():

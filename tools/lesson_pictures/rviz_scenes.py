@@ -16,9 +16,9 @@ import rospkg
 import rospy
 from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import Twist
+from rviz_screen import Screen, save
 from std_srvs.srv import Empty
 
-from evaluation.rviz_screen import Screen, save
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
 from evaluation.session.processes import Child

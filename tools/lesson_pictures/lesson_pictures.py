@@ -14,10 +14,10 @@ from pathlib import Path
 
 import rospkg
 import rospy
+from rviz_scenes import SCENES, Stage
+from rviz_screen import Screen
+from windows import LESSONS, Photographer
 
-from evaluation.lesson_pictures import LESSONS, Photographer
-from evaluation.navigation_pictures import SCENES, Stage
-from evaluation.rviz_screen import Screen
 from evaluation.session.failure import RunError
 from evaluation.session.interruption import interruptible
 from evaluation.session.launch import Launched
