@@ -28,8 +28,8 @@ class Trial(ABC):
     """Cases that are set up, run and scored one by one; the runner does everything else.
 
     A result is an object with the `name` of its case. `setup`, `run` and `score` follow one
-    another in one process. Another process may do another case: it makes a trial of its own from the
-    same arguments (`parse`) and is handed the case.
+    another in one process. Another process may do another case: it makes a trial of its own from
+    the same arguments (`parse`) and is handed the case.
     """
 
     program: ClassVar[str]
