@@ -5,10 +5,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
 from evaluation.lane.scenery import load_crossings, load_scenery
 from evaluation.lane.world import write_world
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
 from evaluation.track import TrackError, load_track_file
 
 

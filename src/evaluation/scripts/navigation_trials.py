@@ -6,7 +6,8 @@ import sys
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
 
-from evaluation.yards.main import main  # noqa: E402
+from evaluation.trial.runner import run_trial  # noqa: E402
+from evaluation.yards.trial import YardTrial  # noqa: E402
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run_trial(YardTrial(), sys.argv[1:]))

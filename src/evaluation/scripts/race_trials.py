@@ -6,7 +6,8 @@ import sys
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
 
-from evaluation.race_trials.main import main  # noqa: E402
+from evaluation.race_trials.trial import RaceTrial  # noqa: E402
+from evaluation.trial.runner import run_trial  # noqa: E402
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run_trial(RaceTrial(), sys.argv[1:]))

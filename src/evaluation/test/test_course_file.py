@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from evaluation.course_run.course_file import load_course
-from evaluation.course_run.failure import RunError
-from evaluation.program import NOT_RUN, run_program
+from evaluation.session.course_file import load_course
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_RUN, run_program
 
 COURSES = Path(__file__).parent.parent / "courses"
 

@@ -8,9 +8,10 @@ import pytest
 import rospy
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.course_file import load_course
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, Film, fit
+from evaluation.course_run.video import Film
 from evaluation.lap import LapScorer, Sample
+from evaluation.session.course_file import load_course
+from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, fit
 from evaluation.track import build_track, load_track_file
 
 TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"

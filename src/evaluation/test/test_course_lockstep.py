@@ -5,11 +5,10 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import CameraInfo
 
-from evaluation.course_run.connections import Connections
-from evaluation.course_run.course_file import load_course
-from evaluation.course_run.frames import FrameCount
-from evaluation.course_run.observer import missing_connection
-from evaluation.course_run.report import frame_figures
+from evaluation.session.connections import Connections
+from evaluation.session.course_file import load_course
+from evaluation.session.frames import FrameCount, frame_figures
+from evaluation.session.observer import missing_connection
 
 COURSE = load_course("course")
 ME, SIMULATOR, FOLLOWER = "/course_run", "/gazebo", "/follower"

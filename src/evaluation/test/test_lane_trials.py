@@ -1,25 +1,27 @@
 """The judge of encounters on made-up drives; recordings, options, and reports of lane trials."""
 
+import json
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from evaluation.course_run.failure import RunError
-from evaluation.lane.drive import Drive, command, draw
-from evaluation.lane.encounters import distance, judge, nearest_ever
-from evaluation.lane.options import known_methods, parse_bench, parse_trials
+from evaluation.lane.comparison import LaneComparison
+from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
 from evaluation.lane.recording import CAR, Moment, Recording, line_of, read_recording
 from evaluation.lane.results import (
     encounter_table,
+    from_json,
     from_report,
     lap_table,
-    read_drives,
-    write_report,
+    to_json,
 )
 from evaluation.lane.scenery import load_crossings
-from evaluation.lane.trials import main
+from evaluation.lane.trial import LaneTrial, course_arguments, draw, known_methods, lane_case
+from evaluation.session.failure import RunError
+from evaluation.trial.report import write_json
+from evaluation.trial.runner import run_trial
 
 CROSSINGS = load_crossings()
 FIRST = CROSSINGS.zebras[0]  # heading east, so metres along it are metres of x
@@ -113,10 +115,11 @@ def test_seeds_differ_within_the_bounds():
 
 
 def test_the_command_line_of_a_drive_with_people_records_them(tmp_path):
-    words = command(Drive("skeleton", 3, 4, people=True), draw(3), tmp_path / "w", tmp_path)
+    people = lane_case("skeleton", 3, people=True)
+    words = course_arguments(people, draw(3), tmp_path / "w", tmp_path)
     assert f"record:={tmp_path / 'poses.txt'}" in words and "near:=3" in words
     assert words[words.index("--follower") + 1] == "skeleton.py"
-    alone = command(Drive("skeleton", 3, 1, people=False), draw(3), tmp_path / "w", tmp_path)
+    alone = course_arguments(lane_case("skeleton", 3), draw(3), tmp_path / "w", tmp_path)
     assert "lane_empty" in alone and "--launch" not in alone
 
 
@@ -142,14 +145,15 @@ def test_a_report_is_gone_on_with(tmp_path):
     met = tuple(judge(drive(stops(0.4, 2.5), walks), CROSSINGS, 0.3))
     plain = from_report(REPORT, "skeleton", 1, draw(1), people=True)
     one = type(plain)(**{**vars(plain), "nearest_person": 0.6, "encounters": met})
-    write_report([one], tmp_path / "report.json")
-    assert read_drives(tmp_path / "report.json") == [one]
+    write_json(to_json([one]), tmp_path / "report.json")
+    assert from_json(json.loads((tmp_path / "report.json").read_text())) == [one]
     assert "1 of 1" in encounter_table([one])
     passing = tuple(replace(each, stopped_before=None, moved_after=None) for each in met)
     assert "stood nowhere" in encounter_table([replace(one, encounters=passing)])
     (tmp_path / "report.json").write_text("{}")
-    with pytest.raises(RunError, match="no report of lane trials"):
-        read_drives(tmp_path / "report.json")
+    trial = LaneTrial()
+    with pytest.raises(RunError, match="no report of lane_trials"):
+        trial.earlier(trial.parse(["--out", str(tmp_path)]))
 
 
 @pytest.mark.parametrize("nearest, clear", [(0.6, True), (0.003, False), (None, False)])
@@ -159,10 +163,10 @@ def test_who_was_touched_outside_of_encounters_counts_too(nearest, clear):
 
 
 def test_going_on_with_another_method_is_refused(tmp_path, capsys):
-    write_report([from_report(REPORT, "skeleton", 0, draw(0), people=False)],
-                 tmp_path / "report.json")
+    write_json(to_json([from_report(REPORT, "skeleton", 0, draw(0), people=False)]),
+               tmp_path / "report.json")
     arguments = ["--seeds", "1", "--crossings", "0", "--resume", "--out", str(tmp_path)]
-    assert main(arguments) == 2
+    assert run_trial(LaneTrial(), arguments) == 2
     assert "report.json: is of METHOD=skeleton" in capsys.readouterr().err
 
 
@@ -174,9 +178,36 @@ def test_going_on_with_another_method_is_refused(tmp_path, capsys):
 ])
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said):
     with pytest.raises(RunError, match=said):
-        parse_trials(arguments)
+        LaneTrial().parse(arguments)
 
 
 def test_the_bench_takes_all_methods_and_the_pages_own_first():
     assert known_methods()[0] == "sliding_windows" and len(known_methods()) == 7
-    assert parse_bench(["--seeds", "2"]).methods == tuple(known_methods())
+    trial = LaneComparison()
+    assert [each.method for each in trial.cases(trial.parse(["--seeds", "1"]))] == known_methods()
+
+
+def with_people(seed, encounters):
+    """A good drive in which so many people were met."""
+    good = Encounter("pedestrian_1", 1, 1.0, 2.0, 0.5, None, None, must_move=False)
+    return replace(from_report(REPORT, "sliding_windows", seed, draw(seed), people=True),
+                   nearest_person=0.5, encounters=(good,) * encounters)
+
+
+@pytest.mark.parametrize(("met", "code", "driven"), [
+    ((1, 1), 0, 2), ((2, 9), 0, 1), ((0, 1), 2, 2)])
+def test_it_drives_until_enough_people_were_met(tmp_path, capsys, met, code, driven):
+    class Driven(LaneTrial):
+        def setup(self, _session, case):
+            self._case = case
+
+        def run(self):
+            return met[self._case.seed - 500]
+
+        def score(self, record):
+            return with_people(self._case.seed, record)
+
+    arguments = ["--seeds", "0", "--crossings", "2", "--out", str(tmp_path)]
+    assert run_trial(Driven(), arguments) == code
+    assert ("fewer than 2 people" in capsys.readouterr().err) is (code == 2)
+    assert len(json.loads((tmp_path / "report.json").read_text())["drives"]) == driven

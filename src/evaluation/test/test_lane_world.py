@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import yaml
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
 from evaluation.lane.ground import LINE, PX_PER_M, ROAD, WHITE, draw_ground, plane_of
 from evaluation.lane.scenery import load_crossings, load_scenery
 from evaluation.lane.world import person_begin, write_world
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
 from evaluation.track import build_track, load_track_file
 
 EVALUATION = Path(__file__).parent.parent

@@ -6,25 +6,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evaluation.course_run.failure import RunError
-from evaluation.localisation import main
-from evaluation.localisation.options import parse_options
+from evaluation.house.records import Records
 from evaluation.localisation.results import (
     FINDING,
     KIDNAPS,
     Load,
     Results,
+    Search,
     Tracking,
     Trial,
     right_since,
-    table,
+    score,
+    summary_table,
     trial_line,
-    write_report,
 )
+from evaluation.localisation.trial import LocalisationTrial
 from evaluation.localisation.trials import errors_since
 from evaluation.localisation.wander import SPEED, Steering
-from evaluation.navigation.records import Records
-from evaluation.program import NOT_RUN
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_RUN
+from evaluation.trial.runner import run_trial
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
 GOOD = Results(
@@ -45,10 +46,11 @@ def without(count, kind, took=None):
 
 
 def test_what_is_tried_by_default_and_when_asked_for():
-    found = parse_options([])
-    assert (found.tracking, found.load) == (300, 60)
-    assert (found.starts, found.kidnaps) == (range(1, 21), range(1, 11))
-    assert parse_options(["--kidnaps", "0", "--real-time-factor", "2.5"]).real_time_factor == 2.5
+    trial = LocalisationTrial()
+    cases = trial.cases(trial.parse([]))
+    assert [(each.name, each.amount) for each in cases[-2:]] == [("tracking", 300), ("load", 60)]
+    assert [each.amount for each in cases[:-2]] == [*range(1, 21), *range(1, 11)]
+    assert trial.parse(["--kidnaps", "0", "--real-time-factor", "2.5"]).real_time_factor == 2.5
 
 
 @pytest.mark.parametrize(("arguments", "said"), [
@@ -59,7 +61,7 @@ def test_what_is_tried_by_default_and_when_asked_for():
     (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
 ])  # fmt: skip
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == NOT_RUN
+    assert run_trial(LocalisationTrial(), arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -104,24 +106,42 @@ def test_errors_are_of_the_same_moments_and_not_where_the_truth_was_not_seen():
     assert len(errors_since(records, 5.0)[0]) == len(errors_since(Records(), 0.0)[0]) == 0
 
 
+def search(off, until=21.0):
+    """A robot that is off by so much (m) until 1 s and right from then until this time, s."""
+    times = np.arange(0.0, until, 0.5)
+    errors = np.column_stack((np.where(times < 1.0, off, 0.01), np.zeros(len(times))))
+    return score(Search(FINDING, 1, (0.0, 0.0, 0.0), 0.0, times, errors, 0))
+
+
+def test_found_is_who_was_right_for_long_enough():
+    assert (search(2.0, 22.0).took, search(2.0, 22.0).off) == (1.0, 0.01)
+    assert search(2.0, 20.0).took is None
+
+
 # --- what is shown
 
 
-def test_the_table_holds_each_figure_against_its_limit(tmp_path):
-    rows = table(without(1, FINDING)).splitlines()
+def test_the_table_holds_each_figure_against_its_limit():
+    rows = summary_table(without(1, FINDING)).splitlines()
     assert [row.split("  ")[0] for row in rows[1:]] == [
         "finding, within 60 s", "kidnaps, within 120 s", "tracking, 300 s",
         "amcl with 2000 particles"]
     assert "19 of 20" in rows[1] and "3.0 cm, 1.0°" in rows[3] and "6 % of a core" in rows[4]
-    write_report(GOOD, tmp_path / "report.json")
-    report = json.loads((tmp_path / "report.json").read_text())
+    trial, all_of_it = LocalisationTrial(), [*GOOD.trials, GOOD.tracking, GOOD.load]
+    report = json.loads(json.dumps(trial.values(all_of_it)))
     assert report["passed"] and report["trials"][0]["right"] and len(report["trials"]) == 30
+    assert json.loads(json.dumps(trial.values(trial.from_values(report)))) == report
 
 
 @pytest.mark.parametrize(("took", "said"), [
     (None, "not found"), (5.0, "found after 5.0 s, at"), (70.0, "70.0 s, too late")])
 def test_a_trial_on_one_line(took, said):
     assert said in trial_line(replace(GOOD.trials[0], took=took))
+
+
+def test_the_drives_on_one_line():
+    assert trial_line(GOOD.tracking) == "tracking: 3.0 cm, 1.0° off in the mean"
+    assert trial_line(GOOD.load) == "load: 6 % of a core"
 
 
 # --- steering
@@ -148,4 +168,4 @@ def test_it_turns_where_it_may_not_go_on():
 
 def test_nothing_to_try_names_all_four():
     with pytest.raises(RunError, match="no starts, no kidnaps, no tracking and no load"):
-        parse_options(["--starts=0", "--kidnaps=0", "--tracking=0", "--load=0"])
+        LocalisationTrial().parse(["--starts=0", "--kidnaps=0", "--tracking=0", "--load=0"])

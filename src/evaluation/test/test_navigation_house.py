@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import yaml
 
-from evaluation.course_run.failure import RunError
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.house_file import load_house
+from evaluation.house.ground import Ground
+from evaluation.house.house_file import load_house
+from evaluation.session.failure import RunError
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.likelihood_field import distances
 

@@ -7,15 +7,13 @@ import subprocess
 import numpy as np
 import pytest
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
+from evaluation.house.feelers import Gap
+from evaluation.house.ground import Ground
+from evaluation.house.house_file import load_house
+from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
-from evaluation.navigation.feelers import Gap
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.house_file import load_house
 from evaluation.navigation.options import parse_options
 from evaluation.navigation.picture import map_picture
-from evaluation.navigation.records import Records
 from evaluation.navigation.report import lines, read_map_frame, write_report
 from evaluation.navigation.score import (
     Navigation,
@@ -27,6 +25,8 @@ from evaluation.navigation.score import (
     score_mapping,
     seen_of,
 )
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
 

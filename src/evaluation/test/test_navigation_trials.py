@@ -6,15 +6,18 @@ from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import cv2
+import numpy as np
 import pytest
 
-from evaluation.course_run.failure import RunError
-from evaluation.program import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.yards import main
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
+from evaluation.trial.runner import run_trial
+from evaluation.yards import trial as trial_module
 from evaluation.yards.crossing import draw_crossing
-from evaluation.yards.options import parse_options
-from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, read_drives, summarize, table
+from evaluation.yards.judge import Judge
+from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize, summary_table
 from evaluation.yards.sheet import write_sheets
+from evaluation.yards.trial import YardTrial
 from evaluation.yards.yard import draw_yard
 
 
@@ -35,8 +38,10 @@ def crossed(seed=0, **changes) -> Drive:
 
 
 def test_yards_and_crossings_that_are_asked_for():
-    found = parse_options(["--yards", "3", "--first-yard", "7", "--crossings", "0"])
-    assert (list(found.yards), found.repeats, list(found.crossings)) == ([7, 8, 9], 2, [])
+    trial = YardTrial()
+    found = trial.parse(["--yards", "3", "--first-yard", "7", "--crossings", "0"])
+    assert [(each.seed, each.repeat) for each in trial.cases(found)] == [
+        (7, 0), (8, 0), (9, 0), (7, 1), (8, 1), (9, 1)]
     assert found.parameters.name == "yard.yaml"
 
 
@@ -53,7 +58,7 @@ def test_yards_and_crossings_that_are_asked_for():
     ],
 )
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == NOT_RUN
+    assert run_trial(YardTrial(), arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -91,8 +96,9 @@ def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
     assert (yards.mean_time, yards.mean_time_by_straight) == (25.0, 25 / 16)
     assert (yards.drives_with_recovery, yards.failed) == (1, ["yards-2-0"])
     assert (crossings.least_to_person, crossings.least_to_obstacles) == (0.2, None)
-    assert "2 of 3" in table([yards, crossings]) and "67%" in table([yards, crossings])
-    assert "0 of 1" in table(summarize([made(outcome="late")]))
+    shown = summary_table([yards, crossings])
+    assert "2 of 3" in shown and "67%" in shown
+    assert "0 of 1" in summary_table(summarize([made(outcome="late")]))
 
 
 def test_pictures_are_drawn_of_what_there_is(tmp_path):
@@ -110,6 +116,10 @@ def test_pictures_are_drawn_of_what_there_is(tmp_path):
 # --- from beginning to end
 
 
+def read_drives(out) -> list[Drive]:
+    return YardTrial().from_values(json.loads((out / "report.json").read_text()))
+
+
 @pytest.fixture
 def trials(tmp_path, monkeypatch):
     """Runs main with these drives instead of driven ones; an exception among them is raised."""
@@ -121,13 +131,14 @@ def trials(tmp_path, monkeypatch):
             found = next(given)
             if isinstance(found, BaseException):
                 raise found
-            return found, [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
+            judge = Judge(np.empty((0, 2)), 0.0)
+            judge.path = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
+            return SimpleNamespace(judge=judge, drive=found)
 
-        monkeypatch.setattr(main, "RosRun", lambda *_: SimpleNamespace(start_roscore=lambda: None))
-        for name, fake in (("Rig", lambda *_: None), ("through_yard", drive),
-                           ("past_person", drive)):
-            monkeypatch.setattr(main, name, fake)
-        return main.main([*options, "--out", str(tmp_path)])
+        for name, fake in (("Rig", lambda *_, **__: None), ("prepare", lambda *_: None),
+                           ("drive", drive), ("score", lambda _task, record: record.drive)):
+            monkeypatch.setattr(trial_module, name, fake)
+        return run_trial(YardTrial(), [*options, "--out", str(tmp_path)])
 
     return run
 
@@ -135,7 +146,7 @@ def trials(tmp_path, monkeypatch):
 def test_all_is_driven_and_written(trials, tmp_path, capsys):
     drives = [made(0), made(1), made(0, 1), made(1, 1), crossed(0)]
     assert trials(drives, "--yards", "2", "--crossings", "1") == PASSED
-    assert read_drives(tmp_path / "report.json") == drives
+    assert read_drives(tmp_path) == drives
     assert json.loads((tmp_path / "report.json").read_text())["passed"] is True
     assert len(list(tmp_path.glob("*.png"))) == 3
     assert (tmp_path / "worlds" / "yard_1.world").exists()
@@ -145,14 +156,14 @@ def test_all_is_driven_and_written(trials, tmp_path, capsys):
 def test_what_was_driven_is_kept_and_resume_goes_on(trials, tmp_path, capsys):
     options = ("--yards", "2", "--repeats", "1", "--crossings", "0")
     assert trials([made(0), RunError("gazebo ended")], *options) == NOT_RUN
-    assert len(read_drives(tmp_path / "report.json")) == 1
+    assert len(read_drives(tmp_path)) == 1
     assert trials([made(1, outcome="late")], *options, "--resume") == NOT_PASSED
-    assert [each.seed for each in read_drives(tmp_path / "report.json")] == [0, 1]
+    assert [each.seed for each in read_drives(tmp_path)] == [0, 1]
     assert trials([], *options, "--resume") == NOT_PASSED
     assert "gazebo ended" in capsys.readouterr().err
 
 
 def test_a_report_of_something_else_is_refused(tmp_path, capsys):
     (tmp_path / "report.json").write_text("{}")
-    assert main.main(["--resume", "--out", str(tmp_path)]) == NOT_RUN
+    assert run_trial(YardTrial(), ["--resume", "--out", str(tmp_path)]) == NOT_RUN
     assert "no report of navigation_trials" in capsys.readouterr().err

@@ -13,20 +13,19 @@ import cv2
 import numpy as np
 import pytest
 
-from evaluation.course_run.failure import RunError
-from evaluation.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
-from evaluation.race_trials import main
-from evaluation.race_trials.disturbance import Disturbance, draw
-from evaluation.race_trials.options import parse_options
+from evaluation.laps.disturbance import Disturbance, draw
 from evaluation.race_trials.path_sheet import write_path_sheet
 from evaluation.race_trials.results import (
     LEAST_SPEED,
     MOST_RMS,
     Lap,
-    read_laps,
     summarize,
-    table,
+    summary_table,
 )
+from evaluation.race_trials.trial import RaceTrial
+from evaluation.session.failure import RunError
+from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
+from evaluation.trial.runner import run_trial
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "race_trials.py"
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -43,10 +42,10 @@ def lap(seed=0, follower="lane_follow.py", **changes) -> Lap:
 
 
 def test_seeds_and_tracks_that_are_asked_for():
-    found = parse_options(["--seeds", "3", "--first-seed", "7", "--tracks", "2"])
-    assert list(found.seeds) == [7, 8, 9]
-    assert list(found.tracks) == [101, 102]
-    assert found.followers == ("lane_follow.py", "lane_follow_p.py")
+    trial = RaceTrial()
+    found = trial.cases(trial.parse(["--seeds", "3", "--first-seed", "7", "--tracks", "2"]))
+    assert [each.seed for each in found[::2]] == [7, 8, 9, 101, 102]
+    assert [each.follower for each in found[:2]] == ["lane_follow.py", "lane_follow_p.py"]
 
 
 @pytest.mark.parametrize(
@@ -61,7 +60,7 @@ def test_seeds_and_tracks_that_are_asked_for():
     ],
 )
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
-    assert main.main(arguments) == NOT_RUN
+    assert run_trial(RaceTrial(), arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert said in line
 
@@ -91,12 +90,12 @@ def test_a_summary_is_of_one_follower_on_one_set():
     assert (ours.mean_speed, ours.least_speed) == (pytest.approx(1.5), 1.0)
     assert ours.mean_rms_lateral == pytest.approx(0.025) and ours.max_rms_lateral == 0.04
     assert (other_set.set, plain.follower) == ("random tracks", "lane_follow_p.py")
-    rows = table(summarize(laps)).splitlines()
+    rows = summary_table(summarize(laps)).splitlines()
     assert len(rows) == 4 and "2 of 3" in rows[1]
 
 
 def test_the_table_of_a_follower_that_closed_nothing():
-    assert "0 of 1" in table(summarize([lap(outcome="stalled", time=None)]))
+    assert "0 of 1" in summary_table(summarize([lap(outcome="stalled", time=None)]))
 
 
 @pytest.mark.parametrize("closed", [0, 1, 7])
@@ -114,17 +113,25 @@ def test_pictures_are_drawn_of_what_there_is(tmp_path, closed):
 
 
 def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
-    """main with these laps instead of driven ones; an exception among them is raised."""
+    """The program with these laps instead of driven ones; an exception among them is raised."""
     given = iter(laps)
 
-    def drive(_venue, seed, disturbance, follower, _out) -> Lap:
-        found = next(given)
-        if isinstance(found, BaseException):
-            raise found
-        return replace(found, seed=seed, follower=follower, disturbance=disturbance)
+    class Driven(RaceTrial):
+        def setup(self, _session, case):
+            self._case = case
 
-    monkeypatch.setattr(main, "drive", drive)
-    return main.main(["--tracks", "0", "--out", str(tmp_path / "out"), *options])
+        def run(self):
+            found = next(given)
+            if isinstance(found, BaseException):
+                raise found
+            return found
+
+        def score(self, record):
+            case = self._case
+            return replace(record, set=case.set, seed=case.seed, follower=case.follower,
+                           disturbance=draw(case.seed))
+
+    return run_trial(Driven(), ["--tracks", "0", "--out", str(tmp_path / "out"), *options])
 
 
 def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
@@ -161,7 +168,8 @@ def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
     rest = [lap(), lap(), lap()]
     assert trials(tmp_path, monkeypatch, rest, "--seeds", "2", "--resume") == PASSED
     assert "[1/4]" not in (shown := capsys.readouterr().out) and "[2/4]" in shown
-    found = read_laps(tmp_path / "out" / "report.json")
+    values = json.loads((tmp_path / "out" / "report.json").read_text())
+    found = RaceTrial().from_values(values)
     assert [each.mean_speed for each in found] == [1.7, 2.0, 2.0, 2.0]
     assert [(each.seed, each.disturbance) for each in found[1:3]] == [(0, draw(0)), (1, draw(1))]
 

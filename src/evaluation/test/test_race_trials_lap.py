@@ -23,13 +23,16 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.world import World
-from evaluation.course_run.failure import RunError
 from evaluation.course_run.options import parse_options
-from evaluation.race_trials import drive as drive_module
-from evaluation.race_trials.disturbance import CAMERA_NOISE, LIGHT, Disturbance, draw
-from evaluation.race_trials.light import write_lit_world
+from evaluation.laps.disturbance import CAMERA_NOISE, LIGHT, Disturbance, draw
+from evaluation.laps.light import write_lit_world
+from evaluation.race_trials import trial as trial_module
+from evaluation.race_trials.results import Lap
 from evaluation.race_trials.venue import racetrack, random_track
+from evaluation.session.failure import RunError
+from evaluation.session.session import Session
 from evaluation.track import load_track
+from evaluation.trial.runner import try_case
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
 PACKAGES = rospkg.RosPack()
@@ -128,7 +131,7 @@ def test_no_world_is_a_clear_error(tmp_path):
 
 
 def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
-    words = drive_module.course_command(racetrack(), 5, draw(5), Path("/w.world"))[3:]
+    words = trial_module.course_arguments(racetrack(), 5, draw(5), Path("/w.world"))
     found = parse_options(words)
     assert (found.fast, found.video, found.seed, found.camera_px) == (True, False, 5, None)
     assert found.track == racetrack().track
@@ -153,8 +156,21 @@ def stand_in(monkeypatch, code: int, report: dict | None = None, says: str = "")
     text = "import json, pathlib, sys; out = pathlib.Path(sys.argv[sys.argv.index('--out') + 1]);"
     if report is not None:
         text += f"(out / 'report.json').write_text(json.dumps({report!r}));"
-    command = [sys.executable, "-c", f"{text} print({says!r}); sys.exit({code})"]
-    monkeypatch.setattr(drive_module, "course_command", lambda *_: command)
+    script = f"{text} print({says!r}); sys.exit({code})"
+    start_drive = Session.start_drive
+
+    def start(session, command, folder, environment):
+        out = command[command.index("--out"):]
+        return start_drive(session, [sys.executable, "-c", script, *out], folder, environment)
+
+    monkeypatch.setattr(Session, "start_drive", start)
+
+
+def drive(out: Path, follower: str = "lane_follow.py") -> Lap:
+    """One lap on the racetrack, of seed 4."""
+    case = trial_module.RaceCase(f"{follower} racetrack 4", "racetrack", 4, follower)
+    with Session(out) as session:
+        return try_case(trial_module.RaceTrial(), session, case)
 
 
 REPORT = {
@@ -167,7 +183,7 @@ REPORT = {
 
 def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
     stand_in(monkeypatch, 0, REPORT)
-    found = drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+    found = drive(tmp_path)
     assert (found.outcome, found.time, found.mean_speed) == ("closed", 18.0, 2.0)
     assert found.rms_lateral == 0.02  # of the whole drive
     assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4))
@@ -176,7 +192,7 @@ def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
 def test_a_lap_that_was_not_closed_is_a_lap_too(tmp_path, monkeypatch):
     left = REPORT | {"laps": [], "outcome": "left the course", "why": "at x=1"}
     stand_in(monkeypatch, 1, left)
-    found = drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+    found = drive(tmp_path)
     assert (found.closed, found.within_limits, found.time) == (False, False, None)
     assert found.mean_speed == pytest.approx(37 / 20)
 
@@ -184,17 +200,17 @@ def test_a_lap_that_was_not_closed_is_a_lap_too(tmp_path, monkeypatch):
 def test_a_lap_that_could_not_be_driven_is_an_error_that_says_which_and_why(tmp_path, monkeypatch):
     stand_in(monkeypatch, 2, says="before\ncourse_run: no follower 'x.py'")
     with pytest.raises(RunError, match=r"x\.py on racetrack, seed 4: course_run: no fol") as raised:
-        drive_module.drive(racetrack(), 4, draw(4), "x.py", tmp_path)
+        drive(tmp_path, "x.py")
     assert raised.value.details == "before"
 
 
 def test_an_old_report_is_no_result(tmp_path, monkeypatch):
-    folder = tmp_path / "racetrack-4" / "lane_follow"
+    folder = tmp_path / "laps" / "racetrack-4" / "lane_follow"
     folder.mkdir(parents=True)
     (folder / "report.json").write_text(json.dumps(REPORT))
     stand_in(monkeypatch, 0)
     with pytest.raises(RunError):
-        drive_module.drive(racetrack(), 4, draw(4), "lane_follow.py", tmp_path)
+        drive(tmp_path)
 
 
 def test_a_random_track_is_one_to_drive_on(tmp_path):

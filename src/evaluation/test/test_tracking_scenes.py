@@ -17,7 +17,6 @@ from bullet_sim.actors import pose_at
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
 from evaluation.tracking.kinematic import follow
-from evaluation.tracking.run import draw_start
 from evaluation.tracking.scene import (
     HALF_REACH,
     HIDDEN_TIME,
@@ -30,6 +29,7 @@ from evaluation.tracking.scene import (
 )
 from evaluation.tracking.score import FIND_TIME, Task, TrackScorer
 from evaluation.tracking.sdf import TARGET, world_name, world_text
+from evaluation.tracking.start import draw_start
 
 LESSON = Path(rospkg.RosPack().get_path("ai_robot_tracking"))
 CONFIG = LESSON / "config" / "tracking_params.yaml"

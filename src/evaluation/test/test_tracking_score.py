@@ -6,13 +6,14 @@ import math
 import numpy as np
 import pytest
 
-from evaluation.course_run.failure import RunError
 from evaluation.lap import Sample
+from evaluation.session.failure import RunError
 from evaluation.tracking.options import parse_options
 from evaluation.tracking.scene import KINDS
 from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
 from evaluation.tracking.sdf import RADIUS
-from evaluation.tracking.trials import SETS, main, summarize, table
+from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize, summary_table
+from evaluation.trial.runner import run_trial
 
 STANDS = np.array([(0.0, 5.0, 0.0)])
 WALKS = np.array([(0.0, 5.0, 0.0), (1000.0, 5.0, 0.0)])  # a walk that does not get on
@@ -126,17 +127,22 @@ def report(seed, good, hidden=()):
             "real_time_factor": 1.0, "hidden": [{"begin_s": 1, "found_after_s": s} for s in hidden]}
 
 
+def summary(name, reports):
+    (found,) = summarize([Drive(f"{name}/{each['seed']}", name, each) for each in reports])
+    assert found.set in SETS
+    return found
+
+
 def test_summaries():
-    sets = {kind.name: kind for kind in SETS}
-    assert summarize(sets["follow"], [report(0, True), report(1, True)]).passed
-    one_bad = summarize(sets["follow"], [report(0, True), report(1, False)])
+    assert summary("follow", [report(0, True), report(1, True)]).passed
+    one_bad = summary("follow", [report(0, True), report(1, False)])
     assert (one_bad.good, one_bad.cases, one_bad.passed, one_bad.failed_seeds) == (1, 2, False, [1])
     hidden = [report(seed, True, (2.0, 9.0)) for seed in range(9)]
-    assert summarize(sets["hidden"], [*hidden, report(9, False, (11.0, None))]).passed  # 18 of 20
-    assert not summarize(sets["hidden"], [*hidden[1:], report(8, False, (3.0, None)),
-                                          report(9, False, (11.0, None))]).passed
-    summary = summarize(sets["hidden"], [*hidden, report(9, False, (11.0, 12.0))])
-    assert "18 of 20" in table([summary])
+    assert summary("hidden", [*hidden, report(9, False, (11.0, None))]).passed  # 18 of 20
+    assert not summary("hidden", [*hidden[1:], report(8, False, (3.0, None)),
+                                  report(9, False, (11.0, None))]).passed
+    found = summary("hidden", [*hidden, report(9, False, (11.0, 12.0))])
+    assert "18 of 20" in summary_table([found])
 
 
 @pytest.mark.parametrize(("good", "code"), [(True, 0), (False, 1)])
@@ -146,7 +152,7 @@ def test_trials_go_on_from_what_is_there_and_count(tmp_path, capsys, good, code)
         folder.mkdir(parents=True)
         (folder / "report.json").write_text(json.dumps(report(seed, good)))
     words = ["--sets", "stand", "--seeds", "2", "--resume", "--out", str(tmp_path)]
-    assert main(words) == code
+    assert run_trial(TrackTrial(), words) == code
     assert f"{2 * good} of 2" in capsys.readouterr().out
     assert json.loads((tmp_path / "report.json").read_text())["summaries"][0]["cases"] == 2
 
@@ -155,11 +161,12 @@ def test_a_damaged_report_of_a_drive_is_one_line(tmp_path, capsys):
     folder = tmp_path / "stand" / "0"
     folder.mkdir(parents=True)
     (folder / "report.json").write_text("{")
-    assert main(["--sets", "stand", "--seeds", "1", "--resume", "--out", str(tmp_path)]) == 2
+    words = ["--sets", "stand", "--seeds", "1", "--resume", "--out", str(tmp_path)]
+    assert run_trial(TrackTrial(), words) == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1 and str(folder / "report.json") in said[0]
 
 
 def test_no_drives_are_refused(capsys):
-    assert main(["--seeds", "0"]) == 2
+    assert run_trial(TrackTrial(), ["--seeds", "0"]) == 2
     assert "nothing to drive" in capsys.readouterr().err

@@ -11,7 +11,7 @@ import rospy
 from trial_record import Record
 from trial_venue import Venue
 
-from evaluation.course_run.processes import Child, Family
+from evaluation.session.processes import Child, Family
 
 STARTUP = 120.0  # s, wall
 

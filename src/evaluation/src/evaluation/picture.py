@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
@@ -184,3 +184,16 @@ def _draw_scale(image: np.ndarray, px_per_m: float, at_px: tuple[int, int], fine
 
 def _fixed_point(points_px: np.ndarray) -> np.ndarray:
     return np.round(np.asarray(points_px) * (1 << SHIFT)).astype(np.int32)
+
+
+def tile_sheet(tiles: Sequence[np.ndarray], columns: int, gap_px: int) -> np.ndarray:
+    """Pictures (height, width, 3) of one size, row by row, with gaps between and round them."""
+    height, width = tiles[0].shape[:2]
+    columns, rows = min(columns, len(tiles)), -(-len(tiles) // columns)
+    sheet = np.full((rows * (height + gap_px) + gap_px, columns * (width + gap_px) + gap_px, 3),
+                    PAPER, np.uint8)
+    for number, tile in enumerate(tiles):
+        row, column = divmod(number, columns)
+        top, left = gap_px + row * (height + gap_px), gap_px + column * (width + gap_px)
+        sheet[top:top + height, left:left + width] = tile
+    return sheet

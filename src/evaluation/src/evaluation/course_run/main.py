@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from pathlib import Path
 
 import cv2
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.fingerprints import Fingerprints
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.observer import Observer
 from evaluation.course_run.options import Options, parse_options
-from evaluation.course_run.processes import Family, strip_terminal_codes
 from evaluation.course_run.progress import Progress
-from evaluation.course_run.report import (
-    conditions,
-    frame_figures,
-    summarize,
-    table,
-    versions,
-    write_report,
-)
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, Film
+from evaluation.course_run.report import conditions, followers_table, summarize, write_report
+from evaluation.course_run.video import Film
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
-from evaluation.program import NOT_PASSED, PASSED, run_program
+from evaluation.session.failure import RunError
+from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
+from evaluation.session.fingerprints import Fingerprints
+from evaluation.session.frames import frame_figures
+from evaluation.session.launch import Launched
+from evaluation.session.observer import Observer
+from evaluation.session.processes import read_log
+from evaluation.session.versions import versions
 from evaluation.track import TrackError, TrackFile, build_track, load_track_file
+from evaluation.trial.live import LiveDrive, Outcome, run_live
+from evaluation.trial.program import run_program
 
-RESULTS = ("path.png", "run.mp4", "report.json")
 LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
 
 
@@ -38,11 +33,15 @@ def main(arguments: list[str]) -> int:
     return run_program("course_run", lambda: _run(parse_options(arguments)))
 
 
-class CourseRun:
+class CourseRun(LiveDrive):
     """One run: what is watched and what was found."""
 
-    def __init__(self, options: Options, track_file: TrackFile, progress: Progress):
-        self.options, self.track_file, self.progress = options, track_file, progress
+    program = "course_run"
+    writes = ("path.png", "run.mp4", "report.json")
+
+    def __init__(self, options: Options, track_file: TrackFile):
+        super().__init__(options.out, Progress())
+        self.options, self.track_file, self.driver = options, track_file, options.follower
         self.drive = LapScorer(
             build_track(track_file), options.laps, off_course=options.course.off_course)
         period = FAST_FILM_PERIOD if options.fast else FILM_PERIOD
@@ -72,7 +71,7 @@ class CourseRun:
         if options.video:
             self.film.start()
 
-    def watch(self, launched: Launched) -> tuple[str, str]:
+    def watch(self, launched: Launched) -> Outcome:
         """Follow the car until its verdict or the duration's end; returns outcome and reason."""
         while self.drive.verdict is Verdict.DRIVING and not self._time_is_up:
             self._take_samples()
@@ -111,24 +110,26 @@ class CourseRun:
                 " the simulator is paused or hangs"
             )
 
-    def count(self) -> None:
-        """Film no more, and count the images up to the last sample while all still runs."""
-        self.film.stop()
+    def end(self) -> None:
+        """Count the images up to the last sample, and ask no more."""
         if self.drive.samples:
             end = self.drive.samples[-1].time
             self._counted = self._observer.count(end)
             self._sensor_sums = self._fingerprints.sums(end) if self.options.fingerprint else {}
-
-    def close(self) -> None:
-        """Ask and film no more."""
         if self._observer is not None:
             self._observer.stop()
-        self.film.close()
 
-    def report(self, outcome: tuple[str, str], log: Path) -> None:
+    @property
+    def was_seen(self) -> bool:
+        return bool(self.drive.samples)
+
+    def faults(self, outcome: Outcome) -> list[str]:
+        return [] if self.drive.verdict is Verdict.CLOSED else [outcome[1]]
+
+    def report(self, outcome: Outcome, log_folder: Path) -> None:
         """Write path.png and report.json, print the table and where the files are."""
         out, follower = self.options.out, self.options.follower
-        lines = strip_terminal_codes(log.read_text(encoding="utf-8", errors="replace")).splitlines()
+        lines = read_log(log_folder / "roslaunch.log")
         frames = frame_figures(*self._counted, lines if self.options.fast else None)
         wall = self._last_at - self._first_at
         summary = summarize(self.drive, outcome, frames, wall) | conditions(self.options)
@@ -138,47 +139,20 @@ class CourseRun:
         picture = path_picture(self.track_file, self.drive, *_titles(follower, summary))
         cv2.imwrite(str(out / "path.png"), picture)
         runs = write_report(out, follower, summary)
-        self.progress.say("\n" + table(runs, follower))
+        self.progress.say("\n" + followers_table(runs, follower))
         unanswered = summary["frames_dropped"]
         if self.options.fast and unanswered:
             self.progress.say(f"{unanswered} images without a command: no run will repeat this one")
-        made = [str(_short(out / name)) for name in RESULTS if (out / name).exists()]
-        self.progress.say(f"files: {'  '.join(made)}")
-
-
-def _prepare(options: Options) -> CourseRun:
-    try:
-        track_file = load_track_file(options.track)
-        options.out.mkdir(parents=True, exist_ok=True)
-        for name in RESULTS:  # what is there afterwards is of this run
-            (options.out / name).unlink(missing_ok=True)
-        return CourseRun(options, track_file, Progress())
-    except TrackError as error:
-        raise RunError(str(error)) from error
+        self.name_files()
 
 
 def _run(options: Options) -> int:
-    run = _prepare(options)
-    outcome, end, log = ("", ""), None, Path()
-    with Family() as family:
-        launched = Launched(family, options.out / "log", options.follower)
-        log = launched.log_folder / "roslaunch.log"
-        try:
-            run.bring_up(launched)
-            outcome = run.watch(launched)
-        except (KeyboardInterrupt, RunError) as ended_early:
-            end, outcome = ended_early, ("ended early", str(ended_early) or "interrupted")
-        run.count()
-        family.interrupt(spare=run.film.process_id)  # they end while the film is being finished
-        run.close()
-    if run.drive.samples:
-        run.report(outcome, log)
-    if end is not None:
-        raise end
-    if run.drive.verdict is Verdict.CLOSED:
-        return PASSED
-    print(f"course_run: {outcome[1]}", file=sys.stderr)
-    return NOT_PASSED
+    try:
+        track_file = load_track_file(options.track)
+        run = CourseRun(options, track_file)
+    except TrackError as error:
+        raise RunError(str(error)) from error
+    return run_live(run)
 
 
 def _titles(follower: str, summary: dict) -> tuple[str, str]:
@@ -194,8 +168,3 @@ def _titles(follower: str, summary: dict) -> tuple[str, str]:
         f"real time x{summary['real_time_factor'] or 0:.2f}",
     )
     return f"{follower}: {closed}", "   |   ".join(figures)
-
-
-def _short(path: Path) -> Path:
-    here = Path.cwd()
-    return path.relative_to(here) if path.is_relative_to(here) else path

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.command_line import Parser
-from evaluation.course_run.course_file import Course, load_course
-from evaluation.course_run.failure import RunError
+from evaluation.session.course_file import Course, load_course
+from evaluation.session.failure import RunError
+from evaluation.trial.command_line import Parser
 
 USUAL_COURSE = "course"
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from evaluation.course_run.status_line import StatusLine
 from evaluation.lap import LapScorer
+from evaluation.session.status_line import StatusLine
 
 
 class Progress(StatusLine):

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
-import importlib.metadata
 import json
-import platform
-import subprocess
-from collections.abc import Iterable
 from pathlib import Path
 
-import numpy as np
-
 from evaluation.course_run.options import Options
-from evaluation.lap import LapScorer
+from evaluation.lap import LapScorer, fingerprint
+from evaluation.trial.report import write_json
+from evaluation.trial.table import cell, table
 
-PACKAGES = ("pybullet", "moderngl", "opencv-python-headless", "numpy")
-RENDERER_SAYS = "Cameras are drawn by"  # the simulator's log line
-UNANSWERED_SAYS = "lockstep: no message on"  # its warning, once in ten seconds
 COLUMNS = (  # heading, key, factor, digits
     ("laps", "laps_closed", 1, 0),
     ("lap s", "mean_lap_s", 1, 1),
@@ -28,20 +20,6 @@ COLUMNS = (  # heading, key, factor, digits
     ("dropped", "frames_dropped", 1, 0),
     ("real time", "real_time_factor", 1, 2),
 )
-
-
-def frame_figures(sent: int, commands: int, lockstep_log: list[str] | None) -> dict:
-    """Images sent, answered and dropped.
-
-    A follower answers each picture with one command, so pictures without a command were dropped
-    on the way to it or by it. In lockstep (with the run's log) they are all answered, unless the
-    simulator said that it went on without.
-    """
-    dropped = max(sent - commands, 0)
-    if lockstep_log is not None:
-        went_on = any(UNANSWERED_SAYS in line for line in lockstep_log)
-        dropped = max(dropped, 1) if went_on else 0
-    return {"frames_sent": sent, "frames_answered": sent - dropped, "frames_dropped": dropped}
 
 
 def summarize(drive: LapScorer, outcome: tuple[str, str], frames: dict, wall: float) -> dict:
@@ -78,12 +56,6 @@ def summarize(drive: LapScorer, outcome: tuple[str, str], frames: dict, wall: fl
     }
 
 
-def fingerprint(drive: LapScorer) -> str:
-    """SHA-256 over times and poses of all samples: two drives with one are equal to the bit."""
-    rows = [(sample.time, sample.x, sample.y, sample.yaw) for sample in drive.samples]
-    return hashlib.sha256(np.array(rows, "<f8").tobytes()).hexdigest()
-
-
 def conditions(options: Options) -> dict:
     """What was asked for that makes a run drive otherwise; None is what the launch file says."""
     camera = options.camera_px
@@ -95,23 +67,9 @@ def conditions(options: Options) -> dict:
     }
 
 
-def versions(root: Path, log: Iterable[str]) -> dict:
-    """What the run was made with; the renderer is what the simulator logged about it."""
-    found = {"python": platform.python_version(), "machine": platform.platform()}
-    for package in PACKAGES:
-        try:
-            found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            found[package] = None
-    drawn = (line.partition(RENDERER_SAYS)[2].strip() for line in log if RENDERER_SAYS in line)
-    found["renderer"] = next(drawn, None)
-    found["revision"] = _revision(root)
-    return found
-
-
 def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
     """Write report.json and <follower>.json; returns the latest run of each follower, by name."""
-    _write(folder / f"{Path(follower).stem}.json", {"follower": follower, **run})
+    write_json({"follower": follower, **run}, folder / f"{Path(follower).stem}.json")
     runs = {follower: run}
     for path in sorted(folder.glob("*.json")):
         if path.name != "report.json":
@@ -123,42 +81,17 @@ def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
         name: {key: known[name].get(key) for key in ("outcome", *(column[1] for column in COLUMNS))}
         for name in known
     }
-    _write(folder / "report.json", {"follower": follower, **run, "followers": side_by_side})
+    write_json({"follower": follower, **run, "followers": side_by_side}, folder / "report.json")
     return side_by_side
 
 
-def table(runs: dict[str, dict], current: str) -> str:
+def followers_table(runs: dict[str, dict], current: str) -> str:
     """All followers' figures, a row each; the present run's row is marked."""
     rows = [["  follower", *(heading for heading, *_ in COLUMNS), "outcome"]]
     for name, run in runs.items():
-        cells = [_cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
+        cells = [cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
         rows.append([f"{'>' if name == current else ' '} {name}", *cells, run["outcome"]])
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    last = len(widths) - 1
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if column in (0, last) else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    )
-
-
-def _cell(value: float | None, factor: float, digits: int) -> str:
-    return "-" if value is None else f"{value * factor:.{digits}f}"
-
-
-def _revision(root: Path) -> str | None:
-    command = ["git", "-C", str(root), "describe", "--always", "--dirty"]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=0.5, check=True)
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout.strip()
-
-
-def _write(path: Path, values: dict) -> None:
-    path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+    return table(rows, left=(0, len(COLUMNS) + 1))
 
 
 def _read(path: Path) -> dict:

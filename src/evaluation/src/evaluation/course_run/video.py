@@ -11,18 +11,14 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.course_file import Course
-from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
 from evaluation.lap import LapScorer
 from evaluation.picture import PAPER, TEXT, CourseMap, draw_line, lap_colour, write_text
+from evaluation.session.course_file import Course
+from evaluation.session.film import FILM_RATE_HZ, VIEW_PX, FilmFile, fit
 from evaluation.track import TrackFile
 
-# s, simulated, between two pictures of the film, which so runs at 2 or 8 times the speed
-FILM_PERIOD = 0.2
-FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
 LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
 LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
-VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
 MAP_WIDTH_PX, BAR_PX = 520, 44
 MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow
 MASK_TINT = (80, 60, 240)
@@ -100,14 +96,6 @@ class Film(FilmFile):
         if samples:
             self._map.draw_car(plan, samples[-1].x, samples[-1].y, samples[-1].yaw)
         return plan
-
-
-def fit(image: np.ndarray) -> np.ndarray:
-    """The image made to fit into VIEW_PX, in its own proportions."""
-    height, width = image.shape[:2]
-    scale = min(VIEW_PX[0] / width, VIEW_PX[1] / height)
-    size = max(1, round(width * scale)), max(1, round(height * scale))
-    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def mark_line(view: np.ndarray, band: float) -> np.ndarray:

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 
 CAR = "car"
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 
-from evaluation.course_run.failure import RunError
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
-from evaluation.race_trials.disturbance import Disturbance
+from evaluation.laps.disturbance import Disturbance
+from evaluation.trial.table import cell, table
 
 MOST_RMS, LEAST_SPEED = 0.05, 0.6  # m from the lane's middle, m/s
 CLOSED = "closed"
@@ -34,6 +32,11 @@ class LaneDrive:
     disturbance: Disturbance
     nearest_person: float | None = None  # over the whole drive; None: nobody was there
     encounters: tuple[Encounter, ...] = field(default=())
+
+    @property
+    def name(self) -> str:
+        """Of its case."""
+        return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
 
     @property
     def closed(self) -> bool:
@@ -87,15 +90,15 @@ def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None =
         row = [
             method, f"{len(closed)} of {len(own)}",
             f"{sum(drive.within_limits for drive in own)} of {len(own)}",
-            _cell(statistics.fmean(speeds) if closed else None, 1, 2),
-            _cell(min(speeds, default=None), 1, 2),
-            _cell(statistics.fmean(errors) if closed else None, 100, 1),
-            _cell(max(errors, default=None), 100, 1),
-            _cell(max((drive.max_lateral for drive in closed), default=None), 100, 1),
+            cell(statistics.fmean(speeds) if closed else None, 1, 2),
+            cell(min(speeds, default=None), 1, 2),
+            cell(statistics.fmean(errors) if closed else None, 100, 1),
+            cell(max(errors, default=None), 100, 1),
+            cell(max((drive.max_lateral for drive in closed), default=None), 100, 1),
         ]  # fmt: skip
-        rows.append(row + [_cell(ms_a_frame.get(method), 1, 1)] * bool(ms_a_frame)
+        rows.append(row + [cell(ms_a_frame.get(method), 1, 1)] * bool(ms_a_frame)
                     if ms_a_frame else row)
-    return aligned(rows)
+    return table(rows)
 
 
 def encounter_table(drives: Sequence[LaneDrive]) -> str:
@@ -118,43 +121,24 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
          f"{max(starts):.2f} s" if starts else "-"],
         ["all of it", f"{sum(each.passed for each in met)} of {len(met)}", ""],
     ]
-    return aligned(rows)
+    return table(rows)
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Columns under each other; the first is left, the others right."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return "\n".join("  ".join(
-        cell.ljust(width) if column == 0 else cell.rjust(width)
-        for column, (cell, width) in enumerate(zip(row, widths, strict=True))) for row in rows)
-
-
-def write_report(drives: Sequence[LaneDrive], path: Path, **more: object) -> None:
+def to_json(drives: Sequence[LaneDrive], **more: object) -> dict:
     """All there is, with the limits it is held against."""
-    values = {
+    return {
         "most_rms_lateral_m": MOST_RMS, "least_mean_speed_mps": LEAST_SPEED, **more,
         "drives": [{**asdict(drive), "within_limits": drive.within_limits} for drive in drives],
     }  # fmt: skip
-    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
 
 
-def read_drives(path: Path) -> list[LaneDrive]:
-    """The drives of a report that `write_report` wrote; none where there is no file."""
-    if not path.exists():
-        return []
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))["drives"]
-        return [_drive({key: each[key] for key in LaneDrive.__dataclass_fields__})
-                for each in found]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise RunError(f"{path}: no report of lane trials: {error!r}") from error
+def from_json(values: dict) -> list[LaneDrive]:
+    """The drives that `to_json` was given; KeyError or TypeError."""
+    return [_drive({key: each[key] for key in LaneDrive.__dataclass_fields__})
+            for each in values["drives"]]
 
 
 def _drive(values: dict) -> LaneDrive:
     met = tuple(Encounter(**each) for each in values["encounters"])
     return LaneDrive(**{**values, "encounters": met,
                         "disturbance": Disturbance(**values["disturbance"])})
-
-
-def _cell(value: float | None, factor: float, digits: int) -> str:
-    return "-" if value is None else f"{value * factor:.{digits}f}"

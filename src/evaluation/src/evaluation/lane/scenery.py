@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from evaluation.course_run.course_file import find_package, read_keys
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package, read_keys
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from lane_keeping.lane_keeper import LaneKeeper
 from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import load_settings
 
-from evaluation.course_run.course_file import find_package
 from evaluation.lane.ground import draw_ground, plane_of
 from evaluation.lane.scenery import load_crossings, load_scenery
+from evaluation.session.resources import find_package
 from evaluation.track import build_track, load_track_file
 
 PICTURES, WARM_UP = 40, 5

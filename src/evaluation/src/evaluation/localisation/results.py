@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
+
+from evaluation.trial.table import table
 
 FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
 RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees, at most, of a pose that counts as right
@@ -15,6 +17,10 @@ LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, by when it must be rig
 LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
 MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # in the mean, while it is tracked
 MOST_CPU = 30.0  # percent of a core
+LIMITS_IN_REPORT = {
+    "right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
+    "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG], "cpu": MOST_CPU,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -28,6 +34,11 @@ class Trial:
     off: float | None  # at the end; None: it had no pose
     off_deg: float | None
     touched: int
+
+    @property
+    def name(self) -> str:
+        """Of its case."""
+        return f"{self.set}-{self.number}"
 
     @property
     def right(self) -> bool:
@@ -46,6 +57,8 @@ class Tracking:
     largest_off: float
     largest_off_deg: float
 
+    name: ClassVar[str] = "tracking"  # of its case
+
     @property
     def passed(self) -> bool:
         """Within the limits?"""
@@ -61,6 +74,8 @@ class Load:
     wall: float
     percent: float  # of one core: s used in 100 simulated s
 
+    name: ClassVar[str] = "load"  # of its case
+
     @property
     def passed(self) -> bool:
         """Within the limit?"""
@@ -75,6 +90,17 @@ class Results:
     tracking: Tracking | None = None
     load: Load | None = None
 
+    @classmethod
+    def of_all(cls, results: Sequence[Trial | Tracking | Load]) -> Results:
+        """Sorted by what they are."""
+        found = cls()
+        for each in results:
+            if isinstance(each, Trial):
+                found.trials.append(each)
+            else:
+                setattr(found, each.name, each)
+        return found
+
     def of(self, kind: str) -> list[Trial]:
         """The trials of one set."""
         return [trial for trial in self.trials if trial.set == kind]
@@ -87,6 +113,46 @@ class Results:
         return shares and all(part.passed for part in (self.tracking, self.load) if part)
 
 
+@dataclass(frozen=True)
+class Search:
+    """What was seen of a robot that had to be found; s, simulated."""
+
+    set: str
+    number: int
+    start: tuple[float, float, float]  # in the world; m, rad
+    began: float
+    times: np.ndarray  # (N,)
+    errors: np.ndarray  # (N, 2), m and rad
+    touched: int
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """What was seen of a long drive."""
+
+    seconds: float  # simulated
+    driven: float  # m
+    errors: np.ndarray  # (N, 2), m and rad
+
+
+def score(record: Search | Tracked | Load) -> Trial | Tracking | Load:
+    """The result of a record."""
+    if isinstance(record, Load):
+        return record
+    if isinstance(record, Tracked):
+        mean, largest = record.errors.mean(axis=0), record.errors.max(axis=0)
+        return Tracking(record.seconds, record.driven, float(mean[0]), float(np.degrees(mean[1])),
+                        float(largest[0]), float(np.degrees(largest[1])))
+    times, errors = record.times, record.errors
+    since = right_since(times, errors)
+    held = since is not None and times[-1] - since >= HOLD
+    off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
+    return Trial(record.set, record.number, record.start,
+                 round(since - record.began, 2) if held else None, off,
+                 turned if turned is None else round(float(np.degrees(turned)), 3),
+                 record.touched)
+
+
 def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     """From which of the times (N,), s, on all errors (N, 2), m and rad, are small to the end."""
     if not len(times):
@@ -96,8 +162,12 @@ def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     return float(times[first]) if first < len(times) else None
 
 
-def trial_line(trial: Trial) -> str:
+def trial_line(trial: Trial | Tracking | Load) -> str:
     """One on one line."""
+    if isinstance(trial, Tracking):
+        return f"tracking: {trial.off * 100:.1f} cm, {trial.off_deg:.1f}° off in the mean"
+    if isinstance(trial, Load):
+        return f"load: {trial.percent:.0f} % of a core"
     found = "not found" if trial.took is None else f"found after {trial.took:.1f} s"
     late = "" if trial.right or trial.took is None else ", too late"
     end = (", no pose at the end" if trial.off is None else
@@ -105,7 +175,7 @@ def trial_line(trial: Trial) -> str:
     return f"{trial.set} {trial.number}: {found}{late}{end}"
 
 
-def table(results: Results) -> str:
+def summary_table(results: Results) -> str:
     """A row for each thing that was tried, with its limit."""
     rows = [("", "found", "wanted", "")]
     for kind, share in LEAST_SHARES.items():
@@ -126,20 +196,4 @@ def table(results: Results) -> str:
         found = results.load
         rows.append((f"amcl with {found.particles} particles", f"{found.percent:.0f} % of a core",
                      f"{MOST_CPU:.0f} %", f"real time x{found.simulated / found.wall:.2f}"))
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-                     .rstrip() for row in rows)
-
-
-def write_report(results: Results, path: Path) -> None:
-    """All there is, with the limits it is held against."""
-    values = {
-        "passed": results.passed,
-        "limits": {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
-                   "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
-                   "cpu": MOST_CPU},
-        "trials": [{**asdict(trial), "right": trial.right} for trial in results.trials],
-        "tracking": asdict(results.tracking) if results.tracking else None,
-        "load": asdict(results.load) if results.load else None,
-    }
-    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+    return table(rows, left=range(4))

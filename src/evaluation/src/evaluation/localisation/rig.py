@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import rospy
@@ -19,15 +21,14 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from evaluation.bench import simulator
-from evaluation.bench.cpu import processes
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.localisation.options import Options
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.progress import Progress
-from evaluation.navigation.watch import MAP, ROBOT, Watch
-from evaluation.yards.rig import pose_message
+from evaluation.house.ground import Ground
+from evaluation.house.progress import Progress
+from evaluation.house.watch import MAP, ROBOT, Watch
+from evaluation.session import simulator
+from evaluation.session.cpu import processes
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.simulator import pose_message
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall
@@ -36,11 +37,14 @@ TRUE, ENCODER = ("<odometrySource>world<", "<odometrySource>encoder<")
 TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36, as rviz sends them
 
 
+call_service = partial(simulator.call, wait=STILL_LIMIT)
+
+
 class Rig:
     """Made once a run; all of its calls may raise RunError."""
 
-    def __init__(self, options: Options, ground: Ground, launched: Launched, map_file: str,
-                 progress: Progress):
+    def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
+                 map_file: str, progress: Progress):
         self._launched, self._ground, self._progress = launched, ground, progress
         launched.start_roscore()
         self.watch = Watch(launched.master_uri)
@@ -96,7 +100,7 @@ class Rig:
         """The robot stands at a pose (3,) in the world; its wheels know nothing of it."""
         state = ModelState(model_name=ROBOT, pose=pose_message(tuple(place.tolist())),
                            reference_frame="world")
-        self._call("/gazebo/set_model_state", SetModelState, state)
+        call_service("/gazebo/set_model_state", SetModelState, state)
         self.watch.begin()
         self._wait("the robot in its place", lambda: self.watch.records.truth and np.linalg.norm(
             self.watch.records.true_pose[:2] - place[:2]) < 0.2)
@@ -112,7 +116,7 @@ class Rig:
 
     def forget(self) -> None:
         """The robot may be anywhere."""
-        self._call("/global_localization", Empty)
+        call_service("/global_localization", Empty)
 
     def look(self, part: str, what: str) -> None:
         """Waits a little, checks that all goes on, shows how things stand."""
@@ -129,15 +133,15 @@ class Rig:
 
     def set_pace(self, factor: float) -> None:
         """So many simulated seconds a second."""
-        now = self._call("/gazebo/get_physics_properties", GetPhysicsProperties)
-        self._call("/gazebo/set_physics_properties", SetPhysicsProperties,
+        now = call_service("/gazebo/get_physics_properties", GetPhysicsProperties)
+        call_service("/gazebo/set_physics_properties", SetPhysicsProperties,
                    SetPhysicsPropertiesRequest(now.time_step, factor / now.time_step, now.gravity,
                                                now.ode_config))
 
     def set_particles(self, count: int) -> None:
         """amcl has so many, never fewer."""
         names = "min_particles", "max_particles"
-        answer = self._call("/amcl/set_parameters", Reconfigure,
+        answer = call_service("/amcl/set_parameters", Reconfigure,
                             Config(ints=[IntParameter(name, count) for name in names]))
         taken = {each.name: each.value for each in answer.config.ints}
         if any(taken.get(name) != count for name in names):
@@ -151,17 +155,6 @@ class Rig:
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
         return self._launched.wait_for(lambda: what, condition, self._progress.status, START_LIMIT,
                                        LOOK_PERIOD)
-
-    @staticmethod
-    def _call(name: str, kind: type, *arguments: object) -> object:
-        try:
-            rospy.wait_for_service(name, STILL_LIMIT)
-            answer = rospy.ServiceProxy(name, kind)(*arguments)
-        except simulator.FAILURES as error:
-            raise RunError(f"service {name}: {error}") from error
-        if not getattr(answer, "success", True):
-            raise RunError(f"service {name}: {answer.status_message}")
-        return answer
 
 
 def _answers(question: Callable[[], object]) -> bool:

@@ -6,22 +6,22 @@ import time
 
 import numpy as np
 
-from evaluation.course_run.failure import RunError
+from evaluation.house.ground import Ground
+from evaluation.house.records import LONGEST_GAP, Records
 from evaluation.localisation.results import (
     FINDING,
     HOLD,
     KIDNAPS,
     LIMITS,
     Load,
-    Tracking,
-    Trial,
+    Search,
+    Tracked,
     right_since,
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.wander import Wander
 from evaluation.mapping.trajectory_error import at_moments
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.records import LONGEST_GAP, Records
+from evaluation.session.failure import RunError
 from nav_algorithms.poses import wrap_angle
 
 SETTLE = 15.0  # s, simulated, after a pose was told, until it counts
@@ -52,7 +52,7 @@ def errors_since(records: Records, since: float) -> tuple[np.ndarray, np.ndarray
     return times[known], errors[known]
 
 
-def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
+def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
     """A robot somewhere in the house that knows nothing of where."""
     random = np.random.default_rng([seed, number, 0])
     place = _draw_place(ground, random)
@@ -61,7 +61,7 @@ def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     return _search(rig, FINDING, number, place, random)
 
 
-def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
+def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
     """A robot that knows where it is, and is carried elsewhere while it drives."""
     random = np.random.default_rng([seed, number, 1])
     _begin_known(rig, ground, random)
@@ -75,7 +75,7 @@ def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     return _search(rig, KIDNAPS, number, place, random)
 
 
-def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
+def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracked:
     """A long drive; the pose it is told is off a little, and the first seconds do not count."""
     random = np.random.default_rng([seed, 0, 2])
     _begin_known(rig, ground, random)
@@ -90,9 +90,7 @@ def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
     _, errors = errors_since(records, since)
     if not len(errors):
         raise RunError("amcl said no pose while it should have tracked the robot")
-    mean, largest = errors.mean(axis=0), errors.max(axis=0)
-    return Tracking(seconds, records.length - before, float(mean[0]), float(np.degrees(mean[1])),
-                    float(largest[0]), float(np.degrees(largest[1])))
+    return Tracked(seconds, records.length - before, errors)
 
 
 def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
@@ -119,7 +117,7 @@ def _begin_known(rig: Rig, ground: Ground, random: np.random.Generator) -> None:
 
 
 def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
-            random: np.random.Generator) -> Trial:
+            random: np.random.Generator) -> Search:
     """Drives until it has been right for long enough, or can no more be in time."""
     began = looked = rig.now
     wander = Wander(int(random.integers(1 << 31)), lambda: rig.may_go_on)
@@ -138,12 +136,8 @@ def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
     finally:
         wander.stop()
     times, errors = errors_since(rig.watch.records, began)
-    off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
-    held = since is not None and times[-1] - since >= HOLD
-    return Trial(kind, number, tuple(np.round(place, 3).tolist()),
-                 round(since - began, 2) if held else None, off,
-                 turned if turned is None else round(float(np.degrees(turned)), 3),
-                 len(rig.watch.records.contacts))
+    return Search(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
+                  len(rig.watch.records.contacts))
 
 
 def _watch_for(rig: Rig, seconds: float, part: str, what: str) -> None:

@@ -12,8 +12,8 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.watch import MAP, Watch
+from evaluation.house.ground import Ground
+from evaluation.house.watch import MAP, Watch
 from nav_algorithms.poses import compose, invert, wrap_angle
 
 LIMIT, LIMIT_FACTOR = 60.0, 5.0  # s, simulated, and times the shortest way at full speed, for a way

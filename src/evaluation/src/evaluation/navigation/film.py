@@ -10,14 +10,13 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
-from evaluation.course_run.video import VIEW_PX, fit
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.house_map import HouseMap
-from evaluation.navigation.records import Records
+from evaluation.house.ground import Ground
+from evaluation.house.house_map import HouseMap
+from evaluation.house.records import Records
+from evaluation.house.watch import Watch
 from evaluation.navigation.score import Result
-from evaluation.navigation.watch import Watch
 from evaluation.picture import FAINT, LAP_COLOURS, PAPER, write_text
+from evaluation.session.film import FILM_RATE_HZ, VIEW_PX, FilmFile, fit
 from nav_algorithms.poses import compose, transform_points
 
 CAMERA = "/camera/rgb/image_raw"

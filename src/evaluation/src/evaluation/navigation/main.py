@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Family
-from evaluation.course_run.report import versions
+from evaluation.house.ground import Ground
+from evaluation.house.progress import Progress
+from evaluation.house.watch import Watch
 from evaluation.navigation.film import Film
-from evaluation.navigation.ground import Ground
 from evaluation.navigation.options import Options, parse_options
 from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
-from evaluation.navigation.progress import Progress
 from evaluation.navigation.report import lines, read_map_frame, write_report
 from evaluation.navigation.score import Result
-from evaluation.navigation.watch import Watch
-from evaluation.program import NOT_PASSED, PASSED, run_program
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.versions import versions
+from evaluation.trial.live import LiveDrive, Outcome, run_live
+from evaluation.trial.program import run_program
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 
@@ -31,14 +31,19 @@ MAP_FILES = ("map.pgm", "map.yaml")
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    return run_program("navigate", lambda: _run(parse_options(arguments)))
+    return run_program("navigate", lambda: run_live(NavigationRun(parse_options(arguments))))
 
 
-class NavigationRun:
+class NavigationRun(LiveDrive):
     """One run: who takes part in it and what was found."""
 
+    program = "navigate"
+    vehicle = "robot"
+    writes = (*RESULTS, *MAP_FILES)
+
     def __init__(self, options: Options):
-        self.options, self.progress, self.result = options, Progress(), Result()
+        super().__init__(options.out, Progress())
+        self.options, self.result = options, Result()
         self._ground = Ground(options.house)
         self._check_way_points()
         self._goals = self._ground.draw_goals(options.goals, options.seed)
@@ -49,10 +54,9 @@ class NavigationRun:
             except MapFileError as error:
                 raise RunError(str(error)) from error
         self._watch: Watch | None = None
-        self.film: Film | None = None
 
-    def drive(self, launched: Launched) -> None:
-        """Both parts, or the second on a map that is there."""
+    def bring_up(self, launched: Launched) -> None:
+        """The master, and who looks on; each part brings up its own nodes."""
         self.progress.status("starting roscore")
         launched.start_roscore()
         self._watch = Watch(launched.master_uri)
@@ -61,6 +65,9 @@ class NavigationRun:
             self.film = Film(self.options.out / "run.mp4", self._ground, self._watch, self.result)
             self.film.start()
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+
+    def watch(self, launched: Launched) -> Outcome:
+        """Both parts, or the second on a map that is there."""
         everybody = self.options, self._ground, self._watch, launched, self.progress
         map_file = self.options.map
         if map_file is None:
@@ -71,20 +78,25 @@ class NavigationRun:
             map_file = self.options.out / "map.yaml"
         self._tell(f"{len(self._goals)} goals: map_server, amcl, move_base")
         NavigationPart(*everybody).run(self.result, str(map_file), self._goals)
+        faults = self.result.faults
+        return ("not passed", "; ".join(faults)) if faults else ("passed", "")
 
-    def stop(self) -> None:
-        """Film no more."""
-        if self.film is not None:
-            self.film.stop()
-
-    def close(self) -> None:
-        """Look no more, and finish the film."""
+    def end(self) -> None:
+        """Look no more."""
         if self._watch is not None:
             self._watch.stop()
-        if self.film is not None:
-            self.film.close()
 
-    def report(self, outcome: tuple[str, str], log_folder: Path) -> None:
+    @property
+    def was_seen(self) -> bool:
+        return bool(self.result.paths)
+
+    def faults(self, outcome: Outcome) -> list[str]:
+        return self.result.faults
+
+    def owned_files(self) -> Sequence[str]:
+        return RESULTS if self.options.map else self.writes
+
+    def report(self, outcome: Outcome, log_folder: Path) -> None:
         """Write map.png and report.json, print the figures and where the files are."""
         out = self.options.out
         log = [line for path in sorted(log_folder.glob("*simulator.log"))
@@ -95,8 +107,7 @@ class NavigationRun:
         cv2.imwrite(str(out / "map.png"), picture)
         write_report(out / "report.json", self.options, outcome, self.result, made_with)
         self.progress.say("\n" + "\n".join(lines(self.options, self.result)))
-        made = [str(_short(out / name)) for name in (*RESULTS, *MAP_FILES) if (out / name).exists()]
-        self.progress.say(f"files: {'  '.join(made)}")
+        self.name_files()
 
     def _tell(self, title: str) -> None:
         if self.film is not None:
@@ -107,40 +118,6 @@ class NavigationRun:
             if not self._ground.has_room(np.array(point)):
                 raise RunError(f"way_points: the robot cannot get to {list(point)} without touching"
                                " a wall: change the house file")
-
-
-def _run(options: Options) -> int:
-    run = NavigationRun(options)
-    _prepare(options)
-    outcome, end = ("", ""), None
-    with Family() as family:
-        launched = Launched(family, options.out / "log", vehicle="robot")
-        try:
-            run.drive(launched)
-            faults = run.result.faults
-            outcome = ("passed", "") if not faults else ("not passed", "; ".join(faults))
-        except (KeyboardInterrupt, RunError) as ended_early:
-            end, outcome = ended_early, ("ended early", str(ended_early) or "interrupted")
-        run.stop()
-        family.interrupt(spare=run.film.process_id if run.film else None)
-        run.close()
-    if run.result.paths:
-        run.report(outcome, launched.log_folder)
-    if end is not None:
-        raise end
-    for fault in run.result.faults:
-        print(f"navigate: {fault}", file=sys.stderr)
-    return NOT_PASSED if run.result.faults else PASSED
-
-
-def _prepare(options: Options) -> None:
-    try:
-        options.out.mkdir(parents=True, exist_ok=True)
-        mine = RESULTS if options.map else (*RESULTS, *MAP_FILES)
-        for name in mine:  # what is there afterwards is of this run
-            (options.out / name).unlink(missing_ok=True)
-    except OSError as error:
-        raise RunError(f"--out {options.out}: {error.strerror}") from error
 
 
 def _titles(options: Options, result: Result) -> tuple[str, str]:
@@ -159,8 +136,3 @@ def _titles(options: Options, result: Result) -> tuple[str, str]:
     touched = sum(len(part.contacts) for part in (result.mapping, result.navigation) if part)
     figures.append(f"touched {touched}")
     return f"{reached} of {options.goals} goals reached", "   |   ".join(figures)
-
-
-def _short(path: Path) -> Path:
-    here = Path.cwd()
-    return path.relative_to(here) if path.is_relative_to(here) else path

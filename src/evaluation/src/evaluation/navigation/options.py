@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.command_line import Parser, pace, whole
-from evaluation.course_run.failure import RunError
-from evaluation.navigation.house_file import House, load_house
+from evaluation.house.house_file import House, load_house
+from evaluation.session.failure import RunError
+from evaluation.trial.command_line import Parser, pace, whole
 
 
 @dataclass(frozen=True)

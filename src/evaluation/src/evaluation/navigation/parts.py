@@ -8,14 +8,11 @@ from collections.abc import Callable
 import numpy as np
 import rospy
 
-from evaluation.bench.cpu import CpuMeter
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.processes import Child
+from evaluation.house.ground import Ground
+from evaluation.house.progress import Progress
+from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver
-from evaluation.navigation.ground import Ground
 from evaluation.navigation.options import Options
-from evaluation.navigation.progress import Progress
 from evaluation.navigation.score import (
     Navigation,
     Pace,
@@ -25,7 +22,10 @@ from evaluation.navigation.score import (
     score_mapping,
     seen_of,
 )
-from evaluation.navigation.watch import Watch
+from evaluation.session.cpu import CpuMeter
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.processes import Child
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose, invert, relative, wrap_angle
 

@@ -5,15 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.house_map import (
-    CLEAR,
-    GOAL,
-    MISSED,
-    TRUE_WALL,
-    WALL,
-    HouseMap,
-)
+from evaluation.house.ground import Ground
+from evaluation.house.house_map import CLEAR, GOAL, MISSED, TRUE_WALL, WALL, HouseMap
 from evaluation.navigation.score import Result
 from evaluation.picture import FAINT, LAP_COLOURS, PAPER, draw_line, write_text
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from evaluation.house.records import Contact
 from evaluation.navigation.driver import Way
 from evaluation.navigation.options import Options
-from evaluation.navigation.records import Contact
 from evaluation.navigation.score import (
     LEAST_AGREEMENT,
     MOST_ATE,
@@ -23,6 +23,8 @@ from evaluation.navigation.score import (
     Result,
     Seen,
 )
+from evaluation.trial.report import write_json
+from evaluation.trial.table import table
 
 COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
 
@@ -47,7 +49,7 @@ def write_report(path: Path, options: Options, outcome: tuple[str, str], result:
         "navigation": _navigation(navigation, speed) if navigation else None,
         **made_with,
     }
-    path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+    write_json(values, path)
 
 
 def read_map_frame(path: Path) -> np.ndarray:
@@ -91,8 +93,7 @@ def _table(ways: list[Way], speed: float) -> list[str]:
             f"{way.shortest / speed:.1f}", f"{way.driven:.2f}", f"{way.off * 100:.1f}",
             f"{math.degrees(way.off_yaw):.1f}",
         ))  # fmt: skip
-    widths = [max(len(row[column]) for row in rows) for column in range(len(COLUMNS))]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows]
+    return table(rows, left=()).splitlines()
 
 
 def _mapping(mapping: Mapping, speed: float) -> dict:

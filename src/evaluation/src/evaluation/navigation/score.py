@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from evaluation.course_run.failure import RunError
+from evaluation.house.ground import Ground
+from evaluation.house.records import Contact, Records
 from evaluation.mapping.map_agreement import MapAgreement, map_agreement
 from evaluation.mapping.trajectory_error import TrajectoryError, trajectory_error
 from evaluation.mapping.true_map import visible_walls
 from evaluation.navigation.driver import Way
-from evaluation.navigation.ground import Ground
-from evaluation.navigation.records import Contact, Records
+from evaluation.session.failure import RunError
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.picture import PAPER, TEXT, write_text
+from evaluation.picture import PAPER, TEXT, tile_sheet, write_text
 from evaluation.race_trials.results import Lap
 
 COLUMNS, WIDTH_PX, HEIGHT_PX, CAPTION_PX, GAP_PX = 5, 440, 330, 34, 8
@@ -17,16 +17,8 @@ FAILED = (90, 90, 240)  # BGR
 
 def write_path_sheet(laps: Sequence[Lap], out: Path) -> Path:
     """Write OUT/paths_<follower>.png with a tile for each of the follower's laps."""
-    rows = -(-len(laps) // COLUMNS)
-    columns = min(COLUMNS, len(laps))
-    step_x, step_y = WIDTH_PX + GAP_PX, HEIGHT_PX + CAPTION_PX + GAP_PX
-    sheet = np.full((rows * step_y + GAP_PX, columns * step_x + GAP_PX, 3), PAPER, np.uint8)
-    for number, lap in enumerate(laps):
-        row, column = divmod(number, COLUMNS)
-        x, y = GAP_PX + column * step_x, GAP_PX + row * step_y
-        sheet[y : y + HEIGHT_PX + CAPTION_PX, x : x + WIDTH_PX] = _tile(lap)
     path = out / f"paths_{Path(laps[0].follower).stem}.png"
-    cv2.imwrite(str(path), sheet)
+    cv2.imwrite(str(path), tile_sheet([_tile(lap) for lap in laps], COLUMNS, GAP_PX))
     return path
 
 

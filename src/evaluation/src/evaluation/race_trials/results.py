@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from evaluation.course_run.failure import RunError
-from evaluation.race_trials.disturbance import Disturbance
+from evaluation.laps.disturbance import Disturbance
 from evaluation.race_trials.venue import Venue
+from evaluation.trial.table import cell, table
 
 MOST_RMS = 0.05  # m beside the line
 LEAST_SPEED = 1.5  # m/s
@@ -34,6 +33,11 @@ class Lap:
     frames_dropped: int  # images without a command: such a drive will not be repeated
     disturbance: Disturbance
     folder: str
+
+    @property
+    def name(self) -> str:
+        """Of its case."""
+        return f"{self.follower} {self.set} {self.seed}"
 
     @property
     def closed(self) -> bool:
@@ -110,7 +114,7 @@ def _summary(follower: str, kind: str, laps: list[Lap]) -> Summary:
     )  # fmt: skip
 
 
-def table(summaries: Sequence[Summary]) -> str:
+def summary_table(summaries: Sequence[Summary]) -> str:
     """A row each; figures are of closed laps."""
     rows = [("follower", "laps on", "closed", "within limits", "m/s", "least", "RMS cm", "worst",
              "max cm", "worst seed")]  # fmt: skip
@@ -118,20 +122,13 @@ def table(summaries: Sequence[Summary]) -> str:
         (
             each.follower, each.set, f"{each.closed} of {each.laps}",
             f"{each.within_limits} of {each.laps}",
-            _cell(each.mean_speed, 1, 2), _cell(each.least_speed, 1, 2),
-            _cell(each.mean_rms_lateral, 100, 1), _cell(each.max_rms_lateral, 100, 1),
-            _cell(each.max_lateral, 100, 1), str(each.worst_seed),
+            cell(each.mean_speed, 1, 2), cell(each.least_speed, 1, 2),
+            cell(each.mean_rms_lateral, 100, 1), cell(each.max_rms_lateral, 100, 1),
+            cell(each.max_lateral, 100, 1), str(each.worst_seed),
         )
         for each in summaries
     ]  # fmt: skip
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if column < 2 else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        )
-        for row in rows
-    )
+    return table(rows, left=(0, 1))
 
 
 def lap_line(lap: Lap) -> str:
@@ -144,28 +141,11 @@ def lap_line(lap: Lap) -> str:
     return f"{lap.follower} {lap.track} seed {lap.seed}: {lap.outcome}{time}, {figures} ({drawn})"
 
 
-def write_report(laps: Sequence[Lap], path: Path) -> None:
+def to_json(laps: Sequence[Lap]) -> dict:
     """All there is, with the limits it is held against."""
-    values = {
+    return {
         "most_rms_lateral_m": MOST_RMS,
         "least_mean_speed_mps": LEAST_SPEED,
         "summaries": [asdict(each) for each in summarize(laps)],
         "laps": [{**asdict(lap), "within_limits": lap.within_limits} for lap in laps],
     }
-    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-
-
-def read_laps(path: Path) -> list[Lap]:
-    """The laps of a report that `write_report` wrote."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))["laps"]
-        kept = [{name: each[name] for name in Lap.__dataclass_fields__} for each in found]
-        return [Lap(**{**each, "disturbance": Disturbance(**each["disturbance"])}) for each in kept]
-    except OSError as error:
-        raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise RunError(f"{path}: no report of race_trials: {error!r}") from error
-
-
-def _cell(value: float | None, factor: float, digits: int) -> str:
-    return "-" if value is None else f"{value * factor:.{digits}f}"

@@ -7,8 +7,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
 
 PACKAGE = "racecar_description"
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evaluation.course_run.course_file import Course
+from evaluation.session.course_file import Course
 
 PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
 PAGE, PID = TRACKERS = ("visual_tracker.py", "visual_tracker_pid.py")

@@ -9,9 +9,15 @@ import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.film import FILM_RATE_HZ, FilmFile
-from evaluation.course_run.video import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, fit
 from evaluation.picture import FAINT, PAPER, write_text
+from evaluation.session.film import (
+    FAST_FILM_PERIOD,
+    FILM_PERIOD,
+    FILM_RATE_HZ,
+    VIEW_PX,
+    FilmFile,
+    fit,
+)
 from evaluation.tracking.room import Room
 from evaluation.tracking.scene import Scene
 from evaluation.tracking.score import TrackScorer

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.command_line import Parser, number, whole
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
 from evaluation.tracking.course import COURSE, PID, TRACKERS
 from evaluation.tracking.scene import KINDS, MOVING
+from evaluation.trial.command_line import Parser, number, whole
 
 
 @dataclass(frozen=True)

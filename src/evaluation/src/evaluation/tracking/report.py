@@ -3,25 +3,42 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Protocol
 
 import cv2
 import numpy as np
 
-from evaluation.course_run.report import fingerprint, frame_figures, versions
+from evaluation.lap import fingerprint
 from evaluation.picture import FAINT, GRID, PAPER, draw_line, write_text
+from evaluation.session.film import FilmFile
+from evaluation.session.frames import frame_figures
+from evaluation.session.versions import versions
+from evaluation.tracking.options import Options
 from evaluation.tracking.room import FAR, NEAR, TARGET, Room
-from evaluation.tracking.run import TrackRun
+from evaluation.tracking.scene import Scene
 from evaluation.tracking.score import BAND, SETTLED, TrackScorer
+from evaluation.tracking.start import Start
 
 ROOM_PX, SIDE_PX, HEADER_PX, CURVE_PX, FOOT_PX = 1000, 40, 120, 240, 50
 MOST_SHOWN = 1.0  # m beside the wanted distance, at the curve's edges
 
 
-def summarize(run: TrackRun, log: Iterable[str]) -> dict:
+class Seen(Protocol):
+    """What a report needs to know of a run."""
+
+    drive: TrackScorer
+    options: Options
+    start: Start
+    scene: Scene
+    frames: tuple[int, int]
+    wall: float
+    film: FilmFile
+
+
+def summarize(run: Seen, log: Iterable[str]) -> dict:
     """All figures; m, s, simulated but wall_s."""
     drive, options, log = run.drive, run.options, list(log)
     errors, settled = drive.judged_errors(), drive.judged_errors(SETTLED)
@@ -73,12 +90,7 @@ def lines(report: dict) -> list[str]:
     return found
 
 
-def write_report(report: dict, folder: Path) -> None:
-    """report.json."""
-    (folder / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
-
-
-def path_picture(run: TrackRun, report: dict) -> np.ndarray:
+def path_picture(run: Seen, report: dict) -> np.ndarray:
     """The room with both ways, and the distance's curve below it, BGR."""
     drive = run.drive
     width = ROOM_PX + 2 * SIDE_PX

@@ -2,50 +2,32 @@
 
 from __future__ import annotations
 
-import math
 import time
-from dataclasses import dataclass
+from pathlib import Path
 
-import numpy as np
+import cv2
 import yaml
 
-from evaluation.course_run.course_file import find_package
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import Launched
-from evaluation.course_run.observer import Observer
-from evaluation.course_run.status_line import StatusLine
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.observer import Observer
+from evaluation.session.processes import read_log
+from evaluation.session.resources import find_package
+from evaluation.session.status_line import StatusLine
 from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, annotated_topic
 from evaluation.tracking.film import Film
 from evaluation.tracking.options import Options
-from evaluation.tracking.scene import STANDING, STATIC, draw_scene
+from evaluation.tracking.report import lines, path_picture, summarize
+from evaluation.tracking.scene import draw_scene
 from evaluation.tracking.score import Task, TrackScorer
 from evaluation.tracking.sdf import world_text
+from evaluation.tracking.start import draw_start
+from evaluation.trial.live import LiveDrive, Outcome
+from evaluation.trial.report import write_json
 
 LOOK_PERIOD = 0.05   # s, wall
-START_AWAY = 1.5     # m from the standing cylinder, at least
-START_REACH = 4.0    # m from the room's middle, along x and along y
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
 LONGEST = 120.0      # s, simulated, to reach a cylinder that stands
-
-
-@dataclass(frozen=True)
-class Start:
-    """Where the car begins; m, rad."""
-
-    x: float
-    y: float
-    yaw: float
-
-
-def draw_start(kind: str, seed: int) -> Start:
-    """Anywhere in the room for a cylinder that stands; in the middle, facing it, if it walks."""
-    if kind != STATIC:
-        return Start(0.0, 0.0, 0.0)
-    random = np.random.default_rng(seed)
-    while True:
-        x, y = random.uniform(-START_REACH, START_REACH, 2)
-        if math.dist((x, y), STANDING) >= START_AWAY:
-            return Start(float(x), float(y), float(random.uniform(-math.pi, math.pi)))
 
 
 def wanted_distance(tracker: str) -> float | None:
@@ -57,11 +39,15 @@ def wanted_distance(tracker: str) -> float | None:
         "wanted_distance"])
 
 
-class TrackRun:
+class TrackRun(LiveDrive):
     """One drive and what was seen of it."""
 
-    def __init__(self, options: Options, progress: StatusLine):
-        self.options, self.progress = options, progress
+    program = "track"
+    writes = ("path.png", "run.mp4", "report.json")
+
+    def __init__(self, options: Options):
+        super().__init__(options.out, StatusLine())
+        self.options, self.driver = options, options.tracker
         self.scene = draw_scene(options.scene, options.seed)
         self.start = draw_start(options.scene, options.seed)
         wanted = wanted_distance(options.tracker)
@@ -90,7 +76,7 @@ class TrackRun:
         launched.wait_for(lambda: self._observer.missing, self._take, self.progress.status,
                           options.startup_timeout)
 
-    def watch(self, launched: Launched) -> None:
+    def watch(self, launched: Launched) -> Outcome:
         """Returns when nothing more is to be seen."""
         began = heard = time.monotonic()
         while not self.drive.over:
@@ -103,14 +89,29 @@ class TrackRun:
                 raise RunError(f"simulated time has stood still at {now:.1f} s: the simulator is"
                                " paused or hangs")
         self.wall = time.monotonic() - began
+        return self.drive.outcome, ""
 
     def end(self) -> None:
-        """Film and ask no more."""
-        self.film.stop()
+        """Count, and ask no more."""
         if self._observer is not None:
             if self.drive.samples:
                 self.frames = self._observer.count(self.drive.samples[-1].time)
             self._observer.stop()
+
+    @property
+    def was_seen(self) -> bool:
+        return bool(self.drive.samples)
+
+    def faults(self, outcome: Outcome) -> list[str]:
+        return [] if self.drive.good else [""]
+
+    def report(self, outcome: Outcome, log_folder: Path) -> None:
+        """Write report.json and path.png, and print the figures."""
+        found = summarize(self, read_log(log_folder / "roslaunch.log"))
+        write_json(found, self.out / "report.json")
+        cv2.imwrite(str(self.out / "path.png"), path_picture(self, found))
+        self.progress.say("\n" + "\n".join(lines(found)))
+        self.name_files()
 
     def _arguments(self) -> list[str]:
         options, start = self.options, self.start

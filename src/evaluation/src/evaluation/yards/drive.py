@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evaluation.course_run.failure import RunError
+from evaluation.session.failure import RunError
+from evaluation.session.simulator import Place
 from evaluation.yards import crossing, results
 from evaluation.yards.crossing import APPROACH, ROBOT_SPEED, Crossing
-from evaluation.yards.judge import WALKED_INTO, Judge, Place, Sample
+from evaluation.yards.judge import WALKED_INTO, Judge, Sample
 from evaluation.yards.results import Drive
 from evaluation.yards.rig import PERSON as PERSON_MODEL
 from evaluation.yards.rig import Rig
@@ -23,31 +24,93 @@ SILENCE = 30.0      # s, wall
 LIMIT = 100.0       # s, simulated, as in the benchmark
 NEAR = 0.2          # m from a goal that is called reached, by the simulator's own pose
 ORIGIN = (0.0, 0.0, 0.0)
-Way = list[tuple[float, ...]]  # s, x, y, yaw
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be driven; m, rad."""
+
+    set: str
+    seed: int
+    repeat: int
+    models: dict[str, tuple[str, Place]]  # SDF and place, by name
+    start: Place
+    goal: Place
+    shortest: float  # the way's length
+    cylinders: np.ndarray  # (N, 2), centres
+    drawn: dict
+    walk: Crossing | None = None
+
+    @property
+    def name(self) -> str:
+        """Of its case."""
+        return f"{self.set}-{self.seed}-{self.repeat}"
 
 
-def through_yard(rig: Rig, yard: Yard, repeat: int) -> tuple[Drive, Way]:
-    """The drive, and when it was where."""
-    start = yard.start(repeat)
-    rig.prepare({"yard": (yard_model(yard), ORIGIN)}, start)
-    judge = Judge(yard.cylinders, RADIUS)
-    outcome, pace = _watch(rig, judge, yard.goal)
+@dataclass(frozen=True)
+class Driven:
+    """What was seen of a drive."""
+
+    judge: Judge
+    ended: str
+    real_time_factor: float
+    recoveries: list[str]
+    slow_cycles: int
+
+
+def yard_task(yard: Yard, repeat: int) -> Task:
+    """Through a yard."""
     drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
              "path_length": yard.path_length, **asdict(yard.difficulty)}
-    return _drive(rig, judge, results.YARDS, yard.seed, repeat, outcome, pace,
-                  start, yard.goal, yard.path_length, drawn)
+    return Task(results.YARDS, yard.seed, repeat, {"yard": (yard_model(yard), ORIGIN)},
+                yard.start(repeat), yard.goal, yard.path_length, yard.cylinders, drawn)
 
 
-def past_person(rig: Rig, walk: Crossing) -> tuple[Drive, Way]:
-    """The same in a room that a person walks across."""
-    rig.prepare({"room": (room_model(), ORIGIN), PERSON_MODEL: (person_model(), walk.begin)},
-                crossing.START)
-    rig.wait(rig.person_listens, "the person")
-    judge, walker = Judge(np.empty((0, 2)), 0.0), Walker(rig, walk)
-    outcome, pace = _watch(rig, judge, crossing.GOAL, walker)
+def crossing_task(walk: Crossing) -> Task:
+    """Through a room that a person walks across."""
+    models = {"room": (room_model(), ORIGIN), PERSON_MODEL: (person_model(), walk.begin)}
     start, goal = crossing.START, crossing.GOAL
-    return _drive(rig, judge, results.CROSSINGS, walk.seed, 0, outcome, pace, start, goal,
-                  math.dist(start[:2], goal[:2]), asdict(walk))
+    return Task(results.CROSSINGS, walk.seed, 0, models, start, goal,
+                math.dist(start[:2], goal[:2]), np.empty((0, 2)), asdict(walk), walk)
+
+
+def prepare(rig: Rig, task: Task) -> None:
+    """The task's world, and the robot at its start."""
+    rig.prepare(task.models, task.start)
+    if task.walk is not None:
+        rig.wait(rig.person_listens, "the person")
+
+
+def drive(rig: Rig, task: Task) -> Driven:
+    """From start to goal, or as far as it comes."""
+    judge = Judge(task.cylinders, RADIUS)
+    walker = Walker(rig, task.walk) if task.walk is not None else None
+    ended, pace = _watch(rig, judge, task.goal, walker)
+    return Driven(judge, ended, pace, list(rig.recoveries), rig.slow_cycles)
+
+
+def score(task: Task, driven: Driven) -> Drive:
+    """The drive's result."""
+    judge, ended = driven.judge, driven.ended
+    straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
+    if outcome == results.NOT_THERE:
+        ended = f"from {judge.off(task.goal):.2f} m away"
+    return Drive(
+        set=task.set,
+        seed=task.seed,
+        repeat=task.repeat,
+        outcome=outcome,
+        why=None if ended == results.REACHED else ended,
+        time=round(judge.time, 2),
+        distance=round(judge.distance, 3),
+        straight_time=round(straight / ROBOT_SPEED, 2),
+        shortest_time=round(task.shortest / ROBOT_SPEED, 2),
+        to_obstacles=_known(judge.to_obstacles),
+        to_person=_known(judge.to_person),
+        recoveries=driven.recoveries,
+        slow_cycles=driven.slow_cycles,
+        real_time_factor=round(driven.real_time_factor, 2),
+        drawn=task.drawn,
+    )
 
 
 class Walker:
@@ -93,31 +156,6 @@ def _watch(rig: Rig, judge: Judge, goal: Place, walker: Walker | None = None
         walker.stop()
     rig.end_goal()
     return ended, judge.time / wall
-
-
-def _drive(rig: Rig, judge: Judge, kind: str, seed: int, repeat: int, ended: str, pace: float,
-           start: Place, goal: Place, shortest: float, drawn: dict) -> tuple[Drive, Way]:
-    straight, outcome = math.dist(start[:2], goal[:2]), _outcome(judge, ended, goal)
-    if outcome == results.NOT_THERE:
-        ended = f"from {judge.off(goal):.2f} m away"
-    drive = Drive(
-        set=kind,
-        seed=seed,
-        repeat=repeat,
-        outcome=outcome,
-        why=None if ended == results.REACHED else ended,
-        time=round(judge.time, 2),
-        distance=round(judge.distance, 3),
-        straight_time=round(straight / ROBOT_SPEED, 2),
-        shortest_time=round(shortest / ROBOT_SPEED, 2),
-        to_obstacles=_known(judge.to_obstacles),
-        to_person=_known(judge.to_person),
-        recoveries=list(rig.recoveries),
-        slow_cycles=rig.slow_cycles,
-        real_time_factor=round(pace, 2),
-        drawn=drawn,
-    )
-    return drive, judge.path
 
 
 def _outcome(judge: Judge, ended: str, goal: Place) -> str:

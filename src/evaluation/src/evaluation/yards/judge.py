@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evaluation.session.simulator import Place
 from evaluation.yards.clearance import CONTACT, clearance
 from evaluation.yards.crossing import PERSON_RADIUS
 
@@ -14,8 +15,6 @@ STANDING = 0.02   # m/s
 PATH_STEP = 0.02  # m between two points that are kept
 OBSTACLE, PERSON, WALKED_INTO = (
     "touched an obstacle", "touched the person", "the person walked into the standing robot")
-
-Place = tuple[float, float, float]  # x, y, m; yaw, rad
 
 
 @dataclass(frozen=True)

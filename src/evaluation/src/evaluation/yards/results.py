@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field
 
-from evaluation.course_run.failure import RunError
+from evaluation.trial.table import cell, table
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
@@ -110,23 +108,21 @@ def passed(drives: Sequence[Drive]) -> bool:
                         for name in (YARDS, CROSSINGS)))
 
 
-def table(summaries: Sequence[Summary]) -> str:
+def summary_table(summaries: Sequence[Summary]) -> str:
     """A row each."""
     rows = [("drives", "reached", "", "s", "straight s", "ratio", "BARN", "air cm", "to person cm",
              "with recovery")]  # fmt: skip
     rows += [
         (
             each.set, f"{each.outcomes.get(REACHED, 0)} of {each.drives}",
-            f"{each.share_reached:.0%}", _cell(each.mean_time, 1, 1),
-            _cell(each.mean_straight_time, 1, 1), _cell(each.mean_time_by_straight, 1, 2),
-            _cell(each.mean_score, 1, 3), _cell(each.least_to_obstacles, 100, 1),
-            _cell(each.least_to_person, 100, 1), str(each.drives_with_recovery),
+            f"{each.share_reached:.0%}", cell(each.mean_time, 1, 1),
+            cell(each.mean_straight_time, 1, 1), cell(each.mean_time_by_straight, 1, 2),
+            cell(each.mean_score, 1, 3), cell(each.least_to_obstacles, 100, 1),
+            cell(each.least_to_person, 100, 1), str(each.drives_with_recovery),
         )
         for each in summaries
     ]  # fmt: skip
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-                     for row in rows)
+    return table(rows, left=())
 
 
 def drive_line(drive: Drive) -> str:
@@ -135,36 +131,9 @@ def drive_line(drive: Drive) -> str:
     air = drive.to_obstacles if drive.to_person is None else drive.to_person
     recovered = f", {len(drive.recoveries)} recoveries" if drive.recoveries else ""
     return (f"{drive.name}: {drive.outcome}{why}, {drive.time:.1f} s (straight"
-            f" {drive.straight_time:.1f} s), {_cell(air, 100, 1)} cm of air{recovered},"
+            f" {drive.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
             f" real time x{drive.real_time_factor:.2f}")
-
-
-def write_report(drives: Sequence[Drive], path: Path) -> None:
-    """All there is, with the limit it is held against."""
-    values = {
-        "least_share_of_yards": LEAST_SHARE,
-        "passed": passed(drives),
-        "summaries": [asdict(each) for each in summarize(drives)],
-        "drives": [{**asdict(drive), "score": drive.score} for drive in drives],
-    }
-    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-
-
-def read_drives(path: Path) -> list[Drive]:
-    """The drives of a report that `write_report` wrote."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))["drives"]
-        return [Drive(**{name: each[name] for name in Drive.__dataclass_fields__})
-                for each in found]
-    except OSError as error:
-        raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise RunError(f"{path}: no report of navigation_trials: {error!r}") from error
 
 
 def _mean(values: list[float]) -> float | None:
     return statistics.fmean(values) if values else None
-
-
-def _cell(value: float | None, factor: float, digits: int) -> str:
-    return "-" if value is None else f"{value * factor:.{digits}f}"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 import queue
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import actionlib
@@ -13,15 +15,13 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from gazebo_msgs.msg import ModelState, ModelStates
 from gazebo_msgs.srv import DeleteModel, SetModelState, SpawnModel
-from geometry_msgs.msg import Pose, Twist
+from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
 
-from evaluation.bench.ros_run import RosRun
-from evaluation.bench.simulator import FAILURES, WAFFLE, wait_for_model
-from evaluation.course_run.failure import RunError
-from evaluation.course_run.launch import DIED, describe_exit
-from evaluation.yards.judge import Place, Sample
+from evaluation.session.launch import Launched
+from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message
+from evaluation.yards.judge import Sample
 from evaluation.yards.sdf import PERSON_TOPIC
 
 START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
@@ -29,28 +29,34 @@ FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 1
 PERSON = "person"
 UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 
+SLOW = "missed its desired rate"  # move_base's own words
+LOOK_PERIOD = 0.02  # s, wall
+call_service = partial(call, wait=ANSWER_LIMIT)
+
+
 class Rig:
     """Made once a run; all of its calls may raise RunError."""
 
-    def __init__(self, run: RosRun, real_time_factor: float, parameters: Path):
-        self._run = run
-        self._launched = run.launch(
-            "evaluation", "yard.launch", f"real_time_factor:={real_time_factor:g}",
-            f"parameters:={parameters}",
-        )  # fmt: skip
-        wait_for_model(run, WAFFLE)
+    def __init__(self, launched: Launched, real_time_factor: float, parameters: Path):
+        self._launched = launched
+        os.environ["ROS_MASTER_URI"] = launched.master_uri
+        launched.start_roscore()
+        launched.start("yard", [
+            "roslaunch", "evaluation", "yard.launch", f"real_time_factor:={real_time_factor:g}",
+            f"parameters:={parameters}"])
+        self.wait(lambda: WAFFLE in models(), f"model {WAFFLE}", START_LIMIT)
         rospy.init_node("navigation_trials", disable_signals=True, disable_rosout=True)
         self._samples: queue.SimpleQueue[Sample] = queue.SimpleQueue()
         self.recoveries: list[str] = []
-        self.slow_cycles = 0  # since `prepare`; move_base says so at most once in 5 s
+        self._slow_before = 0
         self._there: set[str] = set()
         self._walk = rospy.Publisher(PERSON_TOPIC, Twist, queue_size=1)
         rospy.Subscriber("gazebo/model_states", ModelStates, self._take, queue_size=1)
         rospy.Subscriber("move_base/recovery_status", RecoveryStatus, self._take_recovery)
         self._client = actionlib.ActionClient("move_base", MoveBaseAction)
         self._goal: actionlib.ClientGoalHandle | None = None
-        run.wait(lambda: self._client.wait_for_server(rospy.Duration(0.1)), START_LIMIT,
-                 "the action server of move_base")
+        self.wait(lambda: self._client.wait_for_server(rospy.Duration(0.1)),
+                  "the action server of move_base", START_LIMIT)
 
     def prepare(self, models: dict[str, tuple[str, Place]], start: Place) -> None:
         """These models (SDF and place by name) instead of the last; the robot stands at `start`.
@@ -58,20 +64,20 @@ class Rig:
         Its costmaps know only what it sees from there.
         """
         for name in sorted(self._there):
-            self._call("gazebo/delete_model", DeleteModel, name)
+            call_service("/gazebo/delete_model", DeleteModel, name)
             self._there.discard(name)
         state = ModelState(model_name=WAFFLE, pose=pose_message(start), reference_frame="world")
-        self._call("gazebo/set_model_state", SetModelState, state)
+        call_service("/gazebo/set_model_state", SetModelState, state)
         for name, (text, place) in models.items():
-            self._call("gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
+            call_service("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
                        "world")
             self._there.add(name)
         self.pause(FRESH)
-        self._call("move_base/clear_costmaps", Empty)
+        call_service("/move_base/clear_costmaps", Empty)
         self.pause(FRESH)
         self.samples()
         self.recoveries.clear()
-        self.slow_cycles = 0
+        self._slow_before = self._launched.count_said(SLOW)
 
     def send(self, goal: Place) -> None:
         """Have the robot drive to a place."""
@@ -108,8 +114,7 @@ class Rig:
     def samples(self, wait: float = 0.0) -> list[Sample]:
         """All since the last call and within this time, s, wall."""
         time.sleep(wait)
-        self._run.check()
-        self.slow_cycles += slow_cycles_in(self._launched.new_lines())
+        self._launched.check(rospy.get_time())
         found = []
         while not self._samples.empty():
             found.append(self._samples.get_nowait())
@@ -120,9 +125,14 @@ class Rig:
         until = rospy.get_time() + seconds
         self.wait(lambda: rospy.get_time() >= until, "simulated time")
 
-    def wait(self, condition: Callable[[], bool], what: str) -> None:
-        """Returns once the condition is true; RunError after ANSWER_LIMIT."""
-        self._run.wait(condition, ANSWER_LIMIT, what)
+    @property
+    def slow_cycles(self) -> int:
+        """Since `prepare`; move_base says that it was too slow at most once in 5 s."""
+        return self._launched.count_said(SLOW) - self._slow_before
+
+    def wait(self, condition: Callable[[], bool], what: str, limit: float = ANSWER_LIMIT) -> None:
+        """Returns once the condition is true; RunError after `limit`, s, wall."""
+        self._launched.wait_for(lambda: what, condition, lambda _: None, limit, LOOK_PERIOD)
 
     def _take(self, message: ModelStates) -> None:
         places = dict(zip(message.name, message.pose, strict=True))
@@ -136,37 +146,3 @@ class Rig:
 
     def _take_recovery(self, message: RecoveryStatus) -> None:
         self.recoveries.append(message.recovery_behavior_name)
-
-    def _call(self, name: str, kind: type, *arguments: object) -> None:
-        try:
-            rospy.wait_for_service(name, ANSWER_LIMIT)
-            answer = rospy.ServiceProxy(name, kind)(*arguments)
-        except FAILURES as error:
-            raise RunError(f"service /{name}: {error}") from error
-        if not getattr(answer, "success", True):
-            raise RunError(f"service /{name}: {answer.status_message}")
-
-
-def slow_cycles_in(lines: list[str]) -> int:
-    """How often move_base was too slow, by roslaunch's output; RunError if a node has died."""
-    for line in lines:
-        died = DIED.search(line)
-        if died:
-            raise RunError(f"process {died[1]} died ({describe_exit(int(died[2]))})")
-    return sum("missed its desired rate" in line for line in lines)
-
-
-def pose_message(place: Place) -> Pose:
-    """On the ground."""
-    pose = Pose()
-    pose.position.x, pose.position.y = place[:2]
-    pose.orientation.z, pose.orientation.w = math.sin(place[2] / 2), math.cos(place[2] / 2)
-    return pose
-
-
-def place_of(pose: Pose) -> Place:
-    """x, y and yaw of a pose that is upright, or nearly so."""
-    turn = pose.orientation
-    yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
-                     1 - 2 * (turn.y * turn.y + turn.z * turn.z))
-    return pose.position.x, pose.position.y, yaw

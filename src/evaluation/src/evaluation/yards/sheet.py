@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.picture import PAPER, TEXT, write_text
+from evaluation.picture import PAPER, TEXT, tile_sheet, write_text
 from evaluation.yards.crossing import APPROACH, PERSON_RADIUS, Crossing
 from evaluation.yards.results import CROSSINGS, YARDS, Drive
 from evaluation.yards.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
@@ -34,21 +34,9 @@ def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
                 groups.setdefault(drive.seed, []).append(drive)
         if groups:
             tiles = [draw(group, out) for group in groups.values()]
-            cv2.imwrite(str(out / f"{kind}.png"), _sheet(tiles))
+            cv2.imwrite(str(out / f"{kind}.png"), tile_sheet(tiles, COLUMNS, GAP_PX))
             written.append(f"{kind}.png")
     return written
-
-
-def _sheet(tiles: list[np.ndarray]) -> np.ndarray:
-    height, width = tiles[0].shape[:2]
-    columns, rows = min(COLUMNS, len(tiles)), -(-len(tiles) // COLUMNS)
-    sheet = np.full((rows * (height + GAP_PX) + GAP_PX, columns * (width + GAP_PX) + GAP_PX, 3),
-                    PAPER, np.uint8)
-    for number, tile in enumerate(tiles):
-        row, column = divmod(number, COLUMNS)
-        top, left = GAP_PX + row * (height + GAP_PX), GAP_PX + column * (width + GAP_PX)
-        sheet[top:top + height, left:left + width] = tile
-    return sheet
 
 
 class _Tile:

@@ -1,0 +1,89 @@
+"""The house as it is: its walls, where a robot has room, and the shortest ways through it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.world import World
+from evaluation.house.feelers import Feelers
+from evaluation.house.house_file import House
+from evaluation.mapping.neighbours import reached
+from evaluation.mapping.true_map import open_walls, true_map
+from evaluation.session.failure import RunError
+from nav_algorithms.costmap.costs import FREE, INSCRIBED, Costmap
+from nav_algorithms.global_planning import navfn
+from nav_algorithms.grid import OCCUPIED, OccupancyGrid
+from nav_algorithms.likelihood_field import distances
+from nav_algorithms.poses import wrap_angle
+
+MOST_DRAWS = 10_000  # of a place for one goal
+
+
+class Ground:
+    """True walls of a house, read from its world file; all poses in the world's frame."""
+
+    def __init__(self, house: House):
+        self._house = house
+        self._world = _open(house)
+        self.walls = _true_walls(self._world, house)
+        self._clearance = distances(
+            (self.walls.cells == OCCUPIED).astype(np.uint8)) * self.walls.resolution
+        start = self.walls.cells_of(np.array([house.start[:2]]))
+        self._within = reached(self._clearance < house.passable, start)
+        self._costs = Costmap(np.where(self._within, FREE, INSCRIBED).astype(np.uint8),
+                              self.walls.resolution, self.walls.origin)
+
+    def feelers(self, urdf: str) -> Feelers:
+        """Of the robot that this text describes, in this house."""
+        return Feelers(self._world, urdf)
+
+    def has_room(self, point: np.ndarray) -> bool:
+        """Can the robot get to this point (x, y) from its start?"""
+        cell = self.walls.cells_of(np.asarray(point, float))
+        return bool(self.walls.contains(cell) and self._within[tuple(cell)])
+
+    def draw_goals(self, count: int, seed: int) -> np.ndarray:
+        """Poses (count, 3), evenly over where there is room; RunError where there is too little.
+
+        The first goals of a longer list are those of a shorter one.
+        """
+        generator = np.random.default_rng(seed)
+        cells = np.argwhere(self._within & (self._clearance >= self._house.goal_clearance))
+        goals: list[np.ndarray] = []
+        before = np.array(self._house.start)
+        while len(goals) < count:
+            before = self._draw_goal(generator, cells, before)
+            goals.append(before)
+        return np.array(goals).reshape(-1, 3)
+
+    def shortest_way(self, start: np.ndarray, goal: np.ndarray) -> float:
+        """m, from pose to pose, without touching a wall; inf where there is no way."""
+        path = navfn.plan(self._costs, np.asarray(start, float), np.asarray(goal, float))
+        if path is None:
+            return np.inf
+        return float(np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1).sum())
+
+    def _draw_goal(self, generator: np.random.Generator, cells: np.ndarray,
+                   before: np.ndarray) -> np.ndarray:
+        for _ in range(MOST_DRAWS if len(cells) else 0):
+            place = self.walls.centres_of(cells[generator.integers(len(cells))])
+            yaw = wrap_angle(generator.uniform(-np.pi, np.pi))
+            if np.linalg.norm(place - before[:2]) >= self._house.goal_distance:
+                return np.array([*place, yaw])
+        raise RunError(f"no room for a goal {self._house.goal_clearance:g} m from all walls and "
+                       f"{self._house.goal_distance:g} m from the last: change the house file")
+
+
+def _open(house: House) -> World:
+    try:
+        return open_walls(house.world_path)
+    except (SimulationError, OSError) as error:
+        raise RunError(f"{house.world_path}: {error}") from error
+
+
+def _true_walls(world: World, house: House) -> OccupancyGrid:
+    try:
+        return true_map(world, house.laser_height, [house.start[:2]])
+    except ValueError as error:
+        raise RunError(f"{house.world_path}: {error}") from error

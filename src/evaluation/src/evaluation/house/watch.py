@@ -1,0 +1,127 @@
+"""What the run sees through ROS: where the robot is and believes to be, what it touches, maps."""
+
+from __future__ import annotations
+
+import os
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+import rospy
+from gazebo_msgs.srv import GetModelState
+from geometry_msgs.msg import Pose, Transform
+from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
+from nav_msgs.msg import Path as PathMessage
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from evaluation.house.feelers import Feelers
+from evaluation.house.records import Records
+from evaluation.session import names
+from evaluation.session.asking import Asker
+from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.poses import compose
+
+ROBOT = "turtlebot3"  # its model name, as upstream's launch file spawns it
+MAP, ODOM, BASE = "map", "odom", "base_footprint"
+PLAN = "/move_base/NavfnROS/plan"
+POSE_RATE_HZ = 25.0
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Where the beams of one scan ended, and how the laser sees."""
+
+    points: np.ndarray  # (N, 2), m, in the laser's frame
+    angles: np.ndarray  # (M,), rad, of all beams
+
+
+class Watch:
+    """Looks on while others drive. Records begin anew with each part of the run.
+
+    True poses are asked of the simulator 25 times a second; believed ones are what /tf says when
+    odometry's transform comes. The node must exist before use_sim_time is set: then it needs no
+    /clock, and does not mind when a restarted simulator's time begins again.
+    """
+
+    def __init__(self, master_uri: str):
+        os.environ["ROS_MASTER_URI"] = master_uri
+        rospy.init_node("navigate", anonymous=True, disable_signals=True, disable_rosout=True)
+        self.records = Records()
+        self.feelers: Feelers | None = None  # what it touches is not noted without
+        self.map: OccupancyGrid | None = None
+        self.scan: Scan | None = None
+        self.plan = np.empty((0, 2))  # m, in the map's frame
+        self._map_to_odom: np.ndarray | None = None
+        self._ended = threading.Event()
+        self._asker = Asker(self._ended)
+        self._lock = threading.Lock()
+
+    def start(self) -> None:
+        """Begin to look."""
+        rospy.Subscriber("/tf", TFMessage, self._take_transforms, queue_size=100)
+        rospy.Subscriber("/map", OccupancyGridMessage, self._take_map, queue_size=1)
+        rospy.Subscriber("/scan", LaserScan, self._take_scan, queue_size=1)
+        rospy.Subscriber(PLAN, PathMessage, self._take_plan, queue_size=1)
+        threading.Thread(target=self._ask_poses, daemon=True, name="pose").start()
+
+    def stop(self) -> None:
+        """Look no more; does not wait for an answer that may never come."""
+        self._ended.set()
+
+    def begin(self) -> None:
+        """A new part of the run: nothing is known any more."""
+        with self._lock:
+            self.records = Records()
+            self.map, self.scan, self._map_to_odom = None, None, None
+            self.plan = np.empty((0, 2))
+
+    def _ask_poses(self) -> None:
+        for _ in self._asker.ticks(POSE_RATE_HZ, names.POSE, GetModelState):
+            records = self.records
+            reply = self._asker.call(ROBOT, "world")
+            if reply is not None and reply.success:
+                now, pose = reply.header.stamp.to_sec(), _pose(reply.pose)
+                records.truth.append((now, *pose))
+                if self.feelers is not None:
+                    records.note_gap(self.feelers.gap(np.array(pose)), now)
+
+    def _take_transforms(self, message: TFMessage) -> None:
+        for each in message.transforms:
+            link = each.header.frame_id.strip("/"), each.child_frame_id.strip("/")
+            with self._lock:
+                if link == (MAP, ODOM):
+                    self._map_to_odom = _transform(each.transform)
+                elif link == (ODOM, BASE) and self._map_to_odom is not None:
+                    pose = compose(self._map_to_odom, _transform(each.transform))
+                    self.records.believed.append((each.header.stamp.to_sec(), *pose.tolist()))
+
+    def _take_map(self, message: OccupancyGridMessage) -> None:
+        info = message.info
+        cells = np.array(message.data, np.int8).reshape(info.height, info.width)
+        place = info.origin.position
+        self.map = OccupancyGrid(cells, info.resolution, (place.x, place.y))
+
+    def _take_scan(self, message: LaserScan) -> None:
+        angles = message.angle_min + message.angle_increment * np.arange(len(message.ranges))
+        ranges = np.array(message.ranges)
+        seen = (ranges >= message.range_min) & (ranges <= message.range_max)
+        ways = np.stack((np.cos(angles[seen]), np.sin(angles[seen])), axis=1)
+        self.scan = Scan(ways * ranges[seen, None], angles)
+
+    def _take_plan(self, message: PathMessage) -> None:
+        self.plan = np.array([(pose.pose.position.x, pose.pose.position.y)
+                              for pose in message.poses]).reshape(-1, 2)
+
+
+def _pose(pose: Pose) -> tuple[float, float, float]:
+    return (pose.position.x, pose.position.y, _yaw(pose.orientation))
+
+
+def _transform(transform: Transform) -> np.ndarray:
+    place = transform.translation
+    return np.array([place.x, place.y, _yaw(transform.rotation)])
+
+
+def _yaw(q: object) -> float:
+    return float(np.arctan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))

@@ -1,0 +1,61 @@
+"""`make bench-lanes`: all methods on the same seeds: laps, RMS, speed, ms a frame."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from evaluation.lane.results import LaneDrive, lap_table, to_json
+from evaluation.lane.timing import ms_a_frame
+from evaluation.lane.trial import LaneCase, LaneDrives, check_methods, known_methods, lane_case
+from evaluation.session.failure import RunError
+from evaluation.trial.command_line import Parser
+from evaluation.trial.program import chart_writer
+
+
+class LaneComparison(LaneDrives):
+    """A method that fails is a finding, not a failure."""
+
+    program = "bench_lanes"
+    does = "Compare all methods on the same seeds."
+    good = "all were driven"
+    writes = "report.json, report.html, lanes.png and the drives"
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--seeds", 5, "laps of each method")
+        parser.add_argument("--methods", nargs="+", metavar="NAME", help="some of them (all)")
+
+    def check(self, options: argparse.Namespace) -> None:
+        options.methods = tuple(dict.fromkeys(options.methods or known_methods()))
+        check_methods(options.methods)
+        if not options.seeds:
+            raise RunError("--seeds 0: nothing to drive")
+        self._write_chart = chart_writer("evaluation.lane.chart")  # what is missing is said at once
+        self._methods, self._times = options.methods, {}
+
+    def cases(self, options: argparse.Namespace) -> list[LaneCase]:
+        return [lane_case(method, seed)
+                for seed in range(options.seeds) for method in options.methods]
+
+    def passed(self, results: Sequence[LaneDrive]) -> bool:
+        return True
+
+    def table(self, results: Sequence[LaneDrive]) -> str:
+        failed = [f"{each.method}, seed {each.seed}: {each.why}"
+                  for each in results if not each.closed]
+        return "\n".join([lap_table(results, self._ms_a_frame()), *failed])
+
+    def values(self, results: Sequence[LaneDrive]) -> dict:
+        return to_json(results, ms_a_frame=self._ms_a_frame())
+
+    def pictures(self, results: Sequence[LaneDrive], out: Path) -> list[str]:
+        self._write_chart(results, self._ms_a_frame(), out / "lanes.png")
+        return ["lanes.png"]
+
+    def _ms_a_frame(self) -> dict[str, float]:
+        """Of each method; measured once."""
+        for method in self._methods:
+            if method not in self._times:
+                self._times[method] = round(ms_a_frame(method), 2)
+        return self._times

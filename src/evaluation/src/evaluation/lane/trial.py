@@ -1,0 +1,209 @@
+"""`make lane-trials`: laps in differing light, then encounters with people."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import lane_keeping.methods
+import numpy as np
+
+from evaluation.lane.encounters import judge, nearest_ever
+from evaluation.lane.recording import read_recording
+from evaluation.lane.results import (
+    LaneDrive,
+    encounter_table,
+    from_json,
+    from_report,
+    lap_table,
+    line_of,
+    to_json,
+)
+from evaluation.lane.scenery import load_crossings
+from evaluation.laps import lit_drive
+from evaluation.laps.disturbance import Disturbance
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
+from evaluation.session.session import Session
+from evaluation.track import load_track, load_track_file
+from evaluation.trial.command_line import Parser
+from evaluation.trial.protocol import REPORT, Case, Trial
+
+LAPS_WITH_PEOPLE = 4  # in a row; bringing up a simulator takes as long as a quarter of a lap
+PEOPLE_FROM = 500  # first seed of the drives with people
+LIGHT, NOISE = (0.6, 1.4), (0.0, 0.02)  # times the world's own; standard deviation, 1: full
+START_OFFSET, START_TURN = 0.05, 0.1  # m and rad, to either side, at most
+NEAR = 3.0  # m: people set off when the car is that near or nearer, so that they meet
+LONGEST_LAP = 240.0  # s, simulated
+STARTUP_LIMIT, LAP_LIMIT = 240.0, 1800.0  # s, wall: the machine may be busy
+ANSWER_LIMIT = 20.0  # s, wall
+
+
+@dataclass(frozen=True)
+class LaneCase(Case):
+    """What to drive: a method's name, a seed, laps in a row, and whether people cross."""
+
+    method: str
+    seed: int
+    laps: int
+    people: bool
+
+
+def lane_case(method: str, seed: int, people: bool = False) -> LaneCase:
+    """One lap alone, or some with people."""
+    name = f"{method} {'people' if people else 'laps'}-{seed}"
+    return LaneCase(name, method, seed, LAPS_WITH_PEOPLE if people else 1, people)
+
+
+class LaneDrives(Trial):
+    """What the trials of one method and the comparison of all have in common."""
+
+    def setup(self, session: Session, case: LaneCase) -> None:
+        self._case, self._disturbance = case, draw(case.seed)
+        folder = session.out / "drives" / case.name.partition(" ")[2]
+        self._folder = folder / case.method
+        models = find_package("lane_keeping") / "models"
+        world = models.parent / "worlds" / ("lane.world" if case.people else "lane_empty.world")
+        lit = lit_drive.write_world(world, models, self._disturbance.light, folder)
+        self._drive = lit_drive.start(
+            session, course_arguments(case, self._disturbance, lit, self._folder), self._folder,
+            [folder / "models", models])
+
+    def run(self) -> dict:
+        """course_run's report; poses.txt is beside it where people cross."""
+        case = self._case
+        return self._drive.report(LAP_LIMIT * case.laps, f"{case.method}, seed {case.seed}")
+
+    def score(self, record: dict) -> LaneDrive:
+        case = self._case
+        found = from_report(record, case.method, case.seed, self._disturbance, case.people)
+        if not case.people:
+            return found
+        recording = read_recording(self._folder / "poses.txt")
+        track = load_track_file(find_package("evaluation") / "tracks" / "lane.yaml")
+        met = judge(recording, load_crossings(), track.lane_width)
+        nearest = round(nearest_ever(recording), 3)
+        return LaneDrive(**{**vars(found), "nearest_person": nearest, "encounters": tuple(met)})
+
+    def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
+        """None is no mistake."""
+        return super().earlier(options) if (options.out / REPORT).exists() else []
+
+    def line(self, result: LaneDrive) -> str:
+        failed = [f"\n  not passed: {each}" for each in result.encounters if not each.passed]
+        return line_of(result) + "".join(failed)
+
+    def values(self, results: Sequence[LaneDrive]) -> dict:
+        return to_json(results)
+
+    def from_values(self, values: dict) -> list[LaneDrive]:
+        return from_json(values)
+
+
+class LaneTrial(LaneDrives):
+    """One method's laps alone, and drives with people until so many were met."""
+
+    program = "lane_trials"
+    does = "Drive laps in differing light and past people."
+    good = "all within the limits"
+    writes = "report.json, report.html and the drives"
+    open_ended = True
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--seeds", 20, "laps without people")
+        parser.add_whole("--crossings", 100, "people to meet")
+        parser.add_argument("--method", default="sliding_windows", metavar="NAME",
+                            help="(sliding_windows)")
+
+    def check(self, options: argparse.Namespace) -> None:
+        check_methods([options.method])
+        if not options.seeds and not options.crossings:
+            raise RunError("--seeds 0 --crossings 0: nothing to drive")
+        self._crossings = options.crossings
+
+    def cases(self, options: argparse.Namespace) -> list[LaneCase]:
+        """At most as many drives with people as people are to be met."""
+        return [*(lane_case(options.method, seed) for seed in range(options.seeds)),
+                *(lane_case(options.method, PEOPLE_FROM + number, people=True)
+                  for number in range(options.crossings))]
+
+    def is_needed(self, case: LaneCase, results: Sequence[LaneDrive]) -> bool:
+        return not case.people or count_met(results) < self._crossings
+
+    def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
+        found = super().earlier(options)
+        others = {each.method for each in found} - {options.method}
+        if others:
+            raise RunError(f"{options.out / REPORT}: is of METHOD={others.pop()};"
+                           " choose that or another --out")
+        return found
+
+    def passed(self, results: Sequence[LaneDrive]) -> bool:
+        if count_met(results) < self._crossings:
+            raise RunError(f"fewer than {self._crossings} people were met in as many drives")
+        with_people = [each for each in results if each.people]
+        return (all(each.within_limits for each in results if not each.people)
+                and all(each.closed and each.kept_clear for each in with_people)
+                and all(met.passed for each in with_people for met in each.encounters))
+
+    def table(self, results: Sequence[LaneDrive]) -> str:
+        laps = [each for each in results if not each.people]
+        people = [each for each in results if each.people]
+        parts = [lap_table(laps)] if laps else []
+        if people:
+            closed = sum(each.closed for each in people)
+            parts += [f"{closed} of {len(people)} drives with people closed",
+                      encounter_table(people)]
+        return "\n".join(parts)
+
+
+def count_met(results: Sequence[LaneDrive]) -> int:
+    """People met in all drives."""
+    return sum(len(each.encounters) for each in results)
+
+
+def draw(seed: int) -> Disturbance:
+    """The seed's start, noise and light, evenly distributed between the bounds above."""
+    random = np.random.default_rng(seed)
+    return Disturbance(
+        sideways=random.uniform(-START_OFFSET, START_OFFSET),
+        along=0.0,
+        turn=random.uniform(-START_TURN, START_TURN),
+        camera_noise=random.uniform(*NOISE),
+        light=random.uniform(*LIGHT),
+    )
+
+
+def course_arguments(case: LaneCase, disturbance: Disturbance, world: Path, folder: Path
+                     ) -> list[str]:
+    """Those of course_run for a drive in this world; people are recorded into the folder."""
+    start = disturbance.start(load_track(find_package("evaluation") / "tracks" / "lane.yaml"))
+    launch, record = [], []
+    if case.people:
+        launch = ["--launch", "evaluation", "lane.launch"]
+        record = [f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}"]
+    return [
+        "--course", "lane" if case.people else "lane_empty", *launch,
+        "--follower", f"{case.method}.py", "--laps", str(case.laps), "--fast", "--no-video",
+        "--seed", str(case.seed), "--duration", f"{LONGEST_LAP * case.laps:g}",
+        "--startup-timeout", f"{STARTUP_LIMIT:g}",
+        *lit_drive.launch_arguments(world, start, disturbance.camera_noise, ANSWER_LIMIT, *record),
+    ]  # fmt: skip
+
+
+def known_methods() -> list[str]:
+    """Names of all methods; sliding_windows comes first."""
+    folders = (Path(folder) for folder in lane_keeping.methods.__path__)
+    names = sorted(path.stem for folder in folders for path in folder.glob("*.py")
+                   if "def plan" in path.read_text(encoding="utf-8"))
+    return sorted(names, key=lambda name: name != "sliding_windows")
+
+
+def check_methods(methods: Sequence[str]) -> None:
+    """RunError for a name that no method has."""
+    known = known_methods()
+    for name in methods:
+        if name not in known:
+            raise RunError(f"no method {name!r} (METHOD=); there are: {', '.join(known)}")

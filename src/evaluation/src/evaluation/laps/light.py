@@ -1,0 +1,74 @@
+"""A world in brighter or dimmer light, as a world file and models of its own.
+
+The renderer, like Gazebo's, cuts the light on a surface off at 1 before it multiplies the texture
+by it, and our worlds' light is at that bound: more of it would change nothing on the road. So
+brighter textures are what a brighter light would show, up to the white at which a camera ends.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import cv2
+import numpy as np
+
+from evaluation.session.failure import RunError
+
+MODEL = "model://"
+
+
+def write_lit_world(world: Path, models: Path, sun: Path, factor: float, folder: Path) -> Path:
+    """Write FOLDER/<the world's name> with its light times `factor`; returns that file.
+
+    `models` is where the world's own models are: copies of them with brighter textures go to
+    FOLDER/models if the factor is above 1. `sun` is the folder of the model that lights the world.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        tree = ElementTree.parse(world)
+        light = ElementTree.parse(sun / "model.sdf").getroot().find("light")
+    except (OSError, ElementTree.ParseError) as error:
+        raise RunError(f"{world}: no world in which the light could be changed: {error}") from error
+    scale_light(tree.getroot(), light, factor)
+    shutil.rmtree(folder / "models", ignore_errors=True)
+    if factor > 1:
+        for name in _included(tree.getroot()):
+            if (models / name).is_dir():
+                _copy_brighter(models / name, folder / "models" / name, factor)
+    tree.write(folder / world.name, encoding="unicode", xml_declaration=True)
+    return folder / world.name
+
+
+def scale_light(root: Element, sun: Element, factor: float) -> None:
+    """Multiply the world's ambient light and its sun's, which takes the place of its include."""
+    world = root.find("world")
+    for ambient in world.findall("scene/ambient"):
+        _scale(ambient, factor)
+    for number, child in enumerate(world):
+        if child.tag == "include" and child.findtext("uri", "").strip() == f"{MODEL}sun":
+            world[number] = ElementTree.fromstring(ElementTree.tostring(sun))
+    for diffuse in world.findall("light/diffuse"):
+        _scale(diffuse, factor)
+
+
+def _scale(colour: Element, factor: float) -> None:
+    """Red, green and blue; a fourth number, opacity, stays."""
+    values = [float(word) for word in colour.text.split()]
+    scaled = [value * factor for value in values[:3]] + values[3:]
+    colour.text = " ".join(f"{value:.6g}" for value in scaled)
+
+
+def _included(root: Element) -> list[str]:
+    """Names of the models that a world includes."""
+    uris = [element.text.strip() for element in root.findall("world/include/uri")]
+    return [uri.removeprefix(MODEL) for uri in uris if uri.startswith(MODEL)]
+
+
+def _copy_brighter(model: Path, copy: Path, factor: float) -> None:
+    shutil.copytree(model, copy)
+    for path in copy.glob("materials/textures/*.png"):
+        image = cv2.imread(str(path))
+        cv2.imwrite(str(path), np.clip(image * factor, 0, 255).round().astype(np.uint8))

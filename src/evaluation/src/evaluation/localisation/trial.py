@@ -1,0 +1,137 @@
+"""`make localisation-trials`: amcl is to find the waffle in the house, and to keep track of it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from evaluation.house.ground import Ground
+from evaluation.house.house_file import load_house
+from evaluation.house.progress import Progress
+from evaluation.localisation.results import (
+    FINDING,
+    KIDNAPS,
+    LIMITS_IN_REPORT,
+    Load,
+    Results,
+    Tracking,
+    Trial,
+    score,
+    summary_table,
+    trial_line,
+)
+from evaluation.localisation.rig import Rig
+from evaluation.localisation.trials import find, kidnap, measure_load, track
+from evaluation.session.failure import RunError
+from evaluation.session.session import Session
+from evaluation.trial import protocol
+from evaluation.trial.command_line import Parser
+from map_server.errors import MapFileError
+from map_server.map_files import write_map
+
+RUNS = {FINDING: find, KIDNAPS: kidnap, "tracking": track, "load": measure_load}
+Result = Trial | Tracking | Load
+
+
+@dataclass(frozen=True)
+class LocalisationCase(protocol.Case):
+    """One robot to be found, or one drive."""
+
+    kind: str  # of RUNS
+    amount: int  # its number, or s, simulated
+
+
+class LocalisationTrial(protocol.Trial):
+    """All cases in one simulator, which is brought up for the first of them."""
+
+    program = "localisation_trials"
+    does = ("Have amcl find the waffle in the house: from anywhere, and after it was carried away;"
+            " then have it keep track of it, and see what that costs.")
+    good = "all within the limits of the table"
+    writes = "report.json, report.html, the map and log/"
+
+    def __init__(self) -> None:
+        self._rig: Rig | None = None
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--starts", 20, "robots to find anywhere in the house")
+        parser.add_whole("--kidnaps", 10, "robots to find that were carried away")
+        parser.add_whole("--first", 1, "number of the first of each")
+        parser.add_whole("--tracking", 300, "simulated seconds to track for")
+        parser.add_whole("--load", 60, "simulated seconds of 2000 particles")
+        parser.add_argument(
+            "--wheel-odometry", action="store_true", help="track by the wheels' odometry, too,"
+            " which slips in turns: robots that are to be found always have it, a simulated"
+            " TurtleBot3 has the truth")
+        parser.add_whole("--seed", 0, "of places, ways, noise and particles")
+        parser.add_argument("--house", default="house", metavar="NAME",
+                            help="a house of houses/, or a file (house)")
+        parser.add_pace("simulated seconds a second; the load is always measured at 1 (1)")
+
+    def check(self, options: argparse.Namespace) -> None:
+        if not (options.starts or options.kidnaps or options.tracking or options.load):
+            raise RunError("no starts, no kidnaps, no tracking and no load: nothing to try")
+        options.house = load_house(options.house)
+        self._options, self._ground = options, Ground(options.house)
+
+    def cases(self, options: argparse.Namespace) -> list[LocalisationCase]:
+        found = [LocalisationCase(f"{kind}-{number}", kind, number)
+                 for kind, count in ((FINDING, options.starts), (KIDNAPS, options.kidnaps))
+                 for number in range(options.first, options.first + count)]
+        return found + [LocalisationCase(kind, kind, seconds) for kind, seconds in (
+            ("tracking", options.tracking), ("load", options.load)) if seconds]
+
+    def setup(self, session: Session, case: LocalisationCase) -> None:
+        self._case = case
+        if self._rig is None:
+            self._rig = self._bring_up(session)
+        to_be_found = case.kind in (FINDING, KIDNAPS)
+        self._rig.use_odometry(by_wheels=to_be_found or self._options.wheel_odometry)
+
+    def run(self) -> Any:
+        """What the case's kind sees."""
+        return RUNS[self._case.kind](
+            self._rig, self._ground, self._options.seed, self._case.amount)
+
+    def score(self, record: Any) -> Result:
+        return score(record)
+
+    def passed(self, results: Sequence[Result]) -> bool:
+        return Results.of_all(results).passed
+
+    def line(self, result: Result) -> str:
+        return trial_line(result)
+
+    def table(self, results: Sequence[Result]) -> str:
+        return summary_table(Results.of_all(results))
+
+    def values(self, results: Sequence[Result]) -> dict:
+        found = Results.of_all(results)
+        return {
+            "passed": found.passed,
+            "limits": LIMITS_IN_REPORT,
+            "trials": [{**asdict(trial), "right": trial.right} for trial in found.trials],
+            "tracking": asdict(found.tracking) if found.tracking else None,
+            "load": asdict(found.load) if found.load else None,
+        }
+
+    def from_values(self, values: dict) -> list[Result]:
+        found: list[Result] = [
+            Trial(**{name: each[name] for name in Trial.__dataclass_fields__})
+            for each in values["trials"]]
+        found += [kind(**values[name]) for name, kind in (("tracking", Tracking), ("load", Load))
+                  if values[name]]
+        return found
+
+    def _bring_up(self, session: Session) -> Rig:
+        try:
+            _, map_file = write_map(session.out / "map", self._ground.walls)
+        except (OSError, MapFileError) as error:
+            raise RunError(
+                f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
+        progress = session.progress = Progress()
+        rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file), progress)
+        session.at_end(rig.watch.stop)
+        return rig

@@ -1,0 +1,199 @@
+"""Brings up roscore and the launch file, and notices when a part of them dies."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import re
+import shutil
+import signal
+import socket
+import tempfile
+import time
+import xmlrpc.client
+from collections.abc import Callable
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+from evaluation.session.processes import INTERRUPT_TIME, Child, Family
+
+USUAL_PORT = 11311
+ROSCORE_TIME = 20.0  # s, wall
+MAY_FINISH = ("spawn",)  # a node so named has done its work when it ends with exit code 0
+DIED = re.compile(r"\[([\w/.-]+)\] process has died \[(?:pid \d+, )?exit code (-?\d+)")
+REQUIRED = re.compile(r"REQUIRED process \[([\w/.-]+)\] has died!")
+EXIT_CODE = re.compile(r"process has died \[(?:pid \d+, )?exit code (-?\d+)")
+FINISHED = re.compile(r"\[([\w/.-]+)\] process has finished cleanly")
+
+
+class Launched:
+    """roscore and roslaunch of one run, with the log files they write."""
+
+    def __init__(
+        self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car"
+    ):
+        self._family, self._follower, self._vehicle = family, follower, vehicle
+        self.log_folder = log_folder
+        shutil.rmtree(self.log_folder, ignore_errors=True)
+        self.log_folder.mkdir(parents=True)
+        # From looking for a port to listening there: no other run may choose the same one.
+        self._turn = (Path(tempfile.gettempdir()) / f"course_run-{os.getuid()}.lock").open("w")
+        fcntl.flock(self._turn, fcntl.LOCK_EX)
+        self.port = free_port()
+        self.master_uri = f"http://localhost:{self.port}"
+        self._environment = dict(
+            os.environ,
+            ROS_MASTER_URI=self.master_uri,
+            ROS_LOG_DIR=str(self.log_folder),
+            PYTHONUNBUFFERED="1",
+        )
+        self._children: list[Child] = []
+        self._said: list[str] = []  # lines of all children that `check` has read
+        self._required: dict[str, str] = {}  # child's name -> required process just reported dead
+
+    def start_roscore(self) -> None:
+        """Start roscore and wait until it answers."""
+        self.start("roscore", ["roscore", "-p", str(self.port)])
+        until = time.monotonic() + ROSCORE_TIME
+        while not _answers(self.master_uri):
+            self.check(None)
+            if time.monotonic() > until:
+                raise RunError(
+                    f"roscore did not answer within {ROSCORE_TIME:.0f} s",
+                    self._children[0].last_lines(),
+                )
+            time.sleep(0.05)
+        self._turn.close()
+
+    def start(self, name: str, command: list[str]) -> Child:
+        """Start one more program of this run; its output goes to NAME.log."""
+        log = self.log_folder / f"{name}.log"
+        try:
+            self._children.append(self._family.start(name, command, self._environment, log))
+        except OSError as error:
+            raise RunError(f"{command[0]} cannot be started: {error.strerror}") from error
+        return self._children[-1]
+
+    def run(self, name: str, command: list[str], limit: float) -> None:
+        """Run one program to its end; RunError if that is not exit code 0 within `limit`, s."""
+        child = self.start(name, command)
+        self._children.remove(child)
+        until = time.monotonic() + limit
+        while child.process.poll() is None and time.monotonic() < until:
+            self.check(None)
+            time.sleep(0.05)
+        code = child.process.poll()
+        if code != 0:
+            how = f"did not end within {limit:.0f} s" if code is None else describe_exit(code)
+            raise RunError(f"{name}: {how}; log: {child.log}", child.last_lines())
+
+    def wait_for(
+        self,
+        what: Callable[[], str],
+        condition: Callable[[], object],
+        status: Callable[[str], None],
+        limit: float,
+        pause: float = 0.0,
+    ) -> object:
+        """What the condition gives once it is true; RunError if it is not within `limit`, s.
+
+        `what` names what is not there yet, and `status` shows it meanwhile. Between two looks
+        there are `pause` s, wall, for a condition that does not wait by itself.
+        """
+        until = time.monotonic() + limit
+        while not (value := condition()):
+            self.check(None)
+            missing = what()
+            status(f"waiting for {missing}")
+            if time.monotonic() > until:
+                raise RunError(f"{missing} was not there within {limit:.0f} s", self.tail())
+            time.sleep(pause)
+        return value
+
+    def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
+        """End one program again, by force after `limit` (s, wall); then it is no failure."""
+        self._children.remove(child)
+        self._family.end(child, limit)
+
+    def check(self, sim_time: float | None) -> None:
+        """RunError if anything that the run needs has died."""
+        when = f"before the {self._vehicle} drove"
+        if sim_time is not None:
+            when = f"at simulated time {sim_time:.1f} s"
+        for child in self._children:
+            for line in child.new_lines():
+                self._said.append(line)
+                death = self._death_in(child, line)
+                if death:
+                    raise RunError(f"{death} {when}; log: {child.log}", self.tail())
+        for child in self._children:
+            code = child.process.poll()
+            if code is not None:
+                raise RunError(
+                    f"{child.name} ended ({describe_exit(code)}) {when}; log: {child.log}",
+                    self.tail(),
+                )
+
+    def count_said(self, text: str) -> int:
+        """How many lines, of those that `check` has read, hold this text."""
+        return sum(text in line for line in self._said)
+
+    def tail(self) -> str:
+        """The last lines of the launch's output."""
+        return self._children[-1].last_lines()
+
+    def _death_in(self, child: Child, line: str) -> str | None:
+        """What a line of roslaunch's says about a process that ended, in our words."""
+        died, required, code = DIED.search(line), REQUIRED.search(line), EXIT_CODE.search(line)
+        if died:
+            return f"{self._role(died[1])} died ({describe_exit(int(died[2]))})"
+        if required:  # its exit code follows on the next line
+            self._required[child.name] = required[1]
+            return None
+        name = self._required.pop(child.name, None)
+        if name:
+            how = describe_exit(int(code[1])) if code else "exit code 0"
+            return f"{self._role(name)} died ({how})"
+        finished = FINISHED.search(line)
+        if finished and not any(word in finished[1] for word in MAY_FINISH):
+            return f"{self._role(finished[1])} ended by itself (exit code 0)"
+        return None
+
+    def _role(self, process: str) -> str:
+        if process.startswith("gazebo"):
+            return f"the simulator (process {process})"
+        if process in ("master", "rosout-1"):
+            return f"roscore (process {process})"
+        driver = Path(self._follower).stem
+        if driver and ("follower" in process or process.startswith(driver)):
+            return f"the follower {self._follower} (process {process})"
+        return f"process {process}"
+
+
+def describe_exit(code: int) -> str:
+    """An exit code in words; negative codes are signals."""
+    if code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"killed by signal {-code}, {signal.Signals(-code).name}"
+    except ValueError:
+        return f"killed by signal {-code}"
+
+
+def free_port() -> int:
+    """The usual port if nobody listens there, else another."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("", USUAL_PORT))
+        except OSError:
+            probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
+def _answers(master_uri: str) -> bool:
+    try:
+        code, _, _ = xmlrpc.client.ServerProxy(master_uri).getPid("/course_run")
+    except (OSError, xmlrpc.client.Error):
+        return False
+    return code == 1

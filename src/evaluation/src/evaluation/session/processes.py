@@ -1,0 +1,176 @@
+"""Starts the run's processes and ends every one of them, children of children included."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import re
+import signal
+import subprocess
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # <linux/prctl.h>
+INTERRUPT_TIME, TERMINATE_TIME, KILL_TIME = 1.2, 0.4, 0.6  # s; all within the 3 s of a Ctrl-C
+_TERMINAL_CODES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07\n]*\x07?")  # colours, window titles
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+@dataclass
+class Child:
+    """One started program whose output goes to a file, which is read as it grows."""
+
+    name: str
+    process: subprocess.Popen
+    log: Path
+    _read: int = 0
+    _rest: str = field(default="", repr=False)
+
+    def new_lines(self) -> list[str]:
+        """Whole lines written since the last call."""
+        with self.log.open("rb") as file:
+            file.seek(self._read)
+            data = file.read()
+        self._read += len(data)
+        lines = (self._rest + data.decode(errors="replace")).split("\n")
+        self._rest = lines.pop()
+        return [strip_terminal_codes(line) for line in lines]
+
+    def last_lines(self, count: int = 12) -> str:
+        """The end of its output, for an error message."""
+        text = self.log.read_text(encoding="utf-8", errors="replace")
+        lines = strip_terminal_codes(text).splitlines()
+        return "\n".join([line for line in lines if line.strip()][-count:])
+
+
+class Family:
+    """All processes of one run; as a context it leaves none behind."""
+
+    def __init__(self) -> None:
+        self._children: list[Child] = []
+        # Orphans come to us and not to init: a killed roslaunch cannot leave its nodes behind.
+        _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+    def start(
+        self, name: str, command: list[str], environment: Mapping[str, str], log: Path
+    ) -> Child:
+        """Start a program in a session of its own; it is asked to end should we die before it."""
+        with log.open("wb") as output:
+            process = subprocess.Popen(
+                command,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=_end_with_parent,
+            )
+        self._children.append(Child(name, process, log))
+        return self._children[-1]
+
+    def __enter__(self) -> Family:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def interrupt(self, spare: int | None = None) -> None:
+        """Ask all but one to end, and do not wait."""
+        self._send(signal.SIGINT, spare)
+
+    def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
+        """End one child that was started here, by force if it takes longer than this (s, wall)."""
+        self._children.remove(child)
+        child.process.send_signal(signal.SIGINT)
+        try:
+            child.process.wait(limit)
+        except subprocess.TimeoutExpired:
+            child.process.kill()
+            child.process.wait()
+
+    def stop(self) -> None:
+        """End all: politely, then firmly, then by force; returns when they are gone."""
+        steps = (
+            (signal.SIGINT, INTERRUPT_TIME),
+            (signal.SIGTERM, TERMINATE_TIME),
+            (signal.SIGKILL, KILL_TIME),
+        )
+        for number, limit in steps:
+            self._send(number)
+            until = time.monotonic() + limit
+            while self._living():
+                if time.monotonic() > until:
+                    break
+                time.sleep(0.02)
+            else:
+                return
+
+    def _send(self, number: int, spare: int | None = None) -> None:
+        for pid in self._living():
+            if pid == spare:
+                continue
+            try:
+                os.kill(pid, number)
+            except ProcessLookupError:
+                continue
+
+    def _living(self) -> list[int]:
+        """Process ids of all descendants; collects those that ended."""
+        own = {child.process.pid: child.process for child in self._children}
+        living = []
+        for pid, state in _descendants(os.getpid()):
+            if state != "Z":
+                living.append(pid)
+            elif pid in own:
+                own[pid].poll()
+            else:
+                _collect(pid)
+        return living
+
+
+def strip_terminal_codes(text: str) -> str:
+    """The text without colours and window titles."""
+    return _TERMINAL_CODES.sub("", text)
+
+
+def read_log(path: Path) -> list[str]:
+    """A log's lines."""
+    return strip_terminal_codes(path.read_text(encoding="utf-8", errors="replace")).splitlines()
+
+
+def end_with_parent(number: int) -> None:
+    """Between fork and exec: have the kernel send this signal when our parent dies."""
+    _libc.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
+
+
+def _end_with_parent() -> None:
+    end_with_parent(signal.SIGTERM)
+
+
+def _collect(pid: int) -> None:
+    try:
+        os.waitpid(pid, os.WNOHANG)
+    except ChildProcessError:
+        return  # not ours yet: its own parent has still to be collected
+
+
+def _descendants(root: int) -> list[tuple[int, str]]:
+    """Process id and state of everything below a process."""
+    children: dict[int, list[tuple[int, str]]] = {}
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit():
+            continue
+        try:
+            stat = Path("/proc", entry, "stat").read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            continue
+        state, parent = stat.rpartition(")")[2].split()[:2]
+        children.setdefault(int(parent), []).append((int(entry), state))
+    found, waiting = [], [root]
+    while waiting:
+        below = children.get(waiting.pop(), [])
+        found += below
+        waiting += [pid for pid, _ in below]
+    return found

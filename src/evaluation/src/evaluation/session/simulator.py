@@ -1,0 +1,97 @@
+"""Asks the running simulator through its services, without a node of its own.
+
+The master is the one of ROS_MASTER_URI; every failure is a RunError.
+"""
+
+from __future__ import annotations
+
+import math
+
+import rosgraph
+import rospy
+from gazebo_msgs.srv import DeleteModel, GetWorldProperties, SpawnModel
+from geometry_msgs.msg import Pose
+from std_srvs.srv import Empty
+
+from evaluation.session.failure import RunError
+
+WAFFLE = "turtlebot3_waffle"
+Place = tuple[float, float, float]  # x, y, m; yaw, rad
+FAILURES = (rospy.ServiceException, rospy.ROSException, OSError)
+
+
+def models() -> list[str]:
+    """Names of what stands in the world; empty while the simulator does not answer."""
+    try:
+        return list(_world().model_names)
+    except RunError:
+        return []
+
+
+def simulated_time() -> float:
+    """s."""
+    return _world().sim_time
+
+
+def pause() -> None:
+    """Have time stand still."""
+    call("/gazebo/pause_physics", Empty)
+
+
+def unpause() -> None:
+    """Have time go on."""
+    call("/gazebo/unpause_physics", Empty)
+
+
+def spawn_urdf(name: str, text: str, namespace: str, x: float, y: float) -> None:
+    """Spawn a model at a place (m)."""
+    pose = Pose()
+    pose.position.x, pose.position.y, pose.orientation.w = x, y, 1.0
+    call("/gazebo/spawn_urdf_model", SpawnModel, name, text, namespace, pose, "world")
+
+
+def delete(name: str) -> None:
+    """Take a model out."""
+    call("/gazebo/delete_model", DeleteModel, name)
+
+
+def subscribers(topic: str) -> list[str]:
+    """Names of the nodes that subscribe to a topic, as the master knows them."""
+    _, subscribed, _ = rosgraph.Master("/bench").getSystemState()
+    return next((nodes for name, nodes in subscribed if name == topic), [])
+
+
+def _world() -> object:
+    return call("/gazebo/get_world_properties", GetWorldProperties)
+
+
+def call(name: str, kind: type, *arguments: object, wait: float | None = None) -> object:
+    """A service's answer; RunError if there is none, or if it is no.
+
+    `wait`: s, wall, in which the service has to be there; None: it has to be there now.
+    """
+    try:
+        if wait is not None:
+            rospy.wait_for_service(name, wait)
+        answer = rospy.ServiceProxy(name, kind)(*arguments)
+    except FAILURES as error:
+        raise RunError(f"service {name}: {error}") from error
+    if not getattr(answer, "success", True):
+        raise RunError(f"service {name}: {answer.status_message}")
+    return answer
+
+
+def pose_message(place: Place) -> Pose:
+    """On the ground."""
+    pose = Pose()
+    pose.position.x, pose.position.y = place[:2]
+    pose.orientation.z, pose.orientation.w = math.sin(place[2] / 2), math.cos(place[2] / 2)
+    return pose
+
+
+def place_of(pose: Pose) -> Place:
+    """x, y and yaw of a pose that is upright, or nearly so."""
+    turn = pose.orientation
+    yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
+                     1 - 2 * (turn.y * turn.y + turn.z * turn.z))
+    return pose.position.x, pose.position.y, yaw

@@ -1,0 +1,209 @@
+"""`make track-trials`: many seeded drives, each as `make track FAST=1`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import statistics
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
+from evaluation.session.session import Session
+from evaluation.tracking.course import PAGE, PID
+from evaluation.tracking.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
+from evaluation.tracking.score import FIND_TIME
+from evaluation.trial.command_line import Parser
+from evaluation.trial.protocol import REPORT, Case, Trial
+from evaluation.trial.table import cell, table
+
+LIMIT = 900.0  # s, wall, for one drive
+
+
+@dataclass(frozen=True)
+class Set:
+    """Drives of one kind."""
+
+    name: str
+    scene: str
+    tracker: str
+    least_share: float  # of its cases that have to be good; 0: only to be looked at
+    cases: int = 1      # in each drive
+
+
+SETS = {kind.name: kind for kind in (
+    Set("reach", STATIC, PAGE, 1.0),
+    Set("stand", STATIC, PID, 1.0),
+    Set("follow", MOVING, PID, 1.0),
+    Set("hidden", OCCLUSION, PID, 0.9, cases=len(HIDDEN_AT)),
+    Set("light", LIGHT, PID, 0.0),
+    Set("distractors", DISTRACTORS, PID, 0.0),
+)}
+
+
+@dataclass(frozen=True)
+class TrackCase(Case):
+    """One drive."""
+
+    set: str
+    seed: int
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One drive's report, as `make track` writes it."""
+
+    name: str
+    set: str
+    report: dict
+
+    @property
+    def good(self) -> int:
+        """How many of its cases were good: times hidden, or the drive."""
+        if SETS[self.set].scene != OCCLUSION:
+            return int(self.report["good"])
+        return sum(each["found_after_s"] is not None and each["found_after_s"] <= FIND_TIME
+                   for each in self.report["hidden"])
+
+
+@dataclass(frozen=True)
+class Summary:
+    """All drives of a set; m, s."""
+
+    set: str
+    scene: str
+    tracker: str
+    cases: int
+    good: int
+    least_share: float
+    mean_approach: float | None
+    mean_rms_error: float | None
+    max_error: float | None
+    max_error_settled: float | None  # later than a moment after it was near
+    longest_find: float | None
+    least_gap: float | None
+    failed_seeds: list[int]
+
+    @property
+    def passed(self) -> bool:
+        """Whether enough of its cases were good."""
+        return self.good >= self.least_share * self.cases
+
+
+class TrackTrial(Trial):
+    """Drives of several sets; each drive's own folder holds its report."""
+
+    program = "track_trials"
+    does = "Follow the red cylinder in many seeded drives, and count."
+    good = "enough of each set good"
+    writes = "report.json, report.html and the drives"
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--seeds", 20, "drives of each set, half as many of hidden, which hides it"
+                         " twice a drive", variable="SEEDS")
+        parser.add_whole("--first-seed", 0, "seed of the first of them")
+        parser.add_argument(
+            "--sets", nargs="+", choices=SETS, metavar="SET", help=f"of: {' '.join(SETS)}",
+            default=[kind.name for kind in SETS.values() if kind.least_share])
+
+    def check(self, options: argparse.Namespace) -> None:
+        if options.seeds == 0:
+            raise RunError("--seeds 0: nothing to drive")
+
+    def cases(self, options: argparse.Namespace) -> list[TrackCase]:
+        first = options.first_seed
+        return [TrackCase(f"{kind.name}/{seed}", kind.name, seed)
+                for kind in SETS.values() if kind.name in options.sets
+                for seed in range(first, first + math.ceil(options.seeds / kind.cases))]
+
+    def earlier(self, options: argparse.Namespace) -> list[Drive]:
+        """The drives whose reports there are; none is no mistake."""
+        found = [(case, options.out / case.name / REPORT) for case in self.cases(options)]
+        return [Drive(case.name, case.set, _read(path)) for case, path in found if path.exists()]
+
+    def setup(self, session: Session, case: TrackCase) -> None:
+        self._case, kind = case, SETS[case.set]
+        folder = session.out / case.name
+        self._drive = session.start_drive([
+            sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
+            "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
+            "--no-video", "--out", str(folder),
+        ], folder)  # fmt: skip
+
+    def run(self) -> dict:
+        """The drive's report."""
+        return self._drive.report(LIMIT, f"{self._case.set}, seed {self._case.seed}")
+
+    def score(self, record: dict) -> Drive:
+        return Drive(self._case.name, self._case.set, record)
+
+    def passed(self, results: Sequence[Drive]) -> bool:
+        return all(each.passed for each in summarize(results))
+
+    def line(self, result: Drive) -> str:
+        report = result.report
+        found = [cell(each["found_after_s"]) for each in report["hidden"]]
+        hidden = f", found again after {', '.join(found)} s" if found else ""
+        return (f"{result.set} {report['seed']}: {report['outcome']}, near after "
+                f"{cell(report['approach_s'])} s, at most {cell(report['max_error_m'], 100)} cm"
+                f" beside{hidden}, real time x{report['real_time_factor'] or 0:.2f}")
+
+    def table(self, results: Sequence[Drive]) -> str:
+        return summary_table(summarize(results))
+
+    def values(self, results: Sequence[Drive]) -> dict:
+        return {"summaries": [{**asdict(each), "passed": each.passed}
+                              for each in summarize(results)]}
+
+
+def summarize(drives: Sequence[Drive]) -> list[Summary]:
+    """One for each set there is, in the sets' order."""
+    groups = {name: [drive for drive in drives if drive.set == name] for name in SETS}
+    return [_summary(SETS[name], group) for name, group in groups.items() if group]
+
+
+def _summary(kind: Set, drives: list[Drive]) -> Summary:
+    reports = [drive.report for drive in drives]
+
+    def known(key: str) -> list[float]:
+        return [report[key] for report in reports if report[key] is not None]
+
+    found = [each["found_after_s"] for report in reports for each in report["hidden"]
+             if each["found_after_s"] is not None]
+    return Summary(
+        kind.name, kind.scene, kind.tracker, kind.cases * len(drives),
+        sum(drive.good for drive in drives), kind.least_share,
+        _mean(known("approach_s")), _mean(known("rms_error_m")),
+        max(known("max_error_m"), default=None),
+        max(known("max_error_settled_m"), default=None), max(found, default=None),
+        min(known("least_gap_m"), default=None),
+        [drive.report["seed"] for drive in drives if drive.good < kind.cases],
+    )  # fmt: skip
+
+
+def summary_table(summaries: Sequence[Summary]) -> str:
+    """A row each."""
+    rows = [("set", "scene", "tracker", "good", "near after s", "RMS cm", "most cm", "settled cm",
+             "found by s", "seeds not good")]
+    rows += [(each.set, each.scene, each.tracker, f"{each.good} of {each.cases}",
+              cell(each.mean_approach), cell(each.mean_rms_error, 100),
+              cell(each.max_error, 100), cell(each.max_error_settled, 100),
+              cell(each.longest_find),
+              ", ".join(map(str, each.failed_seeds)) or "-") for each in summaries]
+    return table(rows, left=range(10))
+
+
+def _mean(values: list[float]) -> float | None:
+    return statistics.fmean(values) if values else None
+
+
+def _read(path: Path) -> dict:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise RunError(f"{path}: no report of a drive ({error}); remove it, or --resume not"
+                       ) from error

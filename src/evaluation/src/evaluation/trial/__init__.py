@@ -1,0 +1,1 @@
+"""One protocol for all trials: cases, options, runner, table, report."""

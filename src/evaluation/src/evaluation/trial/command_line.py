@@ -1,0 +1,61 @@
+"""The command lines of the programs: a mistake is one line that says what to type instead."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from functools import partial
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+
+MOST = 999_999          # of what is counted or seeds something
+LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine keeps up with more
+
+
+class Parser(argparse.ArgumentParser):
+    """Knows options by their whole names; its errors are RunErrors."""
+
+    def __init__(self, package: str = "evaluation", **settings: object) -> None:
+        super().__init__(**{"allow_abbrev": False, **settings})
+        self._package = package  # that the program belongs to
+
+    def error(self, message: str) -> None:
+        """RunError that says where the options are listed."""
+        program = self.prog.split()[0]  # a verb follows
+        raise RunError(f"{message} (see: rosrun {self._package} {program} --help)")
+
+    def add_whole(self, flag: str, default: int, text: str, *, variable: str = "",
+                  most: int = MOST) -> None:
+        """An option that takes a whole number; `variable` is what the Makefile calls it."""
+        name = f"{flag} ({variable}=)" if variable else flag
+        self.add_argument(flag, type=partial(whole, name, most=most), default=default,
+                          metavar="N", help=f"{text} ({default})")
+
+    def add_pace(self, text: str) -> None:
+        """--real-time-factor, simulated seconds a second."""
+        self.add_argument("--real-time-factor", type=pace, default=1.0, metavar="X", help=text)
+
+    def add_out(self, default: str, text: str) -> None:
+        """--out, a folder."""
+        self.add_argument("--out", type=Path, default=Path(default), metavar="DIR",
+                          help=f"where {text} go ({default})")
+
+
+def whole(name: str, text: str, least: int = 0, most: int = MOST) -> int:
+    """A whole number written in digits, or RunError."""
+    if not re.fullmatch(r"[0-9]{1,9}", text) or not least <= int(text) <= most:
+        raise RunError(f"{name} must be a whole number, {least} to {most}; got {text!r}")
+    return int(text)
+
+
+def number(name: str, text: str, least: float, most: float, what: str = "a number") -> float:
+    """A number written without an exponent, or RunError; `what` names it and its unit."""
+    if not re.fullmatch(r"[0-9]{1,9}(\.[0-9]{1,6})?", text) or not least <= float(text) <= most:
+        raise RunError(f"{name} must be {what}, {least:g} to {most:g}; got {text!r}")
+    return float(text)
+
+
+def pace(text: str) -> float:
+    """Simulated seconds a second, or RunError."""
+    return number("--real-time-factor (PACE=)", text, LEAST_PACE, MOST_PACE)

@@ -1,0 +1,46 @@
+"""What the programs share: exit codes, and one line for each thing that goes wrong."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+
+from evaluation.session.failure import RunError
+from evaluation.session.interruption import interruptible
+from evaluation.track import TrackError
+
+PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
+
+
+def run_program(name: str, work: Callable[[], int]) -> int:
+    """Do the work; returns its exit code, or says what went wrong and returns another."""
+    try:
+        with interruptible():
+            return work()
+    except PermissionError as refused:
+        complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
+                                "or give one with --out"))
+        return NOT_RUN
+    except (RunError, TrackError, OSError) as failure:
+        complain(name, failure)
+        return NOT_RUN
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted; all processes ended", file=sys.stderr)
+        return INTERRUPTED
+
+
+def complain(name: str, failure: Exception) -> None:
+    """The failure's details, if it has any, then its one line."""
+    if details := getattr(failure, "details", ""):
+        print(details, file=sys.stderr)
+    print(f"{name}: {failure}", file=sys.stderr)
+
+
+def chart_writer(module: str) -> Callable:
+    """`write_chart` of a module; RunError where what charts are drawn with is not installed."""
+    try:
+        return importlib.import_module(module).write_chart
+    except ImportError as error:
+        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench, "
+                       "or apt install python3-matplotlib") from error

@@ -1,0 +1,121 @@
+"""What a trial says: which cases there are, how one is set up and run, and how it is scored."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from evaluation.session.failure import RunError
+from evaluation.session.session import Session
+from evaluation.trial.command_line import Parser
+
+REPORT = "report.json"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One thing to try: picklable, and tried twice it gives the same files and the same result."""
+
+    name: str  # unique among the cases; also that of its result
+
+
+class Trial(ABC):
+    """Cases that are set up, run and scored one by one; the runner does everything else.
+
+    A result is an object with the `name` of its case. `setup`, `run` and `score` follow one
+    another in one process. Another process may do another case: it makes a trial of its own from
+    the same arguments (`parse`) and is handed the case.
+    """
+
+    program: ClassVar[str]
+    does: ClassVar[str]  # for --help
+    good: ClassVar[str]  # what exit code 0 means
+    writes: ClassVar[str]  # what is in the folder for results
+    open_ended: ClassVar[bool] = False  # how many of the cases are needed depends on the results
+
+    # --- what there is to do
+
+    @abstractmethod
+    def add_options(self, parser: Parser) -> None:
+        """The options beside --out and --resume."""
+
+    @abstractmethod
+    def check(self, options: argparse.Namespace) -> None:
+        """RunError for options that do not fit together; also the place to complete them."""
+
+    @abstractmethod
+    def cases(self, options: argparse.Namespace) -> Sequence[Case]:
+        """All cases, in the order in which they are tried."""
+
+    def is_needed(self, case: Case, results: Sequence[Any]) -> bool:
+        """Whether a case that was not tried yet has to be, after these results."""
+        return True
+
+    # --- one case
+
+    @abstractmethod
+    def setup(self, session: Session, case: Case) -> None:
+        """Bring up what the case needs; what is started through the session ends with it."""
+
+    @abstractmethod
+    def run(self) -> Any:
+        """Let it happen; returns the record of what was seen. RunError if it could not be run."""
+
+    @abstractmethod
+    def score(self, record: Any) -> Any:
+        """The result of a record."""
+
+    # --- all of them
+
+    @abstractmethod
+    def passed(self, results: Sequence[Any]) -> bool:
+        """Whether the results are good: exit code 0, else 1."""
+
+    @abstractmethod
+    def line(self, result: Any) -> str:
+        """One result on one line."""
+
+    @abstractmethod
+    def table(self, results: Sequence[Any]) -> str:
+        """All results together, for the terminal."""
+
+    @abstractmethod
+    def values(self, results: Sequence[Any]) -> dict:
+        """What report.json holds."""
+
+    def from_values(self, values: dict) -> list[Any]:
+        """The results of a report.json, as `values` wrote them; KeyError, TypeError, ValueError."""
+        raise NotImplementedError
+
+    def earlier(self, options: argparse.Namespace) -> list[Any]:
+        """The results to go on with; RunError if there are none."""
+        path = options.out / REPORT
+        try:
+            return self.from_values(json.loads(path.read_text(encoding="utf-8")))
+        except OSError as error:
+            raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
+        except (ValueError, KeyError, TypeError) as error:
+            raise RunError(f"{path}: no report of {self.program}: {error!r}") from error
+
+    def pictures(self, results: Sequence[Any], out: Path) -> list[str]:
+        """Draw pictures of the results; returns their names."""
+        return []
+
+    def parse(self, arguments: Sequence[str]) -> argparse.Namespace:
+        """Options from the command line, or RunError."""
+        parser = Parser(
+            prog=f"{self.program}.py", description=self.does,
+            epilog=f"Exit code: 0 {self.good}, 1 not so, 2 could not run.")
+        self.add_options(parser)
+        parser.add_out(f"out/{self.program}", self.writes)
+        parser.add_argument("--resume", action="store_true",
+                            help="go on where the run that wrote there ended")
+        options = parser.parse_args(arguments)
+        options.out = options.out.resolve()
+        self.check(options)
+        return options

@@ -1,0 +1,138 @@
+"""`make navigation-trials`: through narrow yards and past persons, by move_base without a map."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
+from evaluation.session.session import Session
+from evaluation.trial.command_line import Parser
+from evaluation.trial.program import chart_writer
+from evaluation.trial.protocol import Case, Trial
+from evaluation.yards.crossing import draw_crossing
+from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
+from evaluation.yards.results import (
+    CROSSINGS,
+    LEAST_SHARE,
+    YARDS,
+    Drive,
+    drive_line,
+    passed,
+    summarize,
+    summary_table,
+)
+from evaluation.yards.rig import Rig
+from evaluation.yards.sdf import world, yard_model
+from evaluation.yards.sheet import write_sheets
+from evaluation.yards.yard import draw_yard
+
+PARAMETERS = Path("config") / "yard.yaml"
+
+
+@dataclass(frozen=True)
+class YardCase(Case):
+    """One drive."""
+
+    set: str
+    seed: int
+    repeat: int
+
+
+class YardTrial(Trial):
+    """All drives in one simulator, which is brought up for the first of them."""
+
+    program = "navigation_trials"
+    does = ("Drive the waffle by move_base, without a map, through narrow yards and past persons"
+            " who cross its way.")
+    good = "at least 95 %% of the yards crossed and no person touched"
+    writes = "report.json, report.html, pictures, worlds and drives"
+
+    def __init__(self) -> None:
+        self._rig: Rig | None = None
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--yards", 50, "narrow worlds")
+        parser.add_whole("--first-yard", 0, "seed of the first of them")
+        parser.add_whole("--repeats", 2, "drives through each of them")
+        parser.add_whole("--crossings", 20, "drives past a person")
+        parser.add_whole("--first-crossing", 0, "seed of the first of them")
+        parser.add_pace("how fast simulated time shall go (1)")
+        parser.add_argument("--parameters", type=Path, metavar="FILE", help="of move_base, over"
+                            f" turtlebot3_navigation's (evaluation/{PARAMETERS})")
+
+    def check(self, options: argparse.Namespace) -> None:
+        if not (options.yards and options.repeats) and not options.crossings:
+            raise RunError("no yards or repeats, and no crossings: nothing to drive")
+        options.parameters = (
+            options.parameters or find_package("evaluation") / PARAMETERS).resolve()
+        if not options.parameters.is_file():
+            raise RunError(f"--parameters {options.parameters}: no such file")
+        self._write_chart = chart_writer("evaluation.yards.chart")  # what is missing: said at once
+        self._make_rig = partial(Rig, real_time_factor=options.real_time_factor,
+                                 parameters=options.parameters)
+
+    def cases(self, options: argparse.Namespace) -> list[YardCase]:
+        yards = range(options.first_yard, options.first_yard + options.yards)
+        crossings = range(options.first_crossing, options.first_crossing + options.crossings)
+        trials = [(YARDS, seed, repeat) for repeat in range(options.repeats) for seed in yards]
+        trials += [(CROSSINGS, seed, 0) for seed in crossings]
+        return [YardCase("-".join(map(str, each)), *each) for each in trials]
+
+    def setup(self, session: Session, case: YardCase) -> None:
+        if self._rig is None:
+            self._rig = self._make_rig(session.launched("robot"))
+        self._out, self._task = session.out, _task(case)
+        if case.set == YARDS:
+            path = session.out / "worlds" / f"yard_{case.seed}.world"
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(world(yard_model(draw_yard(case.seed))), encoding="utf-8")
+        prepare(self._rig, self._task)
+
+    def run(self) -> Driven:
+        """The drive, and where it went, below drives/."""
+        driven = drive(self._rig, self._task)
+        path = self._out / "drives" / f"{self._task.name}.json"
+        path.parent.mkdir(exist_ok=True)
+        rounded = [[round(value, 4) for value in place] for place in driven.judge.path]
+        path.write_text(json.dumps(rounded) + "\n", encoding="utf-8")
+        return driven
+
+    def score(self, record: Driven) -> Drive:
+        return score(self._task, record)
+
+    def passed(self, results: Sequence[Drive]) -> bool:
+        return passed(results)
+
+    def line(self, result: Drive) -> str:
+        return drive_line(result)
+
+    def table(self, results: Sequence[Drive]) -> str:
+        return summary_table(summarize(results))
+
+    def values(self, results: Sequence[Drive]) -> dict:
+        return {
+            "least_share_of_yards": LEAST_SHARE,
+            "passed": passed(results),
+            "summaries": [asdict(each) for each in summarize(results)],
+            "drives": [{**asdict(drive), "score": drive.score} for drive in results],
+        }
+
+    def from_values(self, values: dict) -> list[Drive]:
+        return [Drive(**{name: each[name] for name in Drive.__dataclass_fields__})
+                for each in values["drives"]]
+
+    def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
+        self._write_chart(results, out / "trials.png")
+        return ["trials.png", *write_sheets(results, out)]
+
+
+def _task(case: YardCase) -> Task:
+    if case.set == YARDS:
+        return yard_task(draw_yard(case.seed), case.repeat)
+    return crossing_task(draw_crossing(case.seed))

@@ -1,0 +1,144 @@
+"""The runner of all trials, with a trial that needs no robot."""
+
+import json
+import pickle
+from dataclasses import asdict, dataclass
+
+import pytest
+
+from evaluation.session.failure import RunError
+from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
+from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.runner import run_trial
+from evaluation.trial.table import cell, table
+
+
+@dataclass(frozen=True)
+class Square:
+    """A result."""
+
+    name: str
+    value: int
+
+
+class Squares(Trial):
+    """Squares numbers; `fails` at one of them, and `most` is the largest good one."""
+
+    program = "squares"
+    does = "Square numbers."
+    good = "no square is large"
+    writes = "report.json"
+
+    def __init__(self, fails=None, most=9):
+        self.fails, self.most, self.tried = fails, most, []
+
+    def add_options(self, parser):
+        parser.add_whole("--numbers", 3, "how many", variable="NUMBERS")
+
+    def check(self, options):
+        if options.numbers == 7:
+            raise RunError("7 is not tried")
+
+    def cases(self, options):
+        return [Case(str(number)) for number in range(options.numbers)]
+
+    def setup(self, session, case):
+        self.case = case
+        (session.out / case.name).mkdir(exist_ok=True)
+
+    def run(self):
+        if self.case.name == self.fails:
+            raise RunError("the machine broke")
+        self.tried.append(self.case.name)
+        return int(self.case.name)
+
+    def score(self, record):
+        return Square(self.case.name, record**2)
+
+    def passed(self, results):
+        return all(each.value <= self.most for each in results)
+
+    def line(self, result):
+        return f"{result.name} squared is {result.value}"
+
+    def table(self, results):
+        return table([("number", "square"), *((each.name, str(each.value)) for each in results)])
+
+    def values(self, results):
+        return {"squares": [asdict(each) for each in results]}
+
+    def from_values(self, values):
+        return [Square(**each) for each in values["squares"]]
+
+    def pictures(self, results, out):
+        (out / "a&b.png").write_bytes(b"")
+        return ["a&b.png"]
+
+
+def names(out):
+    return [each["name"] for each in json.loads((out / "report.json").read_text())["squares"]]
+
+
+def test_all_cases_are_tried_and_written(tmp_path, capsys):
+    assert run_trial(Squares(), ["--out", str(tmp_path / "a/b")]) == PASSED
+    assert names(tmp_path / "a/b") == ["0", "1", "2"]
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "[1/3] 0 squared is 0" and "number  square" in said
+    assert said[-1] == f"written to {tmp_path / 'a/b'}: report.json, report.html, a&b.png"
+    page = (tmp_path / "a/b" / "report.html").read_text()
+    assert '<img src="a&amp;b.png"' in page
+    assert "2 squared is 4" in page and "number  square" in page
+
+
+def test_results_that_are_not_good_are_exit_code_1(tmp_path):
+    assert run_trial(Squares(most=3), ["--out", str(tmp_path)]) == NOT_PASSED
+
+
+def test_what_was_tried_is_kept_and_resume_tries_the_rest(tmp_path, capsys):
+    words = ["--numbers", "4", "--out", str(tmp_path)]
+    assert run_trial(Squares(fails="2"), words) == NOT_RUN
+    shown = capsys.readouterr()
+    assert shown.err == "squares: the machine broke\n" and "number  square" in shown.out
+    assert names(tmp_path) == ["0", "1"]
+    rest = Squares()
+    assert run_trial(rest, [*words, "--resume"]) == PASSED
+    assert rest.tried == ["2", "3"] and names(tmp_path) == ["0", "1", "2", "3"]
+    assert "[3/4]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["--numbers", "x"], "--numbers (NUMBERS=) must be a whole number, 0 to 999999; got 'x'"),
+    (["--numbers", "7"], "7 is not tried"),
+    (["--number", "1"], "rosrun evaluation squares.py --help"),
+    (["--resume"], "nothing to go on with"),
+    (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
+])
+def test_a_mistake_is_one_line(tmp_path, capsys, words, said):
+    assert run_trial(Squares(), ["--out", str(tmp_path), *words]) == NOT_RUN
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert said in line
+
+
+@pytest.mark.parametrize("text", ["{}", "[", '{"squares": [{}]}'])
+def test_a_report_of_something_else_is_refused(tmp_path, capsys, text):
+    (tmp_path / "report.json").write_text(text)
+    assert run_trial(Squares(), ["--resume", "--out", str(tmp_path)]) == NOT_RUN
+    assert "no report of squares" in capsys.readouterr().err
+
+
+def test_the_columns_of_a_table():
+    assert table([("a", "long head"), ("name", "1.0")]) == "a     long head\nname        1.0"
+    assert (cell(0.123, 100, 1), cell(None)) == ("12.3", "-")
+
+
+def test_cases_can_be_sent_to_another_process():
+    from evaluation.lane.trial import LaneTrial
+    from evaluation.localisation.trial import LocalisationTrial
+    from evaluation.race_trials.trial import RaceTrial
+    from evaluation.tracking.trial import TrackTrial
+    from evaluation.yards.trial import YardTrial
+
+    for trial in (LaneTrial(), LocalisationTrial(), RaceTrial(), TrackTrial(), YardTrial()):
+        cases = trial.cases(trial.parse([]))
+        assert pickle.loads(pickle.dumps(cases)) == cases
+        assert len({case.name for case in cases}) == len(cases)

@@ -1,0 +1,120 @@
+"""Pictures by our own renderer, with the boxes of what is really seen in them.
+
+Each world is drawn three times over: as a camera sees it, with every thing in a flat colour of its
+own, and each thing alone in a view twice as wide. What counts as an object to be found:
+its box holds the pixels that are seen of it, both sides of the box are at least 12 px in a picture
+640 px wide, and at least half of the thing is seen, neither hidden nor outside the picture. What is
+seen of the others is kept as a box that is neither to be found nor wrong to find.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training.solids import Thing, coloured, link_shape
+from ai_robot_tracking.training.staging import WIDTH_PX, Stage, make_stage
+from bullet_sim.meshes.part import MeshPart
+from bullet_sim.pose import IDENTITY
+from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.renderer import Renderer
+from bullet_sim.rendering.scene import Node, Scene
+
+SMALLEST_PX = 12  # shorter side of a box, for a picture WIDTH_PX wide
+LEAST_SEEN = 0.5  # of a thing
+FEWEST_PIXELS = 8  # of which a box is kept at all
+WIDER = 2  # times: how much more the view that counts a whole thing takes in
+FIELDS = 6  # class, left, top, right, bottom, counts
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One picture and what is to be found in it."""
+
+    rgb: np.ndarray  # (h, w, 3) uint8
+    labels: np.ndarray  # (n, FIELDS) float32: class, left, top, right, bottom (px), counts (0, 1)
+
+
+def draw_picture(renderer: Renderer, seed: int) -> Picture:
+    """The picture of a seed's world, with the camera's noise."""
+    return draw_stage(renderer, make_stage(seed), seed)
+
+
+def draw_stage(renderer: Renderer, stage: Stage, seed: int) -> Picture:
+    """The picture of a stage; the seed is the noise's, and no two stages may have the same."""
+    rgb = renderer.draw(_scene(stage, seed), stage.view).rgb
+    owners = renderer.draw(_flat(stage.things, stage.surroundings), stage.view).rgb[..., 0]
+    labels = []
+    for number, thing in enumerate(stage.things, start=1):
+        seen = owners == number
+        if thing.label is None or int(seen.sum()) < FEWEST_PIXELS:
+            continue
+        labels.append(_label(thing, seen, _pixels_alone(renderer, thing, stage.view)))
+    return Picture(_noisy(rgb, stage.grain, seed),
+                   np.array(labels, np.float32).reshape(-1, FIELDS))
+
+
+def _label(thing: Thing, seen: np.ndarray, whole: float) -> tuple[float, ...]:
+    columns, rows = np.flatnonzero(seen.any(axis=0)), np.flatnonzero(seen.any(axis=1))
+    left, right, top, bottom = columns[0], columns[-1] + 1, rows[0], rows[-1] + 1
+    large = min(right - left, bottom - top) >= SMALLEST_PX * seen.shape[1] / WIDTH_PX
+    counts = large and seen.sum() >= LEAST_SEEN * whole
+    return CLASSES.index(thing.label), left, top, right, bottom, float(counts)
+
+
+def _pixels_alone(renderer: Renderer, thing: Thing, view: CameraView) -> float:
+    """How many pixels of the picture's size the thing would have with nothing before it."""
+    fov = 2 * math.atan(WIDER * math.tan(view.horizontal_fov / 2))
+    wide = replace(view, horizontal_fov=fov)
+    alone = renderer.draw(_flat([replace(thing, support=())], ()), wide)
+    return float(np.count_nonzero(alone.rgb[..., 0])) * WIDER**2
+
+
+def _scene(stage: Stage, seed: int) -> Scene:
+    scene = Scene(stage.description)
+    for light in stage.lights:
+        scene.add_light(light)
+    # Renderers keep a texture by its name as long as it has one size: names of no other world.
+    scene.images = {f"{seed} {name}": image for name, image in stage.images.items()}
+    groups = [(stage.surroundings, IDENTITY)]
+    groups += [((*thing.own, *thing.support), thing.pose) for thing in stage.things]
+    for number, (parts, pose) in enumerate(groups):
+        named = tuple(_renamed(part, seed) for part in parts)
+        scene.nodes[str(number), "link"] = Node(link_shape(named), pose)
+    return scene
+
+
+def _renamed(part: MeshPart, seed: int) -> MeshPart:
+    if part.material.texture is None:
+        return part
+    return replace(part, material=replace(part.material, texture=f"{seed} {part.material.texture}"))
+
+
+def _flat(things: list[Thing], surroundings: tuple[MeshPart, ...]) -> Scene:
+    """Thing n in red n of 255, all else black."""
+    scene = Scene()
+    scene.description = replace(scene.description, background=(0.0, 0.0, 0.0, 1.0))
+    if surroundings:
+        scene.nodes["around", "link"] = Node(link_shape(_painted(surroundings, 0)), IDENTITY)
+    for number, thing in enumerate(things, start=1):
+        parts = (*_painted(thing.own, number), *_painted(thing.support, 0))
+        scene.nodes[str(number), "link"] = Node(link_shape(parts), thing.pose)
+    return scene
+
+
+def _painted(parts: tuple[MeshPart, ...], number: int) -> tuple[MeshPart, ...]:
+    paint = replace(coloured((number / 255, 0.0, 0.0)), lighting=False, emissive=(0, 0, 0, 1))
+    return tuple(replace(part, material=paint) for part in parts)
+
+
+def _noisy(rgb: np.ndarray, grain: float, seed: int) -> np.ndarray:
+    if grain <= 0:
+        return rgb
+    rng = np.random.default_rng((0x6A1, seed))
+    noise = rng.standard_normal((rgb.shape[0] // 2, rgb.shape[1], 3), np.float32) * grain
+    noise = np.concatenate([noise, noise[::-1, ::-1]])  # half a sheet, used twice: it costs half
+    return cv2.add(rgb, noise, dtype=cv2.CV_8U)

@@ -1,0 +1,111 @@
+"""The command line of train_detector: draw, train, report; each step's files feed the next."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from ai_robot_tracking.training.errors import TrainingError
+
+DONE, NOT_GOOD, NOT_RUN = 0, 1, 2
+PICTURES, TESTED = 6000, 500
+TARGET = 0.9  # mean average precision at an overlap of 0.5
+MOST = 900_000  # pictures of one set: seeds of sets must not meet
+
+
+class Parser(argparse.ArgumentParser):
+    """Knows options by their whole names; its errors are TrainingErrors."""
+
+    def __init__(self, **settings: object) -> None:
+        super().__init__(**{"allow_abbrev": False, **settings})
+
+    def error(self, message: str) -> None:
+        """TrainingError that says where the options are listed."""
+        program = self.prog.split()[0]  # a verb follows
+        raise TrainingError(f"{message} (see: rosrun ai_robot_tracking {program} --help)")
+
+
+def main(arguments: list[str]) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        given = _parser().parse_args(arguments)
+        return given.verb(given)
+    except (TrainingError, OSError) as failure:
+        print(f"train_detector: {failure}", file=sys.stderr)
+        return NOT_RUN
+    except ModuleNotFoundError as error:
+        print(f"train_detector: no module {error.name} here; `train` runs where "
+              "requirements-training.txt is installed, `draw` and `report` in .venv",
+              file=sys.stderr)
+        return NOT_RUN
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="train_detector.py", description=__doc__,
+        epilog="Exit code: 0 done, 1 the report's model is below the target, 2 could not run.")
+    verbs = parser.add_subparsers(required=True, metavar="VERB", parser_class=Parser)
+    draw = verbs.add_parser("draw", help="draw the pictures to learn from")
+    draw.add_argument("folder", type=Path, help="where they go: 0.25 MB a picture")
+    draw.add_argument("--pictures", type=_count, default=PICTURES, metavar="N")
+    draw.add_argument("--jobs", type=_count, default=1, metavar="N", help="at a time")
+    draw.set_defaults(verb=_draw)
+    train = verbs.add_parser("train", help="train a network and write it as ONNX")
+    train.add_argument("folder", type=Path, help="of the pictures")
+    train.add_argument("model", type=Path, help="the .onnx file to write")
+    train.add_argument("--pictures", type=_count, default=PICTURES, metavar="N",
+                       help="how many of them")
+    train.add_argument("--steps", type=_count, metavar="N", help="instead of the plan's")
+    train.add_argument("--until", type=_count, metavar="N",
+                       help="end at this step of the plan, whose rates stay")
+    train.add_argument("--seed", type=_seed, default=0, metavar="N")
+    train.add_argument("--start", type=Path, metavar="FILE.pt",
+                       help="go on from an earlier training, with whole pictures and smaller steps")
+    train.set_defaults(verb=_train)
+    report = verbs.add_parser("report", help="score a model on worlds that it was not trained on")
+    report.add_argument("model", type=Path, help="the .onnx file, its -training.json beside it")
+    report.add_argument("--pictures", type=_count, default=TESTED, metavar="N")
+    report.set_defaults(verb=_report)
+    return parser
+
+
+def _count(text: str) -> int:
+    return _whole(text, 1)
+
+
+def _seed(text: str) -> int:
+    return _whole(text, 0)
+
+
+def _whole(text: str, least: int) -> int:
+    if not (text.isascii() and text.isdigit()) or not least <= int(text) <= MOST:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} to {MOST}")
+    return int(text)
+
+
+# The modules that a verb needs are imported by it: no environment has those of all three.
+def _draw(given: argparse.Namespace) -> int:
+    from ai_robot_tracking.training.dataset import TRAIN_FIRST
+    from ai_robot_tracking.training.draw_sets import draw_set
+
+    draw_set(given.folder, "train", TRAIN_FIRST, given.pictures, given.jobs)
+    return DONE
+
+
+def _train(given: argparse.Namespace) -> int:
+    from ai_robot_tracking.training.training import FIRST, FURTHER
+    from ai_robot_tracking.training.training_run import run_training
+
+    plan = replace(FURTHER if given.start else FIRST, seed=given.seed)
+    plan = replace(plan, steps=given.steps, until=given.steps) if given.steps else plan
+    plan = replace(plan, until=min(plan.steps, given.until)) if given.until else plan
+    run_training(given.folder, given.model, given.pictures, plan, given.start)
+    return DONE
+
+
+def _report(given: argparse.Namespace) -> int:
+    from ai_robot_tracking.training.report import write_report
+
+    return DONE if write_report(given.model, given.pictures) >= TARGET else NOT_GOOD

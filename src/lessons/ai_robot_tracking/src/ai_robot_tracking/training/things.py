@@ -1,0 +1,181 @@
+"""The five things that the detector tells apart, each made at random in its own frame.
+
+Frames: x forward (the side that faces the camera), z up, the floor at z = 0. Lengths in m.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from ai_robot_tracking.training.patterns import any_colour, pattern, stop_face
+from ai_robot_tracking.training.solids import Thing, ball, bar, box, coloured, frustum, plate
+from bullet_sim.description import Material
+from bullet_sim.meshes.part import MeshPart
+from bullet_sim.pose import Pose
+
+Images = dict[str, np.ndarray]  # textures by name, as scenes have them
+SKIN = ((0.96, 0.80, 0.69), (0.87, 0.67, 0.53), (0.72, 0.50, 0.36), (0.45, 0.29, 0.20),
+        (0.30, 0.19, 0.13))
+HAIR = ((0.08, 0.06, 0.05), (0.25, 0.15, 0.08), (0.55, 0.40, 0.18), (0.6, 0.6, 0.6))
+LAMPS = ((1.0, 0.1, 0.05), (1.0, 0.75, 0.05), (0.1, 1.0, 0.35))  # red, yellow, green
+ORANGE = (1.0, 0.38, 0.02)
+
+
+def person(rng: np.random.Generator, images: Images) -> Thing:
+    """Standing or walking, from a child to a tall man, or as small as a model railway's."""
+    high = rng.uniform(1.5, 1.95) if rng.random() < 0.65 else rng.uniform(0.25, 1.5)
+    top, trousers = coloured(any_colour(rng)), coloured(any_colour(rng))
+    skin = coloured(SKIN[rng.integers(len(SKIN))])
+    wide, leg, torso = rng.uniform(0.85, 1.25), 0.47 * high, 0.34 * high
+    parts = [_trunk(rng, top, high, wide, leg, torso)]
+    parts += _limbs(rng, high, wide, (top, trousers, skin))
+    parts += _head(rng, high, leg + torso, skin)
+    return Thing("person", tuple(parts), (), Pose(), 0.3 * high)
+
+
+def _limbs(rng, high: float, wide: float, clothes: tuple[Material, ...]) -> list[MeshPart]:
+    """Two legs, and mostly two arms, which swing the other way."""
+    top, trousers, skin = clothes
+    stride, arms = rng.uniform(0, 0.55), rng.random() < 0.85
+    sleeve = top if rng.random() < 0.7 else skin
+    parts = []
+    for side in (1, -1):
+        swing = side * stride
+        hip = (0, side * 0.06 * high * wide, 0.47 * high)
+        parts.append(_limb(0.048 * high * wide, 0.47 * high, hip, swing, trousers))
+        if arms:
+            shoulder = (0, side * 0.135 * high * wide, 0.79 * high)
+            parts.append(_limb(0.03 * high, 0.4 * high, shoulder,
+                               -swing * rng.uniform(0.5, 1.3), sleeve))
+    return parts
+
+
+def _head(rng, high: float, shoulder: float, skin: Material) -> list[MeshPart]:
+    """With its neck, and mostly hair or a cap."""
+    radius = 0.065 * high
+    middle = shoulder + 1.45 * radius
+    parts = [bar(0.03 * high, 0.06 * high, (0, 0, shoulder + 0.01 * high), skin),
+             ball(radius, (0.0, 0.0, middle), skin, (0.95, 0.9, 1.2))]
+    if rng.random() < 0.8:
+        hair = coloured(HAIR[rng.integers(len(HAIR))] if rng.random() < 0.7 else any_colour(rng))
+        parts.append(ball(1.05 * radius, (-0.25 * radius, 0, middle + 0.3 * radius), hair,
+                          (1, 0.95, 1)))
+    return parts
+
+
+def _trunk(rng, top: Material, high: float, wide: float, leg: float, torso: float) -> MeshPart:
+    at = (0.0, 0.0, leg + torso / 2)
+    if rng.random() < 0.5:
+        return box((0.13 * high, 0.22 * high * wide, torso), at, top)
+    return ball(torso / 2, at, top, (0.13 * high / torso, 0.24 * high * wide / torso, 1.06))
+
+
+def _limb(radius: float, length: float, joint: tuple, swing: float, material: Material) -> MeshPart:
+    """Hangs from its joint, swung forward by an angle (rad)."""
+    middle = (joint[0] + math.sin(swing) * length / 2, joint[1],
+              joint[2] - math.cos(swing) * length / 2)
+    return bar(radius, length, middle, material, (0, -swing, 0))
+
+
+def cylinder(rng: np.random.Generator, images: Images) -> Thing:
+    """A plain, striped or patterned one, mostly upright."""
+    radius = rng.uniform(0.05, 0.45)
+    length = min(radius * rng.uniform(1.2, 6.0), 1.9)
+    if rng.random() < 0.1:
+        name = f"cylinder {len(images)}"
+        images[name] = pattern(rng)
+        material = coloured((1.0, 1.0, 1.0), texture=name)
+    elif rng.random() < 0.35:
+        material = coloured((rng.uniform(0.6, 1), rng.uniform(0, 0.2), rng.uniform(0, 0.2)))
+    else:
+        material = coloured(any_colour(rng, saturated=rng.random() < 0.7))
+    if rng.random() < 0.94:
+        return Thing("cylinder", (bar(radius, length, (0, 0, length / 2), material),), (), Pose(),
+                     radius)
+    lying = bar(radius, length, (0, 0, radius), material, (math.pi / 2, 0, 0))
+    return Thing("cylinder", (lying,), (), Pose(), max(radius, length / 2))
+
+
+def cone(rng: np.random.Generator, images: Images) -> Thing:
+    """A traffic cone with bands and a foot, or a bare cone."""
+    high = rng.uniform(0.2, 1.0)
+    wide = high * rng.uniform(0.17, 0.36)
+    tip = wide * rng.uniform(0.0, 0.22)
+    body = coloured(ORANGE if rng.random() < 0.5 else any_colour(rng, saturated=True))
+    band = coloured((0.95, 0.95, 0.95) if rng.random() < 0.85 else any_colour(rng))
+    count = int(rng.integers(0, 3))
+    edges = np.linspace(0, 1, 2 * count + 2) if count else np.array([0.0, 1.0])
+    edges[1:-1] += rng.uniform(-0.05, 0.05, len(edges) - 2)
+    parts = []
+    for number, (low, above) in enumerate(pairwise(edges)):
+        radii = [wide + (tip - wide) * share for share in (low, above)]
+        parts.append(frustum(*radii, low * high, above * high, band if number % 2 else body))
+    if tip > 0:
+        parts.append(bar(tip, 0.002, (0, 0, high), body))
+    if rng.random() < 0.65:
+        side = 2 * wide * rng.uniform(1.1, 1.4)
+        foot = body if rng.random() < 0.6 else coloured((0.08, 0.08, 0.08))
+        parts.append(box((side, side, 0.05 * high), (0, 0, 0.025 * high), foot))
+    return Thing("cone", tuple(parts), (), Pose(), 1.5 * wide)
+
+
+def stop_sign(rng: np.random.Generator, images: Images) -> Thing:
+    """A red octagon with its word, on a post; the post is not boxed."""
+    radius = rng.uniform(0.2, 0.42) if rng.random() < 0.7 else rng.uniform(0.04, 0.2)
+    high = radius * rng.uniform(2.0, 7.5)
+    name = f"stop {len(images)}"
+    images[name] = stop_face(rng)
+    front = coloured((1.0, 1.0, 1.0), texture=name)
+    grey = coloured((0.5, 0.5, 0.52))
+    own = plate(8, radius, (0.12 * radius, 0, high), front, grey)
+    return Thing("stop sign", own, (post(rng, radius, high),), Pose(), radius)
+
+
+def post(rng: np.random.Generator, radius: float, high: float) -> MeshPart:
+    """What a sign of that radius is screwed to."""
+    material = coloured(any_colour(rng) if rng.random() < 0.3 else (0.55, 0.55, 0.57))
+    thick = radius * rng.uniform(0.06, 0.1)
+    if rng.random() < 0.5:
+        return bar(thick, high, (0, 0, high / 2), material)
+    return box((2 * thick, 2 * thick, high), (0, 0, high / 2), material)
+
+
+def traffic_light(rng: np.random.Generator, images: Images) -> Thing:
+    """Three lamps, of which mostly one is lit, in a housing on a post or hung up."""
+    wide = rng.uniform(0.2, 0.4) if rng.random() < 0.7 else rng.uniform(0.05, 0.2)
+    pitch, lamp = wide * rng.uniform(0.85, 1.05), wide * rng.uniform(0.3, 0.42)
+    long = 3 * pitch + 0.1 * wide
+    lying = rng.random() < 0.15
+    middle = rng.uniform(0.5, 4.0) * long + long / 2
+    shell = coloured(_HOUSINGS[rng.integers(len(_HOUSINGS))])
+    sides = (long, wide) if lying else (wide, long)
+    parts = [box((0.6 * wide, *sides), (0, 0, middle), shell)]
+    lit = int(rng.integers(-1, 3)) if rng.random() < 0.3 else int(rng.integers(0, 3))
+    for number, colour in enumerate(LAMPS):
+        place = (1 - number) * pitch
+        at = (0.3 * wide, place if lying else 0, middle + (0 if lying else place))
+        bright = number == lit
+        shade = colour if bright else tuple(0.28 * channel for channel in colour)
+        parts.append(bar(lamp, 0.06 * wide, at, coloured(shade, 0.9 if bright else 0.0),
+                         (0, math.pi / 2, 0)))
+        if rng.random() < 0.5:
+            parts.append(box((0.35 * wide, 2.1 * lamp, 0.05 * wide),
+                             (at[0] + 0.17 * wide, at[1], at[2] + lamp), shell))
+    return Thing("traffic light", tuple(parts), (post(rng, wide, middle - long / 2),), Pose(),
+                 max(sides[0] / 2, 0.4 * wide))
+
+
+_HOUSINGS = ((0.03, 0.03, 0.03), (0.1, 0.1, 0.11), (0.05, 0.09, 0.06), (0.85, 0.65, 0.05),
+             (0.35, 0.36, 0.38))
+MAKERS: dict[str, Callable[[np.random.Generator, Images], Thing]] = {
+    "person": person,
+    "cylinder": cylinder,
+    "cone": cone,
+    "stop sign": stop_sign,
+    "traffic light": traffic_light,
+}
+FACING = frozenset({"stop sign", "traffic light"})  # what is only told from its front

@@ -1,0 +1,155 @@
+"""Trains the network on one thread: the same pictures and seed give the same bytes."""
+
+from __future__ import annotations
+
+import copy
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+
+import numpy as np
+import torch
+
+from ai_robot_tracking.training.augment import augmented
+from ai_robot_tracking.training.dataset import INPUT_HEIGHT, INPUT_WIDTH, PICTURE, PictureSet
+from ai_robot_tracking.training.layers import STRIDES
+from ai_robot_tracking.training.loss import detection_loss
+from ai_robot_tracking.training.network import Detector, cell_centres
+
+SMALL = (160, 192)  # height, width, px
+WHOLE = (INPUT_HEIGHT, INPUT_WIDTH)
+MOST_BOXES = 16  # of one picture that are learnt from
+REPORT_STEPS = 50
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How it is trained; all of it is in the report."""
+
+    seed: int = 0
+    steps: int = 5200
+    until: int = 5200  # the step at which it really ends; rates are those of all steps
+    batch: int = 16  # pictures a step
+    learning_rate: float = 3e-3  # the highest; rises in `warm_steps`, then falls as a cosine
+    last_rate: float = 0.01  # of the highest
+    warm_steps: int = 100
+    weight_decay: float = 0.02
+    averaging: float = 0.995  # of the weights that are kept: their mean over the last steps
+    small: float = 0.55  # first part of the steps, with pictures of SMALL: quicker
+    calm: float = 0.1  # last part of the steps, with pictures as they were drawn
+
+    def as_table(self) -> dict[str, float]:
+        """Names and values, for the report."""
+        return asdict(self)
+
+
+FIRST = Plan()
+FURTHER = Plan(steps=1500, until=1500, learning_rate=1e-3, small=0.0, calm=0.15)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One point of the curve."""
+
+    step: int
+    loss: float  # mean since the last point
+    seconds: float  # wall, since the start
+
+
+def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress, Detector], None],
+          start: Detector | None = None) -> Detector:
+    """The averaged network, ready to be exported; `say` also gets it as it is so far.
+
+    With `start` it goes on from that network, which is changed.
+    """
+    torch.manual_seed(plan.seed)
+    torch.use_deterministic_algorithms(True)
+    torch.set_num_threads(1)
+    network = (start or Detector()).to(memory_format=torch.channels_last)
+    averaged = copy.deepcopy(network)
+    optimiser = torch.optim.AdamW(_groups(network, plan.weight_decay), lr=plan.learning_rate)
+    feed, began, losses = _Feed(pictures, plan), time.monotonic(), []
+    network.train()
+    for step in range(plan.until):
+        for group in optimiser.param_groups:
+            group["lr"] = plan.learning_rate * _rate(step, plan)
+        images, truth = feed.batch(step)
+        boxes, logits = network(images)
+        loss = detection_loss(boxes, logits, _centres(images.shape[2:]), truth)
+        optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 10.0)
+        optimiser.step()
+        _average(averaged, network, min(plan.averaging, (1 + step) / (10 + step)))
+        losses.append(loss.item())
+        if (step + 1) % REPORT_STEPS == 0 or step + 1 == plan.until:
+            say(Progress(step + 1, float(np.mean(losses)), time.monotonic() - began),
+                averaged)
+            losses.clear()
+    return averaged.eval()
+
+
+class _Feed:
+    """Batches in an order that the seed alone decides."""
+
+    def __init__(self, pictures: PictureSet, plan: Plan):
+        self._pictures, self._plan = pictures, plan
+        self._turn, self._shuffled = -1, np.empty(0, int)
+        rows = pictures.labels[:, PICTURE].astype(int)
+        ends = np.searchsorted(rows, np.arange(len(pictures) + 1))
+        self._labels = [pictures.labels[a:b, 1:] for a, b in pairwise(ends)]
+
+    def batch(self, step: int) -> tuple[torch.Tensor, torch.Tensor]:
+        """Images (b, 3, h, w) float 0..1 and truth (b, MOST_BOXES, 6), -1 where there is none."""
+        size, count = self._plan.batch, len(self._pictures)
+        calm = step >= self._plan.steps * (1 - self._plan.calm)
+        shape = SMALL if step < self._plan.steps * self._plan.small else WHOLE
+        images = np.empty((size, *shape, 3), np.uint8)
+        truth = np.full((size, MOST_BOXES, 6), -1, np.float32)
+        for place in range(size):
+            turn, number = divmod(step * size + place, count)
+            rng = np.random.default_rng((self._plan.seed, 2, step, place))
+            index = self._order(turn)[number]
+            image, labels = self._pictures.images[index], self._labels[index]
+            if not calm:
+                image, labels = augmented(rng, image, labels, shape)
+            images[place] = image
+            truth[place, :len(labels)] = labels[:MOST_BOXES]
+        pixels = torch.from_numpy(images).permute(0, 3, 1, 2).float() / 255
+        return pixels.contiguous(memory_format=torch.channels_last), torch.from_numpy(truth)
+
+    def _order(self, turn: int) -> np.ndarray:
+        """In which the pictures come the turn-th time."""
+        if self._turn != turn:
+            rng = np.random.default_rng((self._plan.seed, 1, turn))
+            self._turn, self._shuffled = turn, rng.permutation(len(self._pictures))
+        return self._shuffled
+
+
+def _centres(shape: tuple[int, int]) -> torch.Tensor:
+    height, width = shape
+    return torch.cat([cell_centres(height // stride, width // stride, stride)
+                      for stride in STRIDES])
+
+
+def _groups(network: Detector, decay: float) -> list[dict]:
+    """Biases and norms are not made smaller."""
+    large = [p for p in network.parameters() if p.ndim > 1]
+    small = [p for p in network.parameters() if p.ndim <= 1]
+    return [{"params": large, "weight_decay": decay}, {"params": small, "weight_decay": 0.0}]
+
+
+def _rate(step: int, plan: Plan) -> float:
+    if step < plan.warm_steps:
+        return (step + 1) / plan.warm_steps
+    share = (step - plan.warm_steps) / max(1, plan.steps - plan.warm_steps)
+    return plan.last_rate + (1 - plan.last_rate) * (1 + math.cos(math.pi * share)) / 2
+
+
+@torch.no_grad()
+def _average(averaged: Detector, network: Detector, keep: float) -> None:
+    for mean, now in zip(averaged.state_dict().values(), network.state_dict().values()):
+        if mean.dtype.is_floating_point:
+            mean.lerp_(now, 1 - keep)

@@ -1,0 +1,84 @@
+"""What the figures have to reach on a quiet machine, 2 cores and no GPU, and whether they do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sim_bench.figures import Figure
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One line; exactly one of the two bounds is given, in the figure's unit."""
+
+    what: str
+    figure: str  # PART/NAME
+    at_least: float | None = None
+    at_most: float | None = None
+
+    def met(self, value: float) -> bool:
+        """Whether a median is within the bound."""
+        if self.at_least is not None:
+            return value >= self.at_least
+        return value <= self.at_most
+
+    @property
+    def bound(self) -> str:
+        """As it is printed."""
+        if self.at_least is not None:
+            return f">= {self.at_least:g}"
+        return f"<= {self.at_most:g}"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A criterion and the figure that was measured for it."""
+
+    criterion: Criterion
+    figure: Figure
+
+    @property
+    def met(self) -> bool:
+        """By the median."""
+        return self.criterion.met(self.figure.median)
+
+
+# The state that counts is the one in which all the work is done: a world at rest leaves it out.
+CRITERIA = (
+    Criterion("make course, real time", "ros/make_course.real_time_factor", at_least=0.95),
+    Criterion("make course, frames answered", "ros/make_course.frames", at_least=28),
+    Criterion("1080p, frames at lesson 05", "ros/1080p.frames", at_least=28),
+    Criterion("1080p, real time", "ros/1080p.real_time_factor", at_least=0.95),
+    Criterion("1080p, age at the callback", "ros/1080p.frame_age", at_most=60),
+    Criterion("720p, real time", "ros/720p.real_time_factor", at_least=0.99),
+    Criterion("720p, processor to spare", "ros/720p.spare", at_least=0.5),
+    Criterion("TinyRenderer against ours, 1080p", "renderer/ratio.tiny.1920x1080", at_least=35),
+    Criterion("EGL plugin against ours, 1080p", "renderer/ratio.plugin.1920x1080", at_least=4),
+    Criterion("off the analytic picture", "renderer/difference.max", at_most=2),
+    Criterion("make course FAST=1 at 640x480", "fast/make_course.real_time_factor", at_least=4),
+    Criterion("lockstep at 640x480", "fast/lockstep.real_time_factor", at_least=4),
+    Criterion("no camera, driving", "fast/no_camera.driving.real_time_factor", at_least=10),
+    Criterion("our step against bare, standing", "step/ratio.standing", at_most=1.5),
+    Criterion("our step against bare, driving", "step/ratio.driving", at_most=1.5),
+    Criterion("nobody subscribed, processor", "ros/idle.cpu.gazebo", at_most=5),
+    Criterion("paused, processor", "ros/paused.cpu.gazebo", at_most=5),
+    Criterion("roslaunch to first image", "startup/first_image", at_most=4),
+    Criterion("memory growth, no camera", "memory/no_camera.growth", at_most=2),
+    Criterion("memory growth, camera", "memory/camera.growth", at_most=2),
+    Criterion("/clock off whole periods", "memory/clock.off_whole_periods", at_most=0),
+    Criterion("/clock behind the ticks", "memory/clock.behind_ticks", at_most=10),
+    Criterion("ten robots by services", "robots/spawned", at_most=5),
+    Criterion("ten robots by a launch file", "robots/launched.spawned", at_most=5),
+    Criterion("memory after 1000 spawns", "respawn/memory.growth", at_most=5),
+    Criterion("step after 1000 spawns", "respawn/step.last_to_first", at_most=1.05),
+)
+
+
+def judge(figures: Mapping[str, Figure]) -> list[Verdict]:
+    """Verdicts on what was measured; figures by PART/NAME."""
+    return [
+        Verdict(criterion, figures[criterion.figure])
+        for criterion in CRITERIA
+        if criterion.figure in figures
+    ]

@@ -1,0 +1,82 @@
+"""A waffle spawned and deleted again and again: what stays behind, in memory and in a step's time.
+
+Over the services of a running simulator for its memory; in the core alone, beside a waffle that
+drives, for the time of a step.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import rospkg
+
+from bullet_sim.formats.xacro.files import expand
+from bullet_sim.pose import Pose
+from evaluation.session import simulator
+from evaluation.session.cpu import memory
+from sim_bench.course import Course, drive_of
+from sim_bench.figures import Figure, figure, ratio
+from sim_bench.parts.memory import SIMULATOR, growth_percent
+from sim_bench.ros_run import START_LIMIT, ros_run
+from sim_bench.settings import Settings
+
+TIMES, QUICK_TIMES = 1000, 200
+LOOKS = 50  # measurements on the way
+STEPS = 400  # physics steps of one measurement
+SPEED, YAW_RATE = 0.15, 0.3  # m/s, rad/s, of the waffle that stays
+ASIDE = Pose((1.0, 1.0, 0.01))
+
+
+def measure(settings: Settings) -> list[Figure]:
+    """Percent of growth, and the time of a step at the end beside that at the beginning."""
+    times = QUICK_TIMES if settings.quick else TIMES
+    return [*_memory(settings, times), *_step_time(settings, times)]
+
+
+def _memory(settings: Settings, times: int) -> list[Figure]:
+    packages = rospkg.RosPack()
+    folder = Path(packages.get_path("turtlebot3_description"))
+    text = expand(
+        folder / "urdf" / "turtlebot3_waffle.urdf.xacro", find_package=packages.get_path
+    )
+    samples, took = [], []
+    with ros_run(settings, "respawn") as run:
+        run.launch("gazebo_ros", "empty_world.launch", "gui:=false")
+        run.wait(simulator.models, START_LIMIT, "the simulator")
+        settings.say(f"{times} waffles, one after the other")
+        for number in range(times):
+            began = time.monotonic()
+            simulator.spawn_urdf("waffle", text, "", 0.0, 0.0)
+            simulator.delete("waffle")
+            took.append(1e3 * (time.monotonic() - began))
+            if number % (times // LOOKS) == 0:
+                samples.append((float(number), memory(SIMULATOR)))
+                run.pause(0.01)  # notices a part that died
+    return [
+        figure("memory.growth", "%", [growth_percent(samples)]),
+        figure("spawn_and_delete", "ms", took),
+    ]
+
+
+def _step_time(settings: Settings, times: int) -> list[Figure]:
+    settings.say(f"{times} more, beside one that drives")
+    course = Course()
+    drive = drive_of(course.spawn_waffle())
+    drive.command(SPEED, YAW_RATE)
+    seconds = []
+    for number in range(times):
+        course.spawn_waffle("other", ASIDE)
+        course.world.delete("other")
+        if number % (times // LOOKS) == 0:
+            drive.update(1 / 30)
+            began = time.perf_counter()
+            course.world.step(STEPS)
+            seconds.append((time.perf_counter() - began) / STEPS)
+    course.close()
+    tenth = LOOKS // 5
+    first, last = seconds[tenth:2 * tenth], seconds[-tenth:]
+    return [
+        figure("step", "us", [1e6 * value for value in seconds]),
+        ratio("step.last_to_first", [min(last)], [min(first)]),  # others only ever add time
+    ]

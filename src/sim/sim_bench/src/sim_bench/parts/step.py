@@ -1,0 +1,115 @@
+"""Our full physics step beside PyBullet's bare one, in the same world and on the same client.
+
+The course with its waffle, standing still and driving a circle. Blocks of bare `stepSimulation` and
+of `World.step` take turns; wheel motors keep what they were last told, so that the engine has the
+same to do in both. A world in which nothing moves for a while leaves the engine out: that is no
+full step, and is measured apart, as `resting`, without a ratio. A force of nothing before each
+block keeps the standing waffle's world awake, and a ratio that only a step without the engine could
+have is an error.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from functools import partial
+
+from bullet_sim.model import Model
+from bullet_sim.physics.quiet import pybullet
+from evaluation.session.failure import RunError
+from sim_bench.course import Course, drive_of
+from sim_bench.figures import Figure, figure, ratio
+from sim_bench.settings import Settings
+
+RUNS = 11
+BLOCK, BLOCKS = 200, 5  # steps between two nudges (too few to fall asleep); blocks of a run
+STEPS_TO_REST = 2000  # more than it takes to fall asleep
+SPEED, YAW_RATE = 0.15, 0.3  # m/s, rad/s: a circle of 0.5 m radius
+DRIVE_PERIOD, DRIVE_STEPS = 1 / 30, 33  # s and steps between updates of the waffle's drive
+MOST_CLIENTS = 64
+LEAST_RATIO = 0.8  # of a step that holds a bare one; below that it cannot have
+
+
+def measure(settings: Settings) -> list[Figure]:
+    """Microseconds a step of either kind, and how many times the bare one ours takes."""
+    course, waffle, bare = _open()
+    found = _compare("standing", course, waffle, bare, settings)
+    course.world.step(STEPS_TO_REST)
+    resting = [1e6 * _timed(course.world.step, 1000) for _ in range(settings.runs(RUNS))]
+    found.append(figure("step.ours.resting", "us", resting))
+    _drive_a_circle(course, waffle)
+    found += _compare("driving", course, waffle, bare, settings)
+    course.close()
+    return found
+
+
+def bare_step_time() -> float:
+    """Seconds of one bare step with the waffle driving, for parts that compare with it."""
+    course, waffle, bare = _open()
+    _drive_a_circle(course, waffle)
+    seconds = _timed(bare, BLOCK * BLOCKS)
+    course.close()
+    return seconds
+
+
+def check_same_work(state: str, median: float) -> None:
+    """RunError for a ratio that shows that our step has not run the engine."""
+    if median < LEAST_RATIO:
+        raise RunError(
+            f"{state}: World.step takes {median:.2f} of the bare step that it should hold:"
+            " it leaves the engine out, and cannot be compared"
+        )
+
+
+def _open() -> tuple[Course, Model, Callable[[], None]]:
+    """The course, its waffle, and the bare step of the same client."""
+    before = _clients()
+    course = Course()
+    (client,) = _clients() - before
+    return course, course.spawn_waffle(), partial(pybullet.stepSimulation, physicsClientId=client)
+
+
+def _drive_a_circle(course: Course, waffle: Model) -> None:
+    drive = drive_of(waffle)
+    drive.command(SPEED, YAW_RATE)
+    for _ in range(60):  # until its speed is reached
+        drive.update(DRIVE_PERIOD)
+        course.world.step(DRIVE_STEPS)
+
+
+def _compare(
+    state: str, course: Course, waffle: Model, bare: Callable[[], None], settings: Settings
+) -> list[Figure]:
+    kinds = {"bare": bare, "ours": course.world.step}
+    times: dict[str, list[float]] = {kind: [] for kind in kinds}
+    for _ in range(settings.runs(RUNS)):
+        blocks: dict[str, list[float]] = {kind: [] for kind in kinds}
+        for _ in range(BLOCKS):
+            for kind, step in kinds.items():
+                _keep_awake(waffle)
+                blocks[kind].append(1e6 * _timed(step, BLOCK))
+        for kind, values in blocks.items():
+            times[kind].append(statistics.median(values))
+    found = [figure(f"step.{kind}.{state}", "us", values) for kind, values in times.items()]
+    compared = ratio(f"ratio.{state}", times["ours"], times["bare"])
+    check_same_work(state, compared.median)
+    return [*found, compared]
+
+
+def _keep_awake(waffle: Model) -> None:
+    """Whatever is done to a body from outside ends a world's rest; no force moves nothing."""
+    next(iter(waffle.links.values())).apply_force((0.0, 0.0, 0.0))
+
+
+def _timed(step: Callable[[], None], steps: int) -> float:
+    """Seconds of one step, by the mean of so many."""
+    start = time.perf_counter()
+    for _ in range(steps):
+        step()
+    return (time.perf_counter() - start) / steps
+
+
+def _clients() -> set[int]:
+    """PyBullet's numbers of the worlds that are open in this process."""
+    return {number for number in range(MOST_CLIENTS) if pybullet.isConnected(number)}
