@@ -1,4 +1,4 @@
-"""Writes the tables of what works: docs/interface.md, docs/interface.zh-CN.md, READMEs' summaries.
+"""Writes the tables of what works: docs/interface.md and docs/interface.zh-CN.md.
 
     python3 scripts/interface_table.py            write them
     python3 scripts/interface_table.py --check    exit code 1 if they are not what would be written
@@ -21,7 +21,6 @@ from bullet_sim_ros.interface import (
 )
 
 ROOT = Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- interface: begin -->\n", "<!-- interface: end -->\n"
 WORDS = {
     "en": {WORKS: "works", APPROXIMATED: "approximated", ACCEPTED: "accepted, no effect",
            ABSENT: "not there", "what": "what", "how": "how", "tags": "inside",
@@ -39,9 +38,9 @@ WORDS = {
 
 
 def document(sections: list[Section], language: str) -> str:
-    """The whole table, a chapter for each section."""
+    """The summary, then the whole table, a chapter for each section."""
     words = WORDS[language]
-    lines = [f"# {words['title']}", "", words["note"], ""]
+    lines = [f"# {words['title']}", "", words["note"], "", *summary(sections, language), ""]
     for section in sections:
         lines += [f"## {_title(section, language)}", "",
                   f"| {words['what']} | | {words['how']} | {words['tags']} |", "|---|---|---|---|"]
@@ -51,7 +50,7 @@ def document(sections: list[Section], language: str) -> str:
     return "\n".join(lines)
 
 
-def summary(sections: list[Section], language: str) -> str:
+def summary(sections: list[Section], language: str) -> list[str]:
     """One line a section: how many rows work, which are only approximated or not there."""
     words = WORDS[language]
     lines = [f"| {words['part']} | {words[WORKS]} | {words[APPROXIMATED]} | {words[ABSENT]} |",
@@ -61,7 +60,7 @@ def summary(sections: list[Section], language: str) -> str:
               for status in (WORKS, APPROXIMATED, ACCEPTED, ABSENT)}
         lines.append(f"| {_title(section, language)} | {len(of[WORKS])} | "
                      f"{_names(of[APPROXIMATED])} | {_names(of[ABSENT])} |")
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _names(names: list[str]) -> str:
@@ -96,15 +95,8 @@ def _cell(text: str) -> str:
 
 def written(sections: list[Section]) -> dict[Path, str]:
     """Every file with its tables as they should be."""
-    files = {}
-    for language, suffix in (("en", ""), ("zh", ".zh-CN")):
-        files[ROOT / f"docs/interface{suffix}.md"] = document(sections, language)
-        readme = ROOT / f"README{suffix}.md"
-        text = readme.read_text(encoding="utf-8")
-        before, _, rest = text.partition(BEGIN)
-        _, _, after = rest.partition(END)
-        files[readme] = before + BEGIN + summary(sections, language) + END + after
-    return files
+    return {ROOT / f"docs/interface{suffix}.md": document(sections, language)
+            for language, suffix in (("en", ""), ("zh", ".zh-CN"))}
 
 
 def main() -> int:

@@ -1,4 +1,7 @@
-"""Every command that README.md shows is run by something: see readme_commands.yaml beside this."""
+"""Every command that README.md and the pages of docs/ show is run by something.
+
+readme_commands.yaml beside this says what runs it.
+"""
 
 import re
 import shlex
@@ -10,7 +13,9 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parent.parent
-READMES = ("README.md", "README.zh-CN.md")
+MOST_LINES = 150
+# Both languages of a page show the same commands.
+PAGES = ("README.md", *(f"docs/{name}.md" for name in ("racecar", "navigation", "marking", "benchmarks")))
 RUNNERS = yaml.safe_load(
     (Path(__file__).parent / "readme_commands.yaml").read_text(encoding="utf-8")
 )
@@ -40,7 +45,11 @@ def commands_of(name: str) -> list[str]:
     return commands_in(path.read_text(encoding="utf-8")) if path.exists() else []
 
 
-COMMANDS = sorted(set(commands_of("README.md")))
+COMMANDS = sorted({command for page in PAGES for command in commands_of(page)})
+
+
+def translated(page: str) -> str:
+    return page.replace(".md", ".zh-CN.md")
 
 
 def runner_of(command: str) -> dict | None:
@@ -87,9 +96,32 @@ def test_readme_shows_commands() -> None:
     assert "make test" in COMMANDS, "README.md never says `make test`"
 
 
-def test_the_chinese_readme_shows_the_same() -> None:
-    assert (ROOT / READMES[1]).exists(), f"there is no {READMES[1]}"
-    assert commands_of(READMES[1]) == commands_of(READMES[0])
+@pytest.mark.parametrize("page", PAGES)
+def test_the_chinese_page_shows_the_same(page: str) -> None:
+    assert (ROOT / translated(page)).exists(), f"there is no {translated(page)}"
+    assert commands_of(translated(page)) == commands_of(page)
+
+
+@pytest.mark.parametrize("name", ("README.md", "README.zh-CN.md"))
+def test_the_readme_is_short(name: str) -> None:
+    assert len((ROOT / name).read_text(encoding="utf-8").splitlines()) <= MOST_LINES
+
+
+@pytest.mark.parametrize("page", sorted(
+    str(path.relative_to(ROOT)) for path in (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"))))
+def test_links_lead_to_files(page: str) -> None:
+    text = FENCE.sub("", (ROOT / page).read_text(encoding="utf-8"))
+    targets = [link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text)
+               if not re.match(r"https?:", link)]
+    assert not [link for link in targets if not (ROOT / page).parent.joinpath(link).exists()]
+
+
+def test_every_page_is_in_the_index() -> None:
+    for suffix in ("", ".zh-CN"):
+        index = (ROOT / f"docs/README{suffix}.md").read_text(encoding="utf-8")
+        for page in ROOT.glob("docs/*.md"):
+            if page.name.endswith(".zh-CN.md") == bool(suffix) and page.stem != f"README{suffix}":
+                assert f"({page.name})" in index, page.name
 
 
 @pytest.mark.parametrize("command", COMMANDS)
