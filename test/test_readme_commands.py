@@ -15,7 +15,8 @@ import yaml
 ROOT = Path(__file__).resolve().parent.parent
 MOST_LINES = 150
 # Both languages of a page show the same commands.
-PAGES = ("README.md", "docs/racecar.md", "docs/navigation.md", "docs/marking.md", "docs/benchmarks.md")
+PAGES = ("README.md",
+         *(f"docs/{name}.md" for name in ("racecar", "navigation", "marking", "benchmarks")))
 RUNNERS = yaml.safe_load(
     (Path(__file__).parent / "readme_commands.yaml").read_text(encoding="utf-8")
 )
