@@ -1,7 +1,5 @@
 """Contacts as markers that rviz can show: a ball where things touch, an arrow for the force."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

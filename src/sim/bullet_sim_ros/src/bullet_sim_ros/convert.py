@@ -1,7 +1,5 @@
 """From the core's readings to ROS messages and back: pure functions, nothing is published here."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import TypeVar

@@ -1,7 +1,5 @@
 """/gazebo/performance_metrics: the real-time factor, and how often each sensor is updated."""
 
-from __future__ import annotations
-
 import time
 
 import rospy

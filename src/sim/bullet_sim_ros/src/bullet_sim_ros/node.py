@@ -1,7 +1,5 @@
 """The node /gazebo: reads a world, offers Gazebo's topics and services, and runs the loop."""
 
-from __future__ import annotations
-
 import argparse
 import gc
 import signal

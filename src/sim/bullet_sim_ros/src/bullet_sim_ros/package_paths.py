@@ -1,7 +1,5 @@
 """Where models, media and packages are: the environment, and what packages export to gazebo_ros."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The only reader of ROS parameters: the node's own, and what plugins look for."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How fast simulated time runs, what holds it up, and telling people so."""
 
-from __future__ import annotations
-
 import time
 
 import rospy

@@ -1,7 +1,5 @@
 """dynamic_reconfigure for some values with ranges, without a generated configuration."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

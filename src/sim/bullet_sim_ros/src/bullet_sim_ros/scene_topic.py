@@ -1,7 +1,5 @@
 """~scene: what there is to see, as text, for the page in the browser and others that draw."""
 
-from __future__ import annotations
-
 import rospy
 from std_msgs.msg import String
 

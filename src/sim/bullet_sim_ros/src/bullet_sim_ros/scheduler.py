@@ -1,7 +1,5 @@
 """What is done at rates of simulated time, and when the next of it is due."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from bullet_sim.tick_rate import TickRate

@@ -1,7 +1,5 @@
 """The simulated world together with its ROS side, and the loop that drives both."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import rospy

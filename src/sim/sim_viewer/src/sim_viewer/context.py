@@ -1,7 +1,5 @@
 """What operations and watchables are given: one browser's connection, and the node behind it."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

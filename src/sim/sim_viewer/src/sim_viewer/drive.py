@@ -1,7 +1,5 @@
 """Driving from browsers: what they may ask for. The process drive_guard.py publishes and stops."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -13,8 +13,6 @@ What has a number is answered on its standard output by {"number": 2, "taken": f
 another client drives now (see dead_man.py).
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

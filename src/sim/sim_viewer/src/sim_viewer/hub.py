@@ -1,7 +1,5 @@
 """The browsers that are connected: their messages in, answers and what they watch out."""
 
-from __future__ import annotations
-
 import asyncio
 import inspect
 import itertools

@@ -1,7 +1,5 @@
 """Any image topic, and any cv2 window that is one, as JPEG pictures while somebody watches."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

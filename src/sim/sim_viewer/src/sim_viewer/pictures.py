@@ -1,7 +1,5 @@
 """Image messages as JPEG for the page: small enough, and in colours that people can see."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from cv_bridge import CvBridge, CvBridgeError

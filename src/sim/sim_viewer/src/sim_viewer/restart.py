@@ -5,8 +5,6 @@ nothing of this node. rospy cannot change masters, so the process begins again, 
 that the old master had; browsers connect again by themselves.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """A robot without a simulator: its robot_description, placed by tf."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

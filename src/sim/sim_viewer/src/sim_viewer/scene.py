@@ -4,8 +4,6 @@ Events of `poses` are JSON {"names": [...]} whenever there are other links, then
 (n, 7) little-endian, x, y, z in m and the quaternion x, y, z, w of each, in the order of the names.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol

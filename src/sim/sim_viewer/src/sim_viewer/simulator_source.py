@@ -1,7 +1,5 @@
 """The simulator's scene and link poses, from its topics."""
 
-from __future__ import annotations
-
 import struct
 import time
 

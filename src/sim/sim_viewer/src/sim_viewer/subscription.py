@@ -4,8 +4,6 @@ rospy keeps one connection for each topic of a process, and all who subscribe th
 the class that the first of them named. So everything of this node asks for raw messages.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The cameras of a sensor, which take their pictures together, at a rate or on a trigger."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """One camera of a sensor: draws what somebody listens to and publishes it."""
 
-from __future__ import annotations
-
 import copy
 import time
 

@@ -1,7 +1,5 @@
 """A depth camera's topics: what a camera has, depth image, its CameraInfo, and points."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pixels as sensor_msgs/Image names them: from RGB, and back."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from sensor_msgs.msg import Image

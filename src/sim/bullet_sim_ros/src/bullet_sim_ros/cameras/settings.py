@@ -1,7 +1,5 @@
 """The tags that all camera plugins know."""
 
-from __future__ import annotations
-
 import logging
 import math
 

@@ -1,7 +1,5 @@
 """Looks up what a text uses in the table of what works: plugins with their tags, elements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 from xml.etree.ElementTree import Element

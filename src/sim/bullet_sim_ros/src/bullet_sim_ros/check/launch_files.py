@@ -1,7 +1,5 @@
 """Reads a launch file as roslaunch does, without starting anything."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import re

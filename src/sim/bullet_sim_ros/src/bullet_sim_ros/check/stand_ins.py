@@ -3,8 +3,6 @@
 What rospy would carry between processes is kept in lists and dictionaries.
 """
 
-from __future__ import annotations
-
 import io
 from collections import defaultdict
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Checks robot and world texts: reads and spawns them as the simulator would, and listens."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a joint controller is given: its parameters, joints to claim, and topics closed together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import rospy

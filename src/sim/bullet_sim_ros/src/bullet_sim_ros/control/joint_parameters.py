@@ -1,7 +1,5 @@
 """Limits and gains of joints that parameters set, beside those that the URDF has."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

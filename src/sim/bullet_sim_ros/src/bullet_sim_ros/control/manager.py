@@ -1,7 +1,5 @@
 """Which controllers are loaded and which run: load, unload, switch, list, as controller_manager."""
 
-from __future__ import annotations
-
 import logging
 import threading
 import time as wall

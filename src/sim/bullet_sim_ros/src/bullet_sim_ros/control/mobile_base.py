@@ -1,7 +1,5 @@
 """What the controllers of a robot's base share: cmd_vel in, odometry and tf out, parameters."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 

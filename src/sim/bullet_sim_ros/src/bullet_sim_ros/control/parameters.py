@@ -1,7 +1,5 @@
 """Reads the parameters of one controller, with errors that name what was looked for."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

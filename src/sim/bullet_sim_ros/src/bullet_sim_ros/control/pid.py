@@ -1,7 +1,5 @@
 """A PID of a controller: gains from parameters, changeable at run time, its state on a topic."""
 
-from __future__ import annotations
-
 from control_msgs.msg import PidState
 from rospy import Duration
 

@@ -1,7 +1,5 @@
 """The six services of controller_manager."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 

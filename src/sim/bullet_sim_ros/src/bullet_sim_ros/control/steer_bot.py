@@ -1,7 +1,5 @@
 """`steer_bot_hardware_gazebo/...`: the joints that a virtual wheel and a virtual steering move."""
 
-from __future__ import annotations
-
 from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.model import Model

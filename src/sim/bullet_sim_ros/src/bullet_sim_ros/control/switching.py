@@ -1,7 +1,5 @@
 """What a switch of controllers would do, and why it is refused: controller_manager's rules."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

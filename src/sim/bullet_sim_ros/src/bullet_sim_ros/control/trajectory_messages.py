@@ -1,7 +1,5 @@
 """Between trajectory messages and the core's trajectories: pure functions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from control_msgs.msg import FollowJointTrajectoryGoal, JointTolerance

@@ -1,7 +1,5 @@
 """Waits for the parameter with a robot's URDF while the simulation goes on."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable

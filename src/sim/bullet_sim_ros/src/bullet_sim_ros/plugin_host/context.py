@@ -1,7 +1,5 @@
 """What a plugin is given: its tags and place, calls by the loop, and topics that end with it."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable

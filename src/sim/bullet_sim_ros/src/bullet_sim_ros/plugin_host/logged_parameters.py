@@ -1,7 +1,5 @@
 """The tags of plugins that warn of each one that is missing, as upstream's helper class does."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """What drives publish about where they are: a topic and a transform."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from geometry_msgs.msg import TransformStamped

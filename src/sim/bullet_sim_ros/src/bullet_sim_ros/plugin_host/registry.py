@@ -1,7 +1,5 @@
 """From library file name to class, and the loading of all plugins of a model."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 from pathlib import PurePosixPath

@@ -1,7 +1,5 @@
 """Where a plugin is: in the world, a model, a sensor or a visual."""
 
-from __future__ import annotations
-
 from bullet_sim.description import PluginDescription, SensorDescription, Visual
 from bullet_sim.link import Link
 from bullet_sim.model import Model

@@ -1,7 +1,5 @@
 """The warning about a sensor that nothing here reads."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim.description import SensorDescription

@@ -1,7 +1,5 @@
 """What all plugins of one simulation use together: world, loop, drawing thread and /tf."""
 
-from __future__ import annotations
-
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 

@@ -1,7 +1,5 @@
 """The warning about a plugin that is not there: once, with what will be missing."""
 
-from __future__ import annotations
-
 import difflib
 import logging
 from collections.abc import Iterable

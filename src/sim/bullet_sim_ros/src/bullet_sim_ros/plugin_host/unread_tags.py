@@ -1,7 +1,5 @@
 """The warning about a plugin's tags that nothing reads, as flatland's EnsureAccessedAllKeys."""
 
-from __future__ import annotations
-
 import difflib
 import functools
 import logging

@@ -1,7 +1,5 @@
 """libgazebo_ros_block_laser.so: the points that a fan of rays meets, as sensor_msgs/PointCloud."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Point32
 from sensor_msgs.msg import ChannelFloat32, PointCloud

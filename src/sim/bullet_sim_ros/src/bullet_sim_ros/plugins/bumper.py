@@ -1,7 +1,5 @@
 """libgazebo_ros_bumper.so: gazebo_msgs/ContactsState of a contact sensor."""
 
-from __future__ import annotations
-
 from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 

@@ -1,7 +1,5 @@
 """The camera plugins: single, triggered, in pairs, streaming prosilica, and depth cameras."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim_ros import params

@@ -1,7 +1,5 @@
 """libgazebo_ros_diff_drive.so: cmd_vel in; odometry, tf and wheel joint states out."""
 
-from __future__ import annotations
-
 import logging
 
 from geometry_msgs.msg import Twist

@@ -1,7 +1,5 @@
 """libgazebo_ros_elevator.so: a lift that goes to the floor whose number comes on a topic."""
 
-from __future__ import annotations
-
 import logging
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """libgazebo_ros_force.so: the last Wrench that came acts on a link at every step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from geometry_msgs.msg import Wrench

@@ -1,7 +1,5 @@
 """Bases moved by force: hector's force_based_move and the three libraries made of it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import PurePosixPath

@@ -1,7 +1,5 @@
 """libgazebo_ros_ft_sensor.so and libgazebo_ros_f3d.so: geometry_msgs/WrenchStamped."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 

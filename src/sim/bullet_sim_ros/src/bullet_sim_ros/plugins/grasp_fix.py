@@ -1,7 +1,5 @@
 """libgazebo_grasp_fix.so: what a gripper's fingers press from two sides is held by its palm."""
 
-from __future__ import annotations
-
 import logging
 import math
 from xml.etree.ElementTree import Element

@@ -1,7 +1,5 @@
 """libgazebo_ros_hand_of_god.so: a link follows a tf frame, and its pose is published."""
 
-from __future__ import annotations
-
 import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage

@@ -1,7 +1,5 @@
 """libgazebo_ros_harness.so: a model hangs on a winch until it is detached."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """libgazebo_ros_imu.so: sensor_msgs/Imu of a link, gravity left out as upstream does."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """libgazebo_ros_imu_sensor.so: sensor_msgs/Imu of an IMU sensor, gravity included."""
 
-from __future__ import annotations
-
 import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
 

@@ -1,7 +1,5 @@
 """libgazebo_ros_joint_pose_trajectory.so: joints are moved along a JointTrajectory."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """libgazebo_ros_joint_state_publisher.so: joint_states of a list of joints."""
 
-from __future__ import annotations
-
 import logging
 
 from sensor_msgs.msg import JointState

@@ -1,7 +1,5 @@
 """libgazebo_ros_kobuki.so: TurtleBot2's base with wheels, gyroscope, bumpers and cliff sensors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist

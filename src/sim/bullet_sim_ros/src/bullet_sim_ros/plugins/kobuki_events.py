@@ -1,7 +1,5 @@
 """A Kobuki base's events: a bumper is pressed, the floor ends, a wheel drops."""
 
-from __future__ import annotations
-
 import math
 
 from kobuki_msgs.msg import BumperEvent, CliffEvent, WheelDropEvent

@@ -1,7 +1,5 @@
 """What a Kobuki base publishes all the time: joints, odometry, gyroscope."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import Imu, JointState
 
 from bullet_sim.drives.kobuki import Kobuki

@@ -1,7 +1,5 @@
 """libgazebo_ros_laser.so and its GPU twin: LaserScan while somebody listens."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import LaserScan
 
 from bullet_sim.sensors.laser import Laser

@@ -1,7 +1,5 @@
 """libgazebo_ros_link_attacher.so: a world plugin whose services tie links together."""
 
-from __future__ import annotations
-
 import logging
 
 from gazebo_ros_link_attacher.srv import Attach, AttachResponse

@@ -1,7 +1,5 @@
 """libroboticsgroup_gazebo_mimic_joint_plugin.so and its kin: a joint follows another one."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim.control.pid import Pid

@@ -1,7 +1,5 @@
 """libgazebo_ros_p3d.so: nav_msgs/Odometry of a link as the world has it."""
 
-from __future__ import annotations
-
 from nav_msgs.msg import Odometry
 
 from bullet_sim.pose import Pose, quaternion_from_rpy

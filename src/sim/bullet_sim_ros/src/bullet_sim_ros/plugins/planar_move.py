@@ -1,7 +1,5 @@
 """libgazebo_ros_planar_move.so: cmd_vel moves the model as a whole; odometry and tf out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry

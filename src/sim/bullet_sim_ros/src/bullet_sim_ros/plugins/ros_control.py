@@ -1,7 +1,5 @@
 """libgazebo_ros_control.so: a model's joints behind ros_control, with a controller manager."""
 
-from __future__ import annotations
-
 import logging
 import math
 from xml.etree.ElementTree import Element, fromstring

@@ -1,7 +1,5 @@
 """libgazebo_ros_skid_steer_drive.so: cmd_vel in; four wheels, odometry and tf out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters

@@ -1,7 +1,5 @@
 """libgazebo_ros_tricycle_drive.so: speed and steering angle in; odometry, tf, joint states out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import JointState
 

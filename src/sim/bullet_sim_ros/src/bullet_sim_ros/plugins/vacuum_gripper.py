@@ -1,7 +1,5 @@
 """libgazebo_ros_vacuum_gripper.so: services on and off; what is near the link is held by it."""
 
-from __future__ import annotations
-
 from std_msgs.msg import Bool
 from std_srvs.srv import Empty, EmptyResponse
 

@@ -1,7 +1,5 @@
 """libgazebo_ros_velodyne_laser.so and its GPU twin: a 3D lidar's sensor_msgs/PointCloud2."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

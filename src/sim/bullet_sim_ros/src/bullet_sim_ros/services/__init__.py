@@ -3,8 +3,6 @@
 "Upstream" is gazebo_ros/src/gazebo_ros_api_plugin.cpp, in the function of the service's name.
 """
 
-from __future__ import annotations
-
 import rospy
 
 from bullet_sim.formats import Resources

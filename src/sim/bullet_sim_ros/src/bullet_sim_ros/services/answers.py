@@ -1,7 +1,5 @@
 """How a service call reaches the loop and how its failure comes back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Wrenches on links and efforts on joints, for a while or until they are cleared."""
 
-from __future__ import annotations
-
 from gazebo_msgs.srv import ApplyBodyWrench, ApplyJointEffort, BodyRequest, JointRequest
 
 from bullet_sim.forces import Effort, Span, Wrench

@@ -1,7 +1,5 @@
 """Where a joint is; its stops, damping and motor."""
 
-from __future__ import annotations
-
 from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import GetJointProperties, SetJointProperties
 

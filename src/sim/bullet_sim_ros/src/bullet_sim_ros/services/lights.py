@@ -1,7 +1,5 @@
 """Lights: what they are like, changing them, taking them away."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from gazebo_msgs.srv import DeleteLight, GetLightProperties, SetLightProperties

@@ -1,7 +1,5 @@
 """Where a link is, what it weighs, and changing both."""
 
-from __future__ import annotations
-
 from gazebo_msgs.msg import LinkState
 from gazebo_msgs.srv import (
     GetLinkProperties,

@@ -1,7 +1,5 @@
 """Entities by the names that requests use."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from bullet_sim.description import JointDescription

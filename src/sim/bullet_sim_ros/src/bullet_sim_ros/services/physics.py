@@ -1,7 +1,5 @@
 """Step, update rate and gravity; the numbers of ODE that Bullet has no use for are only kept."""
 
-from __future__ import annotations
-
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 

@@ -1,7 +1,5 @@
 """dynamic_reconfigure of /gazebo: physics, with the names and ranges of upstream's Physics.cfg."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

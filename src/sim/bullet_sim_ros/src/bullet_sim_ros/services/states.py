@@ -1,7 +1,5 @@
 """Where models are, and putting them elsewhere."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from gazebo_msgs.msg import ModelState

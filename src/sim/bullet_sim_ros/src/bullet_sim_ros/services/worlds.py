@@ -1,7 +1,5 @@
 """The world as a whole: what is in it, pause, reset."""
 
-from __future__ import annotations
-
 from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 

@@ -1,7 +1,5 @@
 """Recording and playing bags: what `rosbag record` and `rosbag play` start, as child processes."""
 
-from __future__ import annotations
-
 import shutil
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """The time that nodes go by: simulated while somebody publishes /clock, else the wall's."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections import deque

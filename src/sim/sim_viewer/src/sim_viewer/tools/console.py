@@ -1,7 +1,5 @@
 """The log of all nodes, as rqt_console shows it."""
 
-from __future__ import annotations
-
 import itertools
 import threading
 from collections import deque

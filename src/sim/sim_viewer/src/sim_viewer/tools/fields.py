@@ -4,8 +4,6 @@ An element of an array is `/scan/ranges[10]` or `/scan/ranges/10`; `/turtle1/pos
 and a path that ends at a message is all numbers directly in it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 

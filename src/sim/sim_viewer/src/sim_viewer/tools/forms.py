@@ -1,7 +1,5 @@
 """Requests of services as YAML text: a template to fill in, and what was filled in as a message."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import genpy

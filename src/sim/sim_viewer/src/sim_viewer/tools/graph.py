@@ -1,7 +1,5 @@
 """Nodes, topics and what flows between them, laid out as rqt_graph draws it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import rospy

@@ -1,7 +1,5 @@
 """Places for a directed graph's nodes and curves for its edges, by Graphviz."""
 
-from __future__ import annotations
-
 import shlex
 import subprocess
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """The ROS master's state, read at most once a second however many pages show it."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable

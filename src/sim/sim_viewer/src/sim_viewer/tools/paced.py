@@ -1,7 +1,5 @@
 """Base class of the tools' watchables: polls at a period and sends what has changed."""
 
-from __future__ import annotations
-
 import abc
 import asyncio
 import threading

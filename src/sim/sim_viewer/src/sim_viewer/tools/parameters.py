@@ -1,7 +1,5 @@
 """The parameter server: all parameters, and setting or deleting one."""
 
-from __future__ import annotations
-
 import xmlrpc.client
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Numbers of any topic over time."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable

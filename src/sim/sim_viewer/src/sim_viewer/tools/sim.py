@@ -3,8 +3,6 @@
 Its node goes by `name`, which is /gazebo but in another namespace.
 """
 
-from __future__ import annotations
-
 import threading
 import time
 from typing import Any

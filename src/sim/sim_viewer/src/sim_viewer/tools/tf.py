@@ -1,7 +1,5 @@
 """The tree of frames, as view_frames draws it: who publishes each, how often, how old."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

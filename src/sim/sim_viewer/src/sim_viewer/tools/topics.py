@@ -1,7 +1,5 @@
 """The list of topics, what they carry as text, and how often they come."""
 
-from __future__ import annotations
-
 import abc
 import time
 from collections import deque

@@ -1,7 +1,5 @@
 """ackermann_steering_controller: one driven rear wheel and one steered front wheel."""
 
-from __future__ import annotations
-
 import math
 
 from bullet_sim.control.controllers.ackermann_steering_controller import (

@@ -1,7 +1,5 @@
 """The topic `command` of a controller: one number, or one for each joint."""
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Callable, Sequence

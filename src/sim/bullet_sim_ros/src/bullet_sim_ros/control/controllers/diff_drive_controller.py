@@ -1,7 +1,5 @@
 """diff_drive_controller: wheels on two sides, driven by a twist."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """Controllers that hand commands on: effort, velocity and position, single and in groups."""
 
-from __future__ import annotations
-
 from bullet_sim.control.controllers.forward import Forward
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import (

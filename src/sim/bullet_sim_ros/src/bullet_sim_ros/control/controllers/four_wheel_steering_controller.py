@@ -1,7 +1,5 @@
 """four_wheel_steering_controller: four wheels, each driven and each steered."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """gripper_action_controller: one joint, driven by position or effort, behind an action."""
 
-from __future__ import annotations
-
 import logging
 
 from actionlib import ServerGoalHandle

@@ -1,7 +1,5 @@
 """joint_state_controller/JointStateController: what all joints do, on the robot's joint_states."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import JointState
 
 from bullet_sim.control.rate import Rate

@@ -1,7 +1,5 @@
 """joint_trajectory_controller: joints that follow a trajectory, by topic or by action."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """mecanum_drive_controller: four wheels with rollers, forward, sideways and about."""
 
-from __future__ import annotations
-
 import logging
 
 from geometry_msgs.msg import Twist

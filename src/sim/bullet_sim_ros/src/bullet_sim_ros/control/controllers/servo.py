@@ -1,7 +1,5 @@
 """Controllers with a PID: position and velocity by effort, position by velocity."""
 
-from __future__ import annotations
-
 from control_msgs.msg import JointControllerState
 
 from bullet_sim.control.controllers.servo import PositionServo, Servo, Servos, VelocityServo

@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_baro.so: height by air pressure."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Point, PointStamped
 from hector_uav_msgs.msg import Altimeter

@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_gps.so: sensor_msgs/NavSatFix and the velocity north, west, up."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_imu.so: sensor_msgs/Imu with gravity, and the errors of a cheap IMU."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

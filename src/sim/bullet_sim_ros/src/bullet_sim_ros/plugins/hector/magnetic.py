@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_magnetic.so: the Earth's magnetic field in the axes of a link."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
