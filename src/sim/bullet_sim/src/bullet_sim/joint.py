@@ -25,7 +25,7 @@ class BodyJoint:
         self._body = body
 
     def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        """Force (N) and torque (N m) of the child on the joint, in the child link's frame."""
         return joint_reaction(self._body, self._body.carried_by(self.name))
 
 

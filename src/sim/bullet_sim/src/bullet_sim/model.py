@@ -186,7 +186,7 @@ class Model(ModelState):
         raise UnknownName(f"joint of model {self.name}", name, self.joints)
 
     def _without_scope(self, name: str) -> str:
-        """A part's name inside the model: Gazebo also takes `MODEL::PART`."""
+        """A part's name inside the model; `MODEL::PART` is good, too (Gazebo's Model::GetJoint)."""
         return name.removeprefix(f"{self.name}::")
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
@@ -207,9 +207,8 @@ class Model(ModelState):
 def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
     """Name, position and rate (rad or m) of the joint that carries `link`, nearest to these.
 
-    Of a link that joints hold to the world; in Gazebo it keeps any pose for one step, until its
-    joints pull it back. `pose` and `twist` (of the link's origin) are in the world. None of a link
-    that is fixed to the world or hangs on a ball joint.
+    Of a link that joints hold to the world. `pose` and `twist` (of the link's origin) are in the
+    world. None of a link that is fixed to the world or hangs on a ball joint.
     """
     body = link.body
     carrier = body.moving_carrier(link.name)

@@ -129,7 +129,9 @@ class World:
 
     def spawn(self, description: ModelDescription, pose: Pose = IDENTITY,
               name: str | None = None) -> Model:
-        """Add a model: its own pose is kept as an offset to `pose`, as Gazebo does.
+        """Add a model: its own pose is kept as an offset to `pose`.
+
+        gazebo_ros_api_plugin.cpp, updateSDFAttributes.
 
         NameTaken if there is a model of that name; SimulationError if the engine cannot
         hold it.

@@ -1,6 +1,6 @@
 """A model's joints as ros_control sees them: read, and driven within their limits.
 
-The semantics are those of gazebo_ros_control's DefaultRobotHWSim: a joint has one interface.
+The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: a joint has one interface.
 """
 
 from collections.abc import Iterable, Mapping

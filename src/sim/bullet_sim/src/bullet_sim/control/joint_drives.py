@@ -1,6 +1,6 @@
 """How a command becomes the effort or motion of a simulated joint: one class for each way.
 
-The ways, and when each is taken, are those of gazebo_ros_control's DefaultRobotHWSim.
+The ways, and when each is taken, are those of gazebo_ros_control's default_robot_hw_sim.cpp.
 """
 
 from dataclasses import replace
@@ -80,8 +80,9 @@ class VelocityMotor(JointDrive):
 class PositionMotor(VelocityMotor):
     """A position command without gains: at the end of the next step the joint is there.
 
-    Gazebo puts it there without asking for forces; we move it there, at the velocity limit at most,
-    with a motor that nothing can hold, so that its rate is true and moves what it carries.
+    default_robot_hw_sim.cpp, writeSim, puts it there without asking for forces; we move it there,
+    at the velocity limit at most, with a motor that nothing can hold, so that its rate is true and
+    moves what it carries.
     """
 
     def drive(self, period: float) -> None:

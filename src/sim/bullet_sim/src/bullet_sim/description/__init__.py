@@ -4,8 +4,8 @@ All lengths in m, angles in rad, masses in kg. Link poses are in the model frame
 zero. This is the package's face: others import from here, not from the files by subject.
 """
 
+from bullet_sim.description.joints import JointAxis as JointAxis
 from bullet_sim.description.joints import JointDescription as JointDescription
-from bullet_sim.description.joints import SecondAxis as SecondAxis
 from bullet_sim.description.links import Collision as Collision
 from bullet_sim.description.links import Inertial as Inertial
 from bullet_sim.description.links import LinkDescription as LinkDescription

@@ -5,30 +5,10 @@ from dataclasses import dataclass
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 
-@dataclass(frozen=True)
-class SecondAxis:
-    """`<axis2>` of a universal, revolute2 or gearbox joint; fields as of JointDescription."""
-
-    axis: Vector3 = (0.0, 0.0, 1.0)
-    lower: float = -1e16
-    upper: float = 1e16
-    effort: float = -1.0
-    velocity: float = -1.0
-    damping: float = 0.0
-    friction: float = 0.0
-    spring_reference: float = 0.0
-    spring_stiffness: float = 0.0
-
-
-@dataclass(frozen=True)
-class JointDescription:
+@dataclass(frozen=True, kw_only=True)
+class JointAxis:
     """`axis` is in the joint frame; for URDF that is the child link's frame (`pose` identity)."""
 
-    name: str
-    type: str  # revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox
-    parent: str  # link name, or "world"
-    child: str
-    pose: Pose = IDENTITY  # joint frame in the child link frame
     axis: Vector3 = (0.0, 0.0, 1.0)
     lower: float = -1e16  # rad or m
     upper: float = 1e16
@@ -38,8 +18,19 @@ class JointDescription:
     friction: float = 0.0
     spring_reference: float = 0.0
     spring_stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
+class JointDescription(JointAxis):
+    """Two links and what holds them together, with the fields of the joint's first axis."""
+
+    name: str
+    type: str  # revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox
+    parent: str  # link name, or "world"
+    child: str
+    pose: Pose = IDENTITY  # joint frame in the child link frame
     provide_feedback: bool = False
-    axis2: SecondAxis = SecondAxis()
+    axis2: JointAxis = JointAxis()  # of a universal, revolute2 or gearbox joint
     thread_pitch: float = 1.0  # screw: rad/m with the sign turned, travel = -angle / thread_pitch
     gearbox_ratio: float = 1.0  # gearbox: angle of the parent = -ratio * angle of the child, both
     gearbox_reference_body: str = ""  # measured from this link, about axis and axis2

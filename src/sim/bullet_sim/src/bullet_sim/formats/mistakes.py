@@ -1,4 +1,4 @@
-"""Says what is wrong in a text and reads on without it, as sdformat does; so many times at most."""
+"""Says what is wrong in a text and reads on without it; so many times at most."""
 
 import logging
 from collections.abc import Callable, Iterator

@@ -1,12 +1,13 @@
 """Numbers, vectors, colours and poses out of XML elements, with errors that say where.
 
-The readers that take a default give one error line and the default for what cannot be read, as
-sdformat does; the checks that do not (`numbers`, `not_negative`, `bounded`) raise FormatError.
+The readers that take a default give one error line and the default for what cannot be read, as in
+sdformat's Param.cc, SetFromString; the checks that do not (`numbers`, `not_negative`, `bounded`)
+raise FormatError.
 """
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, TypeVar
 from xml.etree.ElementTree import Element
 
@@ -78,6 +79,18 @@ def or_default(read: Callable[[], Value], default: Value) -> Value:
     except FormatError as error:
         instead(error, shown(default))
         return default
+
+
+def one_of(known: Collection[str], kind: str, written: str, usual: str, where: str) -> str:
+    """The written word; the usual one, with an error line, where it is not known.
+
+    `kind` says of what the words are names.
+    """
+    if written in known:
+        return written
+    instead(FormatError(f"{where}: no {kind} named {written!r}; there are: {', '.join(known)}"),
+            shown(usual))
+    return usual
 
 
 def shown(value: float | Sequence[float] | Pose | str) -> str:

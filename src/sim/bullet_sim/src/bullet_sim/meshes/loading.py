@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bullet_sim.description import Generated, Mesh
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.files import check_file
 from bullet_sim.meshes.collada import read_collada
 from bullet_sim.meshes.generated import generated_parts
@@ -39,10 +39,8 @@ def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)
-    try:
+    with prefixed("mesh"):
         status = check_file(geometry.path, LARGEST_FILE, "export it with fewer triangles")
-    except FormatError as error:
-        raise FormatError(f"mesh {error}") from None
     return _load(geometry, status.st_mtime_ns)
 
 

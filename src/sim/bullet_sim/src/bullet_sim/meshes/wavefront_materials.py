@@ -42,7 +42,7 @@ def _material(entry: Entry, mesh: Path) -> Material:
     texture = _texture(entry.get("map_kd"), mesh)
     diffuse = _colour(entry.get("kd"), (1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7))
     return Material(
-        # As Gazebo: exporters leave Ka black or white whatever the surface is.
+        # Exporters leave Ka black or white whatever the surface is.
         ambient=(*diffuse, 1.0),
         diffuse=(*diffuse, _opacity(entry)),
         specular=(*_colour(entry.get("ks"), (0.0, 0.0, 0.0)), 1.0),

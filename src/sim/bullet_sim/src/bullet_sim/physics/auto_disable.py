@@ -2,7 +2,7 @@
 
 And whether something moves briskly: then steps need not be solved to the last bit.
 
-Engines call this auto-disabling; ODE does it below 0.01 m/s and 0.01 rad/s. Ours is stricter, and
+Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
 """
 

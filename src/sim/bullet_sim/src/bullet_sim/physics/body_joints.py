@@ -111,7 +111,7 @@ class BodyJoints(EngineHandle):
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a rate with at most `effort` (N m or N), until the next command.
 
-        Below zero there is none, as in ODE.
+        Below zero there is none.
         """
         effort = min(max(effort, 0.0), STRONGEST)
         if self._motors.get(joint) == (velocity, effort):

@@ -1,7 +1,7 @@
-"""Which of a model's collisions meet: bit masks, and Gazebo's rules for links of one model.
+"""Which of a model's collisions meet: bit masks, and rules for links of one model.
 
 Links of one model collide only where both say so with `<self_collide>`, and never when a joint
-holds them together.
+holds them together (Gazebo's ODEPhysics::CollisionCallback).
 """
 
 import itertools

@@ -1,7 +1,7 @@
 """What touches what: the engine's contacts under the names of the description's collisions.
 
-Conventions are those of ODE, as Gazebo reports them: the normal points into body 1, the force is
-the one on body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
+Conventions are those of ODE's dContactGeom: the normal points into body 1, the force is the one on
+body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 
 LinkKey = tuple[str, str]  # model, link
 
-# What a surface without any material looks like: a whitish grey, as in Gazebo.
+# What a surface without any material looks like: a whitish grey.
 DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7, 1.0))
 
 

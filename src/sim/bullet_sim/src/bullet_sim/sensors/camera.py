@@ -44,7 +44,7 @@ class CameraReading:
 class Camera:
     """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
 
-    A `<distortion>` bends the colours, not the depth, which stays a pinhole's as in Gazebo.
+    A `<distortion>` bends the colours, not the depth, which stays a pinhole's.
     FormatError without a <camera>, and for a picture that cannot be drawn.
     """
 

@@ -7,7 +7,7 @@ from bullet_sim.formats.sdf.camera import read_camera
 from bullet_sim.formats.sdf.noise import read_imu, read_noise
 from bullet_sim.formats.xml_values import fields, flag, integer, number, pose
 
-# Sensors that need a `<camera>` or `<ray>`: sdformat makes a missing one of defaults.
+# Sensors that need a `<camera>` or `<ray>`: a missing one is made of defaults.
 CAMERAS = ("camera", "wideanglecamera", "multicamera", "depth", "depth_camera", "rgbd_camera")
 RAYS = ("ray", "lidar", "gpu_ray", "gpu_lidar")
 

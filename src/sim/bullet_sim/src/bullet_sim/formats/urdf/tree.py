@@ -61,7 +61,7 @@ def read_tree(robot: Element) -> UrdfTree:
         raise FormatError(f"robot {name!r} has no links")
     joints = _named(robot, "joint", f"robot {name!r}")
     tree = UrdfTree(name, "", links)
-    for joint_name in sorted(joints):  # urdfdom keeps them in a sorted map
+    for joint_name in sorted(joints):  # the std::map of urdfdom's ModelInterface
         joint = _read_joint(joints[joint_name], links)
         other = tree.inward.setdefault(joint.child, joint)
         if other is not joint:
