@@ -11,7 +11,7 @@ from bullet_sim_ros.simulation import Simulation
 
 PERIOD = 0.2  # s, wall, between messages
 WINDOW = 1.0  # s, wall, over which rates are taken
-NO_FRAMES = -1.0  # upstream's fps of a sensor that draws nothing
+NO_FRAMES = -1.0  # gazebo_ros_api_plugin.cpp, onPerformanceMetrics, of a sensor without fps
 
 
 class MetricsTopic:

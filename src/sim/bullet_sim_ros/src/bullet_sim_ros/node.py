@@ -88,7 +88,10 @@ def open_world(options: argparse.Namespace, resources) -> World:
 
 
 def wait_for_master() -> None:
-    """Say once that roscore is missing, then wait for it; upstream says it twice a second."""
+    """Say once that roscore is missing, then wait for it.
+
+    gazebo_ros_api_plugin.cpp, Load, says it twice a second.
+    """
     if rosgraph.is_master_online():
         return
     print("[WARN] No ROS master - start roscore to continue... (looked for it at "
@@ -98,7 +101,7 @@ def wait_for_master() -> None:
 
 
 def check_engine(name: str) -> None:
-    """An engine that Gazebo does not know either is an error line; the default goes on."""
+    """An engine that is none of Gazebo's four is an error line; the default goes on."""
     if name not in ENGINES:
         rospy.logerr("There is no physics engine %r; there are %s; Bullet computes, whichever is "
                      "asked for", name, ", ".join(ENGINES))

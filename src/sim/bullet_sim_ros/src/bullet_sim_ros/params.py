@@ -13,8 +13,8 @@ class NodeParameters:
     """Parameters below /gazebo."""
 
     pub_clock_frequency: float = 100.0
-    # Hz of simulated time; 0 or less: every step. Upstream's default is every step, which costs
-    # each rospy node with sim time a good part of a core.
+    # Hz of simulated time; 0 or less: every step, the default of gazebo_ros_api_plugin.cpp,
+    # publishSimTime, which costs each rospy node with sim time a good part of a core.
     pub_state_frequency: float = 100.0  # Hz for model_states and link_states; 0 or less: every step
     enable_ros_network: bool = True
     lockstep: str = ""  # topics to wait for after each camera frame; empty: do not wait

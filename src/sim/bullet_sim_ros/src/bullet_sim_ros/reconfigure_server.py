@@ -8,6 +8,8 @@ from typing import Protocol
 import rospy
 from dynamic_reconfigure.server import Server
 
+from bullet_sim_ros.plugin_host.context import PluginContext
+
 log = logging.getLogger("bullet_sim.plugins")
 
 KINDS = {float: "double", bool: "bool", int: "int", str: "str"}
@@ -42,6 +44,20 @@ def offer_values(owner: Owner, namespace: str, values: Mapping[str, Value],
         log.warning("%s: dynamic_reconfigure is not offered: %s", owner.describe(), error)
         return
     owner.on_close(server.close)
+
+
+def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, Value],
+                  change: Callable[[dict[str, float | bool]], None]) -> None:
+    """As `offer_values`; `change(values)` is called in the loop, and not for those that are now."""
+    begun: list[bool] = []
+
+    def changed(new: dict[str, float | bool]) -> None:
+        """In a ROS thread; at once for the first time."""
+        if begun:
+            context.services.mailbox.post(lambda: change(new))
+        begun.append(True)
+
+    offer_values(context, namespace, values, changed)
 
 
 class ValueServer(Server):

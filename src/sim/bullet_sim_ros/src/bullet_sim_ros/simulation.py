@@ -1,5 +1,6 @@
 """The simulated world together with its ROS side, and the loop that drives both."""
 
+from collections import Counter
 from collections.abc import Callable
 
 import rospy
@@ -46,6 +47,7 @@ class Simulation:
         self.scheduler.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
         self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
+        self.state_calls: Counter[str] = Counter()  # of get_model_state, by model: its header's seq
         for model in world.models.values():
             self._load_plugins(model)
         self._world_plugins = load_world_plugins(self._services)

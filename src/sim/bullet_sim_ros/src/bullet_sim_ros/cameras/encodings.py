@@ -11,7 +11,7 @@ ENCODINGS = {  # SDF <format>, and what image consumers call it
     "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
     "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
 }
-UNKNOWN_FORMAT = "bgr8"  # what upstream takes for a <format> it does not know
+UNKNOWN_FORMAT = "bgr8"  # gazebo_ros_camera_utils.cpp, Init, for a <format> it does not know
 _DEEPER = 257  # 8 to 16 bits: 255 becomes 65535
 _TO_RGB = {
     "rgb8": None, "8UC3": cv2.COLOR_BGR2RGB, "bgr8": cv2.COLOR_BGR2RGB,

@@ -21,7 +21,8 @@ class CameraSettings:
     """The tags of a `<plugin>` about one camera.
 
     `suffix` is a camera's own part of the namespace in a pair, `baseline` (m) its distance from the
-    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, as upstream.
+    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, nor has it in
+    gazebo_ros_camera_utils.cpp, Init.
     """
 
     def __init__(self, context: PluginContext, description: CameraDescription, suffix: str = "",

@@ -6,20 +6,9 @@ import time as wall
 from collections.abc import Callable, Sequence
 
 from bullet_sim.control.rate import Rate
-from bullet_sim_ros.control import registry
+from bullet_sim_ros.control import registry, switching
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.switching import (
-    ABORTED,
-    RUNNING,
-    STOPPED,
-    WAITING,
-    Gone,
-    Loaded,
-    ManagerError,
-    Switch,
-    plan,
-    there_are,
-)
+from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError, Switch
 from bullet_sim_ros.errors import format_error
 
 log = logging.getLogger("bullet_sim.control")
@@ -82,14 +71,14 @@ class ControllerManager:
         switch.done.set()
 
     def _start(self, loaded: Loaded, time: float) -> None:
-        loaded.state = RUNNING
+        loaded.state = switching.RUNNING
         try:
             loaded.controller.start(time)
         except Exception as error:
             self._abort(loaded, time, error)
 
     def _stop(self, loaded: Loaded, time: float) -> None:
-        loaded.state = STOPPED
+        loaded.state = switching.STOPPED
         try:
             loaded.controller.stop(time)
         except Exception as error:
@@ -99,7 +88,7 @@ class ControllerManager:
 
     def _abort(self, loaded: Loaded, time: float, error: Exception) -> None:
         log.error("Controller '%s' failed and is stopped: %s", loaded.name, format_error(error))
-        loaded.state = ABORTED
+        loaded.state = switching.ABORTED
         for handle in loaded.context.claims.values():
             handle.rest()
         self._note_running()
@@ -114,9 +103,9 @@ class ControllerManager:
         return list(self._loaded.values())
 
     def state_of(self, loaded: Loaded) -> str:
-        """As upstream names it; what a paused world has still to start is waiting."""
+        """As ControllerState.msg names it; what a paused world has still to start is waiting."""
         switch = self._switch
-        return WAITING if switch is not None and loaded in switch.start else loaded.state
+        return switching.WAITING if switch is not None and loaded in switch.start else loaded.state
 
     def load(self, name: str) -> None:
         """Make a controller, as the parameters below its name say; ManagerError if it cannot be."""
@@ -168,8 +157,7 @@ class ControllerManager:
         with self._one_at_a_time:
             loaded = self._loaded.get(name)
             if loaded is None:
-                raise ManagerError(f"Could not unload controller with name '{name}' because no "
-                                   f"controller with this name exists{there_are(self._loaded)}")
+                raise switching.absent("unload", name, self._loaded)
             if loaded.runs:
                 raise ManagerError(f"Could not unload controller with name '{name}' because it is "
                                    "still running")
@@ -184,7 +172,7 @@ class ControllerManager:
         ManagerError if that is refused or takes longer, Gone if the model is deleted meanwhile.
         """
         with self._one_at_a_time:
-            switch = plan(self._loaded, start, stop, strict)
+            switch = switching.plan(self._loaded, start, stop, strict)
             if not switch.start and not switch.stop:
                 return
             with self._handover:
@@ -192,7 +180,7 @@ class ControllerManager:
             self._wait(switch, timeout)
 
     def reload(self, force: bool) -> None:
-        """As upstream's reload of libraries: with `force` everything is stopped and unloaded.
+        """With `force` everything is stopped and unloaded (reloadControllerLibrariesSrv).
 
         ManagerError if something runs, without `force`.
         """

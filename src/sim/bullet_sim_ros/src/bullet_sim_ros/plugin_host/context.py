@@ -53,8 +53,8 @@ class PluginContext(PluginScope):
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
         """Call `action` at a rate of simulated time, while `wanted` is true; 0: every step.
 
-        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). As
-        upstream has it, a rate below zero is none, too.
+        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). A
+        rate below zero is none, too (gazebo_ros_diff_drive.cpp, Load).
         """
         scheduler = self.services.scheduler
         self._task = task = scheduler.add(
@@ -70,8 +70,8 @@ class PluginContext(PluginScope):
                       wanted: Callable[[], bool] = always) -> None:
         """Call `action` at the sensor's own rate, thinned to `rate_hz`; 0: at each reading.
 
-        As upstream has it, a reading is left out until so much time has gone by since the last one
-        that was taken, so 100 Hz thinned to 30 Hz is 25 Hz.
+        A reading is left out until so much time has gone by since the last one that was taken, so
+        100 Hz thinned to 30 Hz is 25 Hz (gazebo_ros_imu_sensor.cpp, UpdateChild).
         """
         sensor_rate = self.sensor.update_rate
         if sensor_rate <= 0 or rate_hz <= 0:
@@ -173,7 +173,7 @@ class PluginContext(PluginScope):
         return True
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
-        """A service; a name that is taken is a warning, as upstream has it."""
+        """A service; a name that is taken is a warning."""
         try:
             service = rospy.Service(_legal(name), kind, handler)
         except rospy.ServiceException as error:

@@ -1,4 +1,4 @@
-"""The tags of plugins that warn of each one that is missing, as upstream's helper class does."""
+"""The tags of plugins that warn of each one that is missing (gazebo_ros_utils.h, getParameter)."""
 
 import logging
 from collections.abc import Sequence

@@ -74,7 +74,10 @@ def open_odometry(context: PluginContext, namespace: str, base_frame: str = "bas
 
 def wheel_transform(model: Model, joint: Joint, time: float, prefix: str,
                     frame: str) -> TransformStamped:
-    """The wheel seen from the model, with the joint's parent link as header frame, as upstream."""
+    """The wheel seen from the model, with the joint's parent link as header frame.
+
+    gazebo_ros_diff_drive.cpp, publishWheelTF.
+    """
     pose = model.pose.inverse() * model.links[joint.description.child].pose
     return convert.transform_to_msg(pose, time, names.frame(prefix, joint.description.parent),
                                     names.frame(prefix, frame))

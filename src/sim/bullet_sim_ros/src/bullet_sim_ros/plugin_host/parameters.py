@@ -18,7 +18,7 @@ WORDS = ("inf", "nan", "infinity")  # that a stream does not know, but xacro and
 def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
     """The numbers at the beginning of a text, `count` at most, and whether that was all of it.
 
-    As upstream's conversion: it goes on until something is no number any more.
+    It goes on until something is no number any more.
     """
     values: list[float] = []
     for word in text.split():

@@ -22,7 +22,10 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_diff_drive.so")
 class DiffDrivePlugin:
-    """Publishes first, then moves the wheels, as upstream does; there is no command time-out."""
+    """Publishes first, then moves the wheels; there is no command time-out.
+
+    gazebo_ros_diff_drive.cpp, UpdateChild.
+    """
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -81,7 +84,7 @@ class DiffDrivePlugin:
         self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
-        """Upstream's publishTf switches the odometry topic as well as the transforms."""
+        """publishTf switches the odometry topic as well as the transforms, as in UpdateChild."""
         world = self._context.world
         if self._states:
             reading = sample_joints(world, self._joints)

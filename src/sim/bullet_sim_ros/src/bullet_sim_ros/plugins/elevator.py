@@ -16,7 +16,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_elevator.so")
 class ElevatorPlugin:
-    """A call while it is on its way is ignored, as upstream."""
+    """A call while it is on its way is ignored (Gazebo's ElevatorPlugin.cc, MoveToFloor)."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -31,7 +31,7 @@ class FtSensorPlugin(SensorPlugin):
 class F3dPlugin(SensorPlugin):
     """What moves a link, gravity and contacts included: m a, in world axes. `frameName` is a label.
 
-    The frame is `world` whatever is written, as upstream intends; the tf_prefix goes before it.
+    The frame is `world` whatever is written (gazebo_ros_f3d.cpp, Load); the tf_prefix goes before.
     """
 
     def __init__(self, context: PluginContext):

@@ -16,7 +16,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_grasp_fix.so", "libgazebo_grasp_plugin.so")
 class GraspFixPlugin:
-    """Updates by simulated time (upstream: the wall clock's)."""
+    """Updates by simulated time; GazeboGraspFix.cpp, OnUpdate, by the wall clock's."""
 
     def __init__(self, context: PluginContext):
         self._context = context

@@ -1,4 +1,7 @@
-"""libgazebo_ros_imu.so: sensor_msgs/Imu of a link, gravity left out as upstream does."""
+"""libgazebo_ros_imu.so: sensor_msgs/Imu of a link, without gravity.
+
+The rules are those of gazebo_ros_imu.cpp, UpdateChild.
+"""
 
 import dataclasses
 
@@ -19,9 +22,9 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 
 @plugin("libgazebo_ros_imu.so")
 class ImuPlugin(SensorPlugin):
-    """Rates and accelerations are in the link's axes (upstream turns them the wrong way round).
+    """Rates and accelerations are in the link's axes; UpdateChild turns them the wrong way round.
 
-    `xyzOffset` moves nothing in upstream either. No tf_prefix.
+    `xyzOffset` moves nothing there either. No tf_prefix.
     """
 
     def __init__(self, context: PluginContext):
@@ -59,7 +62,7 @@ class ImuPlugin(SensorPlugin):
 
 
 def _find_link(context: PluginContext, name: str) -> Link:
-    """A link of the model, else of any model in the world, as upstream looks it up."""
+    """A link of the model, else of any model in the world (gazebo_ros_imu.cpp, LoadThread)."""
     try:
         return context.model.link(name)
     except UnknownName as here:

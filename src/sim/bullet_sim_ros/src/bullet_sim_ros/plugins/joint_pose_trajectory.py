@@ -22,10 +22,10 @@ INERTIAL = ("world", "/map", "map")
 
 @plugin("libgazebo_ros_joint_pose_trajectory.so")
 class JointPoseTrajectoryPlugin:
-    """While it plays, only its own model is outside physics (upstream stops the world's).
+    """While it plays, only its own model is outside physics; SetTrajectory stops the world's.
 
-    As upstream has it, each point's time_from_start is how long it is shown. The service is there,
-    which upstream leaves out when it is built.
+    Each point's time_from_start is how long it is shown (gazebo_ros_joint_pose_trajectory.cpp,
+    UpdateStates). The service is there, which LoadThread has only if built with ENABLE_SERVICE.
     """
 
     def __init__(self, context: PluginContext):

@@ -13,7 +13,7 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 class LaserPlugin(SensorPlugin):
     """The rate is the sensor's `<update_rate>`; the plugin has none.
 
-    Both see collision shapes (upstream's GPU twin sees visuals).
+    Both see collision shapes; Gazebo's gpu_ray sensor sees visuals.
     """
 
     def __init__(self, context: PluginContext):

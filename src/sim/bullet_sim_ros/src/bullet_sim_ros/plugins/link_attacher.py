@@ -19,7 +19,10 @@ Ends = tuple[str, str, str, str]  # model, link, other model, its link
 
 @plugin("libgazebo_ros_link_attacher.so")
 class LinkAttacherPlugin:
-    """What is attached stays as it is to each other (upstream pulls the two origins together)."""
+    """What is attached stays as it is to each other.
+
+    gazebo_ros_link_attacher.cpp, attach, pulls the two origins together.
+    """
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -50,7 +53,7 @@ class LinkAttacherPlugin:
         return True
 
     def _detach(self, ends: Ends) -> bool:
-        """Upstream answers that it went well only if there is something to part."""
+        """It went well only if there is something to part, as in detach there."""
         weld = self._held.pop(ends, None)
         if weld is None:
             return False

@@ -16,7 +16,10 @@ log = logging.getLogger("bullet_sim.plugins")
         "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
         "libgazebo_mimic_joint_plugin.so")
 class MimicJointPlugin:
-    """Held by a strong motor, so that it can grip (upstream puts it in place, through things)."""
+    """Held by a strong motor, so that it can grip.
+
+    roboticsgroup's mimic_joint_plugin.cpp, UpdateChild, puts it in place, through things.
+    """
 
     def __init__(self, context: PluginContext):
         p = context.parameters

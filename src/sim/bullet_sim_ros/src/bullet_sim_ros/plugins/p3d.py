@@ -14,10 +14,11 @@ INERTIAL = ("world", "/world", "map", "/map")
 
 @plugin("libgazebo_ros_p3d.so")
 class P3dPlugin(SensorPlugin):
-    """Seen from another link, the twist is truly that (upstream turns it the wrong way round).
+    """Seen from another link, the twist is truly that.
 
-    The offsets are in the link's axes, so that a lumped link's are right in any pose (upstream adds
-    them in the world's).
+    The offsets are in the link's axes, so that a lumped link's are right in any pose.
+    gazebo_ros_p3d.cpp, UpdateChild, turns the former the wrong way, and adds the latter in the
+    world's axes.
     """
 
     def __init__(self, context: PluginContext):

@@ -43,4 +43,4 @@ def done(response, message: str) -> None:
 
 
 class ServiceError(SimulationError):
-    """A request that cannot be met, in upstream's words."""
+    """A request that cannot be met, in the words of gazebo_ros_api_plugin.cpp."""

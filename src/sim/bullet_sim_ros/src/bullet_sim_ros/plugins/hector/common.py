@@ -12,7 +12,7 @@ from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.parameters import PluginParameters, read_numbers
 from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
-from bullet_sim_ros.reconfigure_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
         "gaussian_noise": "gaussianNoise", "scale_error": "scaleError"}
@@ -91,19 +91,14 @@ class HectorError(ErrorModel):
         context.on_reset(self.restart)
 
     def offer(self, namespace: str) -> None:
-        """Let it be reconfigured; one value is for all components, as upstream has it."""
-        known: dict[str, float] = {}
+        """Let it be reconfigured; one value is for all components.
 
-        def change(values: dict[str, float]) -> None:
-            if not known:  # the first call has the present values
-                known.update(values)
-            else:
-                self._context.services.mailbox.post(lambda: self._set(values))
-
+        sensor_model.h, dynamicReconfigureCallback.
+        """
         means = {name: math.fsum(values) / len(values)
                  for name, values in vars(self.parameters).items()}
-        offer_values(self._context, namespace, {
-            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, change)
+        offer_changes(self._context, namespace, {
+            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, self._set)
 
     def _set(self, values: dict[str, float]) -> None:
         size = len(self.parameters.offset)

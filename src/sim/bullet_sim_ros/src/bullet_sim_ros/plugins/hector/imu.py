@@ -52,7 +52,7 @@ class HectorImuPlugin(common.HectorSensor):
         """Calibration forgets the gyroscope's drift; the others set a bias."""
         def setter(error: common.HectorError):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
-                bias = np.array([request.bias.x, request.bias.y, request.bias.z])
+                bias = np.array(convert.triple(request.bias))
                 context.services.mailbox.call(lambda: error.set_drift(bias))
                 return SetBiasResponse()
             return set_bias
