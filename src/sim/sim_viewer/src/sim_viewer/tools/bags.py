@@ -14,7 +14,7 @@ from roslib.packages import find_node
 
 from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools.bag_folder import bag_folder, contents, existing_bag, listing, new_bag
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 
 LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
 TIMEOUT = 10.0  # s for a bag to be closed
@@ -168,10 +168,9 @@ class BagState(Paced):
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
         self._bags: Bags = context.node.shared(Bags)
-        self._changes = Changes()
 
     def collect(self) -> Any:
-        return self._changes.of(self._bags.state())
+        return self.changed(self._bags.state())
 
 
 @operation("bag_info")
