@@ -1,6 +1,7 @@
 """Laws of drives and grippers: known answers."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -8,6 +9,7 @@ from bullet_sim.description import (
     Box,
     Collision,
     Inertial,
+    JointDescription,
     LinkDescription,
     ModelDescription,
     WorldDescription,
@@ -136,3 +138,46 @@ def test_what_is_deleted_is_let_go_before(world):
     world.delete("s")
     world.step(10)
     assert second.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize("static", [False, True])
+def test_links_of_one_model_can_be_welded_and_the_model_deleted(world, static):
+    left, right = cube("l").links[0], cube("r").links[0]
+    right = replace(right, name="r", pose=Pose((0.5, 0.0, 0.0)))
+    model = world.spawn(ModelDescription("m", static=static, links=(left, right)))
+    removed = []
+    world.each_removal.append(removed.append)
+    weld = model.links["l"].attach(model.links["r"])
+    bodies = list(model.bodies)
+    world.delete("m")
+    assert removed == ["m"] and not world.models
+    assert not any(body.is_loaded for body in bodies)
+    weld.release()
+
+
+def test_links_of_one_body_can_be_welded_and_the_model_deleted(world):
+    left, right = cube("l").links[0], cube("r").links[0]
+    right = replace(right, name="r", pose=Pose((0.5, 0.0, 0.0)))
+    hinge = JointDescription("j", "revolute", "l", "r", axis=(0.0, 0.0, 1.0))
+    model = world.spawn(ModelDescription("m", links=(left, right), joints=(hinge,)))
+    model.links["l"].attach(model.links["r"])
+    (body,) = model.bodies
+    model.joints["j"].drive_effort(1.0)
+    world.step(100)
+    assert model.joints["j"].position == pytest.approx(0.0, abs=1e-2)
+    rebuild_heavier(model)
+    assert len(body.attached) == 1
+    world.delete("m")
+    assert not body.is_loaded
+
+
+def test_every_removal_is_told_though_one_fails(world):
+    model, removed = world.spawn(cube("a")), []
+
+    def fail(name):
+        raise ValueError(name)
+
+    world.each_removal += [fail, removed.append]
+    with pytest.raises(ValueError, match="a"):
+        world.delete("a")
+    assert removed == ["a"] and not model.bodies[0].is_loaded

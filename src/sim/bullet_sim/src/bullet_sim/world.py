@@ -5,6 +5,7 @@ import math
 import time
 import zlib
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import replace
 
 import numpy as np
@@ -172,9 +173,10 @@ class World:
             if light in self.lights:
                 self.remove_light(light)
         self.forces.drop_model(model)
-        model.remove()
-        for function in self.each_removal:
-            function(name)
+        with ExitStack() as stack:  # all are called, also if removing or one of them fails
+            for function in reversed(self.each_removal):
+                stack.callback(function, name)
+            model.remove()
 
     def model(self, name: str) -> Model:
         """The model of that name. UnknownName without one."""

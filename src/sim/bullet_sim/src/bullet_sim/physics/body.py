@@ -30,7 +30,7 @@ class Attachment(Protocol):
     It is false where it has nothing to do.
     """
 
-    bodies: list[Body]  # each has it in `attached`
+    bodies: list[Body]  # each once, and each has it in `attached`
 
     def attach(self) -> None:
         """Make it, now that a body is loaded."""
@@ -199,7 +199,8 @@ class Body(BodyLinks, BodyJoints):
             with contextlib.suppress(EngineError):
                 attachment.detach()
             for body in attachment.bodies:
-                body.attached.remove(attachment)
+                if attachment in body.attached:
+                    body.attached.remove(attachment)
         self._destroy()
 
     def _destroy(self) -> None:

@@ -18,7 +18,7 @@ class Weld:
     def __init__(self, body: Body, link: str, other: Body | None = None, other_link: str = ""):
         self._body, self._link = body, link
         self._other, self._other_link = other, other_link
-        self.bodies = [body] if other is None else [body, other]
+        self.bodies = [body] if other in (None, body) else [body, other]
         holder = IDENTITY if other is None else other.engine_frame(other.index[other_link])
         self._pose_holder_link = holder.inverse() * body.engine_frame(body.index[link])
         self._constraint: int | None = None
