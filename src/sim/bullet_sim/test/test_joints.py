@@ -1,13 +1,16 @@
 """Joints of every type against known answers."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.joint import LoopJoint
+from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 GRAVITY = 9.8
@@ -410,3 +413,40 @@ def test_a_fixed_joint_to_the_world_bears_too_and_is_read_at_rest(world):
     run(world, 3.0)
     force, _ = model.joint("j").reaction()
     assert force == pytest.approx((0.0, 0.0, -3.0 * GRAVITY), abs=1e-3)
+
+
+@pytest.mark.parametrize("rests", [False, True])
+def test_what_a_joint_bears_is_measured_on_after_a_change_of_masses(world, rests):
+    model = world.spawn(read(
+        link("post") + link("lamp", "0 0 -1 0 0 0") + joint("w", "fixed", "world", "post")
+        + joint("j", "revolute", "post", "lamp", axis("0 0 1", NO_WAY))))
+    other = world.spawn(read(link("floating", more="<gravity>false</gravity>")), name="other")
+    other.set_velocity(Twist() if rests else Twist((1.0, 0.0, 0.0)))
+    hinge = model.joint("j")
+    hinge.reaction()  # from now on it is measured
+    run(world, 2.0)
+    assert world.is_at_rest == rests
+    lamp = model.links["lamp"]
+    heavier = replace(lamp.description.inertial, mass=2.0)
+    for _ in range(2):  # the second without a step between
+        model.change_link(lamp, heavier, gravity=True)
+        assert hinge.reaction()[0] == pytest.approx((0.0, 0.0, -GRAVITY), abs=1e-3)
+    run(world, 0.1)
+    assert hinge.reaction()[0] == pytest.approx((0.0, 0.0, -2.0 * GRAVITY), abs=1e-3)
+
+
+def test_what_a_joint_bears_is_measured_on_after_a_motion_that_is_not_finite(world):
+    arm = read(link("post") + link("lamp", "0 0 -1 0 0 0") + joint("w", "fixed", "world", "post")
+               + joint("j", "revolute", "post", "lamp", axis("0 0 1")))
+    lamps = [world.spawn(arm, Pose((x, 0.0, 0.0)), name) for x, name in ((0.0, "m"), (2.0, "o"))]
+    for lamp in lamps:
+        lamp.joint("j").reaction()
+    run(world, 0.2)
+    broken = lamps[0].bodies[0]
+    broken.change(pybullet.applyExternalForce, broken.index["lamp"], (math.nan, 0, 0),
+                  (0, 0, 0), pybullet.WORLD_FRAME)
+    run(world, 1.0)
+    assert lamps[0].has_recovered
+    for lamp in lamps:
+        force, _ = lamp.joint("j").reaction()
+        assert force == pytest.approx((0.0, 0.0, -GRAVITY), abs=1e-3)

@@ -58,7 +58,7 @@ class AutoDisable:
         self.disabled = False  # whether the next step would change nothing
         self.is_fast = False  # whether anything was brisk when last looked at
         self.found_nan = False  # whether a speed was no number when last looked at
-        self._steps = 0
+        self.steps = 0  # that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)
         self.set_step(SAMPLE_PERIOD)
 
@@ -80,13 +80,13 @@ class AutoDisable:
     @property
     def is_sampling(self) -> bool:
         """Whether a sample is taken after this step."""
-        return self._steps % self.sample_steps == 0
+        return self.steps % self.sample_steps == 0
 
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be called before each."""
         if self.disabled:
             return False
-        self._steps += 1
+        self.steps += 1
         if self.is_sampling:
             self._sample()
         return True

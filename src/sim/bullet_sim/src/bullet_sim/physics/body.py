@@ -123,6 +123,7 @@ class Body(BodyLinks, BodyJoints):
 
     def unload(self) -> None:
         """Unload it, with its attachments; `load` is the inverse."""
+        self._keep_loads()
         for attachment in self.attached:
             attachment.detach()
         self._destroy()
