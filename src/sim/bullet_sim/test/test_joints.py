@@ -330,14 +330,30 @@ def test_the_joint_that_closes_a_loop_can_be_read_and_driven(world):
 
 def test_a_ball_that_closes_a_loop_is_reset_with_the_others(world):
     model = world.spawn(read(four_bar(third="ball")))
-    (closing,) = [joint for joint in model.joints.values() if isinstance(joint, LoopJoint)]
-    assert closing.description.type == "ball"
+    closing = model.joint("c")
+    assert (closing.description.type, closing.position) == ("ball", 0.0)
     for _ in range(300):
         model.joint("a").drive_velocity(1.0, 1000.0)
         world.step()
+    assert (closing.position, closing.velocity) == (0.0, 0.0)  # as of a ball in a tree
+    assert closing.reaction() == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     world.reset_models()
     assert model.joint("a").position == pytest.approx(0.0, abs=1e-6)
     assert model.links["bar"].pose.position == pytest.approx((0, 0, 0.5), abs=1e-6)
+
+
+@pytest.mark.parametrize("third, moved", [("ball", False), ("revolute", True)])
+def test_an_effort_on_a_ball_that_closes_a_loop_does_nothing(world, third, moved):
+    model = world.spawn(read(four_bar(third=third)))
+    closing = model.joint("c" if third == "ball" else "d")
+    world.step(10)
+    before = model.joint("a").position
+    for _ in range(100):
+        closing.drive_effort(5.0)
+        (group,) = model.joint_groups([closing.name])
+        group.drive_efforts([5.0])
+        world.step()
+    assert (abs(model.joint("a").position - before) > 1e-2) == moved
 
 
 @pytest.mark.parametrize("kind", ["fixed", "prismatic"])

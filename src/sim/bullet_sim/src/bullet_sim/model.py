@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from bullet_sim.description import Inertial, JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.joint import Joint, LoopJoint, PassiveJoint, SingleJointGroup
+from bullet_sim.joint import Joint, LoopBall, LoopJoint, PassiveJoint, SingleJointGroup
 from bullet_sim.link import Link, gravity_compensation
 from bullet_sim.model_state import ModelState
 from bullet_sim.physics.assembly import Tree, assemble, loop_joints
@@ -81,10 +81,12 @@ class Model(ModelState):
                     held = PassiveJoint(described[link.carrier.name], body)
                     known = self.fixed_joints if held.description.type == "fixed" else self.joints
                     known[held.name] = held
-        self.joints |= {
-            joint.name: LoopJoint(joint, self.links.get(joint.parent), self.links.get(joint.child),
-                                  self.initial_pose)
-            for joint in loops if joint.type not in ("fixed", "gearbox")}
+        for joint in loops:
+            ends = self.links.get(joint.parent), self.links.get(joint.child)
+            if joint.type == "ball":
+                self.joints[joint.name] = LoopBall(joint)
+            elif joint.type not in ("fixed", "gearbox"):
+                self.joints[joint.name] = LoopJoint(joint, *ends, self.initial_pose)
 
     # --- motion
 
