@@ -17,7 +17,6 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2,
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
 from bullet_sim.profiler import Profiler
-from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
@@ -138,12 +137,13 @@ def laser_to_msg(reading: LaserReading) -> LaserScan:
                      ranges=reading.ranges.tolist(), intensities=reading.intensities.tolist())
 
 
-def imu_to_msg(reading: ImuReading, variance: float) -> Imu:
-    """sensor_msgs/Imu without header, of a reading in the axes that it is to be published in."""
+def imu_to_msg(orientation: Sequence[float], angular_velocity: Sequence[float],
+               linear_acceleration: Sequence[float], variance: float = 0.0) -> Imu:
+    """sensor_msgs/Imu without header: quaternion, rad/s, m/s^2, and one variance for them all."""
     covariance = diagonal([variance] * 3)
-    return Imu(orientation=QuaternionMsg(*reading.orientation),
-               angular_velocity=Vector3(*reading.angular_velocity),
-               linear_acceleration=Vector3(*reading.linear_acceleration),
+    return Imu(orientation=QuaternionMsg(*orientation),
+               angular_velocity=Vector3(*angular_velocity),
+               linear_acceleration=Vector3(*linear_acceleration),
                orientation_covariance=covariance, angular_velocity_covariance=covariance,
                linear_acceleration_covariance=covariance)
 

@@ -3,7 +3,6 @@
 The rules are those of gazebo_ros_imu.cpp, UpdateChild.
 """
 
-import dataclasses
 
 import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
@@ -12,8 +11,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from bullet_sim.errors import UnknownName
 from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.sensors.imu import ImuReading
-from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
+from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -42,23 +40,13 @@ class ImuPlugin(SensorPlugin):
 
     def measure(self) -> ImuMsg:
         """What the link does now."""
-        reading = self._with_noise(self._in_link_axes(self._imu.sample()))
-        return convert.imu_to_msg(reading, self.noise ** 2)
-
-    def _in_link_axes(self, reading: LinkMotionReading) -> ImuReading:
+        reading = self._imu.sample()
         back = conjugate(reading.orientation)
-        return ImuReading(
-            reading.time,
-            multiply(self._offset, reading.orientation),
+        values = self.disturbed(np.concatenate([
             rotate(back, reading.world_angular_velocity),
-            rotate(back, reading.world_acceleration),
-        )
-
-    def _with_noise(self, reading: ImuReading) -> ImuReading:
-        values = self.disturbed(
-            np.concatenate([reading.angular_velocity, reading.linear_acceleration])).tolist()
-        return dataclasses.replace(reading, angular_velocity=tuple(values[:3]),
-                                   linear_acceleration=tuple(values[3:]))
+            rotate(back, reading.world_acceleration)])).tolist()
+        return convert.imu_to_msg(multiply(self._offset, reading.orientation), values[:3],
+                                  values[3:], self.noise ** 2)
 
 
 def _find_link(context: PluginContext, name: str) -> Link:

@@ -41,6 +41,7 @@ class KobukiOutput:
             self._imu.publish(self._imu_msg(self._kobuki.imu_reading()))
 
     def _imu_msg(self, reading: ImuReading) -> Imu:
-        msg = convert.imu_to_msg(reading, 0.0)
+        msg = convert.imu_to_msg(reading.orientation, reading.angular_velocity,
+                                 reading.linear_acceleration)
         msg.orientation_covariance = msg.angular_velocity_covariance = GYRO_COVARIANCE
         return convert.stamped(msg, reading.time, self._base_link)
