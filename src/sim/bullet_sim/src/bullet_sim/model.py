@@ -24,7 +24,10 @@ from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 
 
 class Model(ModelState):
-    """A spawned description. Everything is in world coordinates unless a name says otherwise."""
+    """A spawned description. Everything is in world coordinates unless a name says otherwise.
+
+    SimulationError where the engine cannot hold it.
+    """
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
@@ -192,7 +195,10 @@ class Model(ModelState):
         return name.removeprefix(f"{self.name}::")
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
-        """The joints of these names, to be read and driven together: a group for each body."""
+        """The joints of these names, to be read and driven together: a group for each body.
+
+        UnknownName and SimulationError as of `joint`.
+        """
         for name in names:
             self.joint(name)
         groups = [body.joint_group(names) for body in self.bodies]

@@ -116,7 +116,7 @@ class World:
     def delete_lost_models(self, error: EngineError) -> None:
         """After an error of the engine: models that it has lost are deleted; the rest is kept."""
         for name in lost_models(self.models.values(), error, self._told):
-            self.delete(name)
+            self._remove(self.models[name])
 
     def random(self, name: str, tick: int | None = None) -> np.random.Generator:
         """A generator for a named thing at one tick (now): the same in every run with one seed.
@@ -164,7 +164,10 @@ class World:
 
     def delete(self, name: str) -> None:
         """Remove a model. UnknownName without one of that name."""
-        model = self.model(name)
+        self._remove(self.model(name))
+
+    def _remove(self, model: Model) -> None:
+        name = model.name
         del self.models[name]
         self._actors.pop(name, None)
         self._note_moving()

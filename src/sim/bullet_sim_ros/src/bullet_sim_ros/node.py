@@ -74,7 +74,7 @@ def _seed(text: str) -> int:
 
 
 def open_world(options: argparse.Namespace, resources) -> World:
-    """The world of the command line."""
+    """The world of the command line. ResourceNotFound and FormatError of its file."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
     description = replace(description, physics=possible_physics(description.physics))

@@ -45,6 +45,8 @@ class Scheduler:
         """Do something `rate_hz` times a simulated second from now on; 0: every step.
 
         `whole_steps` as a `TickRate` has it.
+
+        SimulationError of a rate that is negative or not finite.
         """
         tick = self._world.tick
         tick_rate = TickRate(rate_hz, self._world.timestep, tick, whole_steps)
@@ -52,7 +54,10 @@ class Scheduler:
         return self._tasks[-1]
 
     def change_rate(self, task: PeriodicTask, rate_hz: float) -> None:
-        """Do it at another rate, counted from now on."""
+        """Do it at another rate, counted from now on.
+
+        SimulationError of a rate that is negative or not finite.
+        """
         tick = self._world.tick
         task.tick_rate = TickRate(rate_hz, self._world.timestep, tick)
         task.next_tick = task.tick_rate.next_tick(tick)

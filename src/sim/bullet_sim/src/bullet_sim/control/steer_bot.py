@@ -64,7 +64,10 @@ class SteerBotHardware(RobotHardware):
     def __init__(self, model: Model, rear_wheel: str, front_steer: str,
                  rear_wheels: Sequence[str], front_steers: Sequence[str],
                  geometry: SteerBotGeometry, limits: Mapping[str, JointLimits]):
-        """`rear_wheels` and `front_steers` are real joints, each the right one before the left."""
+        """`rear_wheels` and `front_steers` are real joints, each the right one before the left.
+
+        SimulationError of a joint that the model has not, or of limits that cannot be.
+        """
         super().__init__(model, [
             *(Transmission(name, name, "velocity") for name in rear_wheels),
             *(Transmission(name, name, "position") for name in front_steers)], limits, {})

@@ -50,7 +50,7 @@ def _along(pose: Pose, factors: Vector3) -> Vector3:
 
 
 def prop_mesh(folder: str) -> PropMesh:
-    """That of a folder of data/models."""
+    """That of a folder of data/models. FormatError if our own table is wrong."""
     return read_prop_meshes(FILE).get(folder, PropMesh())
 
 

@@ -39,6 +39,8 @@ def read_parts(
 
     A missing mesh of a model that we have is that model's own visuals, or collisions. They keep
     their colours; what else is written of the part holds for all of them.
+
+    FormatError of a shape that cannot be.
     """
     file = _prop_of(element, source)
     if file is None:

@@ -127,7 +127,7 @@ def amount(parent: Element, path: str, default: float, where: str) -> float:
 
 
 def length(parent: Element, path: str, default: float, where: str) -> float:
-    """As `amount`, for a shape: one of a length that cannot be is an error, and no other shape."""
+    """As `amount`, for a shape: of a length that cannot be FormatError, and no other shape."""
     return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 

@@ -22,7 +22,7 @@ PRISM_FACES = np.array([
 
 
 def polyline_part(shape: Polyline) -> MeshPart:
-    """The outlines as a solid on z = 0."""
+    """The outlines as a solid on z = 0. FormatError of outlines that enclose nothing."""
     return _prisms(trapezoids(shape.outlines), shape.height)
 
 

@@ -48,6 +48,8 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
     """The triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32.
 
     Of more than `MOST_COLLIDING`, so many that stay close to them.
+
+    FormatError of a file that cannot be read.
     """
     whole = join_parts(load_mesh(geometry))
     vertices, faces = whole.vertices, whole.faces

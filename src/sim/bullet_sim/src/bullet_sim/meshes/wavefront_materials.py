@@ -13,7 +13,10 @@ Entry = dict[str, list[str]]  # keyword in small letters -> its words
 
 
 def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
-    """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning."""
+    """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning.
+
+    FormatError of numbers that cannot be.
+    """
     values: dict[str, Entry] = {}
     for name in libraries:
         library = find_beside(name, path.parent)

@@ -90,7 +90,10 @@ def _gap(collision: Collision, point: Vector3) -> float:
 
 
 def signed_distance(geometry: Geometry, point: Vector3) -> float:
-    """From a shape's surface, m, negative inside; a mesh counts as the box around it."""
+    """From a shape's surface, m, negative inside; a mesh counts as the box around it.
+
+    FormatError of a mesh that cannot be read.
+    """
     x, y, z = point
     match geometry:
         case Sphere(radius):

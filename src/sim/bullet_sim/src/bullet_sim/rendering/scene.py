@@ -120,7 +120,9 @@ class Scene(SceneState):
         """
         if key in self.nodes:
             raise NameTaken(f"the scene already has a link {'::'.join(key)}")
-        wanted = tuple(visuals)
+        self._put(key, tuple(visuals), pose)
+
+    def _put(self, key: LinkKey, wanted: tuple[Visual, ...], pose: Pose) -> None:
         shape = self._shapes.get(wanted)
         if shape is None:
             shape = self._shapes[wanted] = link_shape(wanted)
@@ -130,8 +132,7 @@ class Scene(SceneState):
 
     def add_visual(self, key: LinkKey, visual: Visual) -> None:
         """Show one visual more on a link that is there."""
-        pose = self.nodes.pop(key).pose
-        self.add_link(key, (*self.visuals[key], visual), pose)
+        self._put(key, (*self.visuals[key], visual), self.nodes[key].pose)
 
     def remove_model(self, model: str) -> None:
         """All links of a model; a model without links in the scene is no error."""

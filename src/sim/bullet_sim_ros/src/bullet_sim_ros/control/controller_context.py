@@ -69,7 +69,10 @@ class ControllerContext:
     # --- ROS
 
     def every(self, rate_hz: float, action: Callable[[], None]) -> None:
-        """Call `action` in the loop at a rate of simulated time, as long as it is loaded."""
+        """Call `action` in the loop at a rate of simulated time, as long as it is loaded.
+
+        SimulationError of a rate that is negative or not finite.
+        """
         self.tasks.append((Rate(rate_hz), action))
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:

@@ -37,7 +37,7 @@ class MobileBaseController(Controller):
         self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
 
     def set_publish_rate(self, rate_hz: float) -> None:
-        """Of odometry and transform."""
+        """Of odometry and transform. SimulationError of a rate that is negative or not finite."""
         self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,

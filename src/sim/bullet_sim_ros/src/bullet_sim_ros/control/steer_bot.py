@@ -15,6 +15,8 @@ def open_steer_bot(model: Model, namespace: str, robot: RobotFacts) -> SteerBotH
     """Parameters as of steer_bot_hardware_gazebo.cpp, initSim; lengths not set are the URDF's.
 
     PluginError if a parameter is missing or of the wrong kind.
+
+    Also SimulationError of a joint that is not there.
     """
     p = ControllerParameters(names.join(namespace, NAMESPACE))
     wheels, steers = (p.pair(name, "there must be two, the right and the left one")

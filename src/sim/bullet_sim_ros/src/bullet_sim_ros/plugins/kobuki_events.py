@@ -80,7 +80,10 @@ class WheelDropTopic(EventTopic):
 
 
 class CliffTopic(EventTopic):
-    """When the floor under one sensor goes away or comes back."""
+    """When the floor under one sensor goes away or comes back.
+
+    FormatError of rays that cannot be.
+    """
 
     def __init__(self, context: PluginContext, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):

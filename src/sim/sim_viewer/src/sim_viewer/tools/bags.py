@@ -175,7 +175,7 @@ class BagState(Paced):
 
 @operation("bag_info")
 async def bag_info(context: Any, name: str) -> dict[str, Any]:
-    """What is in a bag."""
+    """What is in a bag. Refused of a file that is no bag here."""
     path = existing_bag(context.node.shared(Bags).folder, name)
     return await context.run_in_thread(contents, path)
 

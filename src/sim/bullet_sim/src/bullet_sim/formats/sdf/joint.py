@@ -91,7 +91,10 @@ def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
 
 
 def read_limit(text: str, key: str, where: str) -> float:
-    """One number of a joint's limits; infinity is allowed here and means none."""
+    """One number of a joint's limits; infinity is allowed here and means none.
+
+    FormatError of what is no number.
+    """
     if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
         return getattr(UNLIMITED, key)
     return xml.numbers(text, 1, where)[0]

@@ -73,7 +73,7 @@ def read_tree(robot: Element) -> UrdfTree:
 
 
 def read_origin(element: Element, where: str) -> Pose:
-    """The `<origin>` of an element; identity when absent."""
+    """The `<origin>` of an element; identity when absent. FormatError of numbers that cannot be."""
     origin = element.find("origin")
     if origin is None:
         return Pose()

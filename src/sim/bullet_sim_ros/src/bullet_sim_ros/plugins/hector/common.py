@@ -48,7 +48,10 @@ class HectorSensor(SensorPlugin):
                          tf_prefix=no_tf_prefix, queue_size=queue_size)
 
     def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
-        """An error of the sensor with this many components; see HectorError."""
+        """An error of the sensor with this many components; see HectorError.
+
+        PluginError of a tag that is no number.
+        """
         self._errors.append(HectorError(self.context, name, size, *prefixes))
         return self._errors[-1]
 
@@ -81,7 +84,10 @@ class HectorSensor(SensorPlugin):
 
 
 class HectorError(ErrorModel):
-    """An error model as a plugin's tags have it, that dynamic_reconfigure can change."""
+    """An error model as a plugin's tags have it, that dynamic_reconfigure can change.
+
+    PluginError of a tag that is no number.
+    """
 
     def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
         """`prefixes` are those of the tags; the last one that is used counts."""
