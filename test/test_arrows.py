@@ -121,7 +121,7 @@ def imported_modules(name: str, source: str, known: dict[str, Path]) -> set[str]
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             inner = [f"{node.module}.{alias.name}" for alias in node.names]
-            found |= {module if module in known else node.module for module in inner}
+            found |= {node.module, *inner}  # what is imported from a package runs the package
     return (found & known.keys()) - {name}
 
 
@@ -149,6 +149,9 @@ def test_the_check_for_circles_itself() -> None:
         "a.c": "def f():\n  import a.b"}
     graph = {name: imported_modules(name, source, known) for name, source in sources.items()}
     assert set(circle(graph)) == {"a.b", "a.c"}
+    graph = {"a": imported_modules("a", "from a.b import x", known),
+             "a.b": imported_modules("a.b", "from a import c", known), "a.c": set()}
+    assert set(circle(graph)) == {"a", "a.b"}
 
 
 @pytest.mark.parametrize(

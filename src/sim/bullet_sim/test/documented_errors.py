@@ -14,7 +14,7 @@ from pathlib import Path
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 ANY = {"Exception", "BaseException"}
-BUGS = {"TypeError", "InterfaceError"}  # of a caller, of our own tables: named where they are raised
+BUGS = {"TypeError", "InterfaceError"}  # of a caller, of our own tables
 
 
 @dataclass(frozen=True)

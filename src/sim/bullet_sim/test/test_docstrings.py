@@ -38,7 +38,8 @@ def test_the_check_sees_a_function_that_is_silent():
 
 def test_no_rule_is_as_upstream_without_a_place():
     vague = re.compile(r"\b[Uu]pstream(?!'s? [\w/ ]*\.(cpp|cc|hh|h|py)\b)")
-    found = [f"{path.relative_to(CORE)}:{number}: {line.strip()}" for path in sorted(CORE.rglob("*.py"))
+    found = [f"{path.relative_to(CORE)}:{number}: {line.strip()}"
+             for path in sorted(CORE.rglob("*.py"))
              for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
              if vague.search(line)]
     assert not found, "name the file and function:\n" + "\n".join(found)

@@ -4,8 +4,8 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import params
 from bullet_sim_ros.control import (

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.joint_drives import EffortDrive, make_drive
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.joint import Joint

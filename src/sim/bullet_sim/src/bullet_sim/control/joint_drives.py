@@ -6,8 +6,9 @@ The ways, and when each is taken, are those of gazebo_ros_control's default_robo
 from dataclasses import replace
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.limits import LIMITERS, JointLimits, clamp
+from bullet_sim.control.limits import LIMITERS, clamp
 from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.joint import Joint
 from bullet_sim.pose import shortest_angular_distance
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.limits import JointLimits
+from bullet_sim.description import JointLimits
 from bullet_sim.errors import check_lengths
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model

@@ -6,6 +6,8 @@ zero. This is the package's face: others import from here, not from the files by
 
 from bullet_sim.description.joints import JointAxis as JointAxis
 from bullet_sim.description.joints import JointDescription as JointDescription
+from bullet_sim.description.joints import JointLimits as JointLimits
+from bullet_sim.description.joints import SoftLimits as SoftLimits
 from bullet_sim.description.links import Collision as Collision
 from bullet_sim.description.links import Inertial as Inertial
 from bullet_sim.description.links import LinkDescription as LinkDescription

@@ -1,5 +1,6 @@
-"""Joints between links: axes, stops, losses and springs."""
+"""Joints between links: axes, stops, losses and springs; limits of their controllers."""
 
+import math
 from dataclasses import dataclass
 
 from bullet_sim.pose import IDENTITY, Pose, Vector3
@@ -35,3 +36,30 @@ class JointDescription(JointAxis):
     gearbox_ratio: float = 1.0  # gearbox: angle of the parent = -ratio * angle of the child, both
     gearbox_reference_body: str = ""  # measured from this link, about axis and axis2
     start: float = 0.0  # rad or m: where a saved world has it; a reset takes it to zero
+
+
+@dataclass(frozen=True)
+class SoftLimits:
+    """URDF's `<safety_controller>`: before the hard limits are reached, the joint slows down."""
+
+    lower: float = 0.0  # rad or m
+    upper: float = 0.0
+    k_position: float = 0.0  # speed that is allowed per rad (or m) that is left to a soft limit
+    k_velocity: float = 0.0  # effort that is allowed per speed that is left
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Of a controller's commands. Infinite means no limit; zero is a limit like any other."""
+
+    lower: float = -math.inf  # rad or m
+    upper: float = math.inf
+    velocity: float = math.inf  # rad/s or m/s
+    acceleration: float = math.inf  # rad/s^2 or m/s^2; counts for velocity commands
+    effort: float = math.inf  # N m or N
+    soft: SoftLimits | None = None
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the way is limited at all."""
+        return self.lower > -math.inf or self.upper < math.inf

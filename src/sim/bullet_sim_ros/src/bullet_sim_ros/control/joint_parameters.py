@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.parameters import ControllerParameters

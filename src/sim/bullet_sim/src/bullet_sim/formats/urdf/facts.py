@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
-from bullet_sim.control.limits import JointLimits, SoftLimits
+from bullet_sim.description import JointLimits, SoftLimits
 from bullet_sim.errors import FormatError, UnknownName
 from bullet_sim.formats.urdf.tree import UrdfJoint, UrdfTree, read_tree
 from bullet_sim.formats.xml_values import not_negative, numbers
