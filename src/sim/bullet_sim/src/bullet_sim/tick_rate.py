@@ -20,7 +20,7 @@ class TickRate:
         if rate_hz < 0 or not math.isfinite(rate_hz):
             raise SimulationError(f"a rate of {rate_hz} Hz is not possible; 0 means every step")
         self.rate_hz = rate_hz
-        self._whole_steps = whole_steps
+        self.whole_steps = whole_steps
         self.restart(origin, timestep)
 
     def restart(self, tick: int, timestep: float | None = None) -> None:
@@ -29,7 +29,7 @@ class TickRate:
         if timestep is not None:
             every = self.rate_hz == 0
             self._period = 1.0 if every else max(1.0, 1.0 / (self.rate_hz * timestep))  # steps
-            if self._whole_steps:
+            if self.whole_steps:
                 self._period = float(math.ceil(self._period - 1e-9))
 
     def next_tick(self, tick: int) -> int:

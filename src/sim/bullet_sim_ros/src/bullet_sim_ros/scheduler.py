@@ -59,7 +59,7 @@ class Scheduler:
         SimulationError of a rate that is negative or not finite.
         """
         tick = self._world.tick
-        task.tick_rate = TickRate(rate_hz, self._world.timestep, tick)
+        task.tick_rate = TickRate(rate_hz, self._world.timestep, tick, task.tick_rate.whole_steps)
         task.next_tick = task.tick_rate.next_tick(tick)
 
     def remove(self, task: PeriodicTask) -> None:
