@@ -18,6 +18,10 @@ from bullet_sim.description.plugins import PluginDescription as PluginDescriptio
 from bullet_sim.description.scenes import Fog as Fog
 from bullet_sim.description.scenes import LightDescription as LightDescription
 from bullet_sim.description.scenes import SceneDescription as SceneDescription
+from bullet_sim.description.sensors import CAMERA_TYPES as CAMERA_TYPES
+from bullet_sim.description.sensors import RAY_TYPES as RAY_TYPES
+from bullet_sim.description.sensors import SENSOR_TYPES as SENSOR_TYPES
+from bullet_sim.description.sensors import WIDE_ANGLE as WIDE_ANGLE
 from bullet_sim.description.sensors import CameraDescription as CameraDescription
 from bullet_sim.description.sensors import ImuDescription as ImuDescription
 from bullet_sim.description.sensors import Lens as Lens
