@@ -3,6 +3,7 @@
 import logging
 import math
 import re
+from dataclasses import replace
 
 from bullet_sim.description import PluginDescription
 from bullet_sim_ros.errors import PluginError
@@ -41,14 +42,36 @@ class PluginParameters:
 
     def __init__(self, model: str, description: PluginDescription):
         self._model = model
+        self._description = description
         self._plugin = description.name
         self._element = description.element
+        self._groups: dict[str, list[PluginParameters]] = {}
         self.read: set[str] = set()  # tags that were asked for
 
     def unread(self) -> list[str]:
-        """Tags that are there and were not asked for, each once; those of other namespaces not."""
-        found = dict.fromkeys(child.tag for child in self._element if isinstance(child.tag, str))
-        return [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
+        """Tags that are there and were not asked for, each once; those of other namespaces not.
+
+        Also those within what was asked for as a group, as `GROUP/TAG`.
+        """
+        found = [child.tag for child in self._element if isinstance(child.tag, str)]
+        found = [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
+        found += [f"{name}/{tag}" for name, groups in self._groups.items() for group in groups
+                  for tag in group.unread()]
+        return list(dict.fromkeys(found))
+
+    def groups(self, tag: str) -> list[PluginParameters]:
+        """The elements of that name, each with parameters of its own."""
+        self.read.add(tag)
+        if tag not in self._groups:
+            self._groups[tag] = [
+                PluginParameters(self._model, replace(self._description, element=element))
+                for element in self._element.findall(tag)]
+        return self._groups[tag]
+
+    def texts(self, tag: str) -> list[str]:
+        """Trimmed texts of all such tags."""
+        self.read.add(tag)
+        return [(element.text or "").strip() for element in self._element.findall(tag)]
 
     def has(self, tag: str) -> bool:
         """Whether the tag is there, empty or not."""

@@ -27,9 +27,15 @@ def warn_of_unread_tags(context: PluginContext) -> None:
     known = set(row.tags) if row else set()
     for tag in unread:
         if tag not in known:
-            names = sorted(known | context.parameters.read)
+            names = sorted(map(_inner, known | context.parameters.read))
             log.warning("%s: <%s> is ignored, as by Gazebo: the plugin has no such tag%s",
-                        context.describe(), tag, did_you_mean(tag, names, 0.75, "<{}>"))
+                        context.describe(), _inner(tag),
+                        did_you_mean(_inner(tag), names, 0.75, "<{}>"))
+
+
+def _inner(path: str) -> str:
+    """`a><b` of `a/b`."""
+    return path.replace("/", "><")
 
 
 @functools.cache
