@@ -181,3 +181,27 @@ def test_every_removal_is_told_though_one_fails(world):
     with pytest.raises(ValueError, match="a"):
         world.delete("a")
     assert removed == ["a"] and not model.bodies[0].is_loaded
+
+
+def test_models_that_were_welded_after_they_moved_stand_still_after_a_reset(world):
+    first, second = world.spawn(cube("a")), world.spawn(cube("b"), Pose((1.0, 0.0, 0.0)))
+    second.set_pose(Pose((0.2, 0.0, 0.0)))
+    second.links["l"].attach(first.links["l"])
+    world.step(10)
+    world.reset_models()
+    for _ in range(200):
+        world.step()
+        assert all(abs(part) < 1e-3 for model in (first, second) for part in model.twist.linear)
+    first.links["l"].apply_force((0.0, 50.0, 0.0))
+    world.step(300)
+    assert_same_pose(first.pose.inverse() * second.pose, Pose((1.0, 0.0, 0.0)))  # still welded
+
+
+def test_what_hangs_in_the_world_stays_where_a_reset_puts_it(world):
+    model = world.spawn(cube("a"))
+    hold = model.links["l"].attach()
+    hold.shift(Pose((0.0, 0.0, 1.0)))
+    world.step(2000)
+    world.reset_models()
+    world.step(500)
+    assert_same_pose(model.pose, Pose())

@@ -19,6 +19,7 @@ from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.physics.levelling import levelled
 from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loop_constraints import LoopConstraints
+from bullet_sim.physics.weld import Weld
 from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 
@@ -130,7 +131,10 @@ class Model(ModelState):
         self.set_velocity(twist)
 
     def reset(self) -> None:
-        """Back to the pose it was spawned at, joints at zero, everything still."""
+        """Back to the pose it was spawned at, joints at zero, everything still.
+
+        Welds stay, as Gazebo's joints between models do, and hold what is where it is then.
+        """
         for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
         for body in self.bodies:
@@ -138,6 +142,9 @@ class Model(ModelState):
         self._fixed_pose = self.initial_pose
         self.forget()
         self.set_twist(STILL)
+        for weld in dict.fromkeys(each for body in self.bodies for each in body.attached
+                                  if isinstance(each, Weld)):
+            weld.renew()
 
     # --- for the world
 

@@ -107,6 +107,8 @@ def test_a_link_is_not_attached_to_itself(make_bench, caplog):
     assert "cannot attach: bot::a is one link; it takes two" in caplog.text
     assert bench.call("/link_attacher_node/attach", model_name_1="bot", link_name_1="a",
                       model_name_2="bot", link_name_2="b").ok
+    bench.delete("bot")
+    assert not bench.world.models
 
 
 def test_what_ros_control_says_until_it_is_there(bench, caplog):

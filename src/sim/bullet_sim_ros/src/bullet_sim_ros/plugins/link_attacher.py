@@ -21,7 +21,8 @@ Ends = tuple[str, str, str, str]  # model, link, other model, its link
 class LinkAttacherPlugin:
     """What is attached stays as it is to each other.
 
-    gazebo_ros_link_attacher.cpp, attach, pulls the two origins together.
+    gazebo_ros_link_attacher.cpp, attach, pulls the two origins together; it has no Reset, so that a
+    reset of the world releases nothing. Here, too; links then stay as they were spawned.
     """
 
     def __init__(self, context: PluginContext):
@@ -30,7 +31,6 @@ class LinkAttacherPlugin:
         for name, action in (("attach", self._attach), ("detach", self._detach)):
             context.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
         context.on_close(self._release_all)
-        context.on_reset(self._release_all)
 
     def _handler(self, name: str, action):
         def serve(request) -> AttachResponse:
