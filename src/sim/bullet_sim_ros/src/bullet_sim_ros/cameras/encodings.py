@@ -49,7 +49,11 @@ def _mosaic(rgb: np.ndarray, pattern: str) -> np.ndarray:
 
 
 def decode(msg: Image) -> np.ndarray:
-    """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read."""
+    """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read.
+
+    Not by CvBridge: Debian 12's skews images with padded rows, refuses 8UC1, 8UC3 and 8UC4, and
+    checks no size.
+    """
     shallow = _DEEP.get(msg.encoding, msg.encoding)
     if shallow not in _TO_RGB:
         known = ", ".join([*_TO_RGB, *_DEEP])
