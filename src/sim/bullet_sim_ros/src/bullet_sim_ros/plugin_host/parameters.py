@@ -1,5 +1,7 @@
 """Reads the tags of a `<plugin>`: types, defaults, and errors that name plugin and tag."""
 
+from __future__ import annotations
+
 import logging
 import math
 import re
