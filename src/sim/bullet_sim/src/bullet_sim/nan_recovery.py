@@ -42,17 +42,17 @@ def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
         model.reset() if model in broken else model.forget()
 
 
-def lost_models(models: Iterable[Model], error: EngineError, told: set[str]) -> list[str]:
+def lost_models(models: Iterable[Model], error: EngineError, logged: set[str]) -> list[str]:
     """After an error of the engine: names of the models of which it has lost a body.
 
-    Each is a line in the log; so is an error that has no such cause, once: it goes into `told`.
+    Each is a line in the log; so is an error that has no such cause, once: it goes into `logged`.
     """
     lost = [model.name for model in models if any(map(_is_lost, model.bodies))]
     for name in lost:
         log.error("model %s is taken out: the engine cannot tell where it is any more (%s); the "
                   "rest of the world goes on", name, error)
-    if not lost and str(error) not in told:
-        told.add(str(error))
+    if not lost and str(error) not in logged:
+        logged.add(str(error))
         log.error("the engine did not do a step as it should: %s; the world goes on", error)
     return lost
 

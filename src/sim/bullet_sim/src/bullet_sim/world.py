@@ -51,7 +51,7 @@ class World:
         self.each_removal: list[Callable[[str], None]] = []  # with the name of a removed model
         self._moving: list[Model] = []
         self._actors: dict[str, Actor] = {}
-        self._told: set[str] = set()  # errors of the engine that nothing could be done about
+        self._logged_errors: set[str] = set()  # of the engine, without a known cause
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
             self.add_light(light)
@@ -115,7 +115,7 @@ class World:
 
     def delete_lost_models(self, error: EngineError) -> None:
         """After an error of the engine: models that it has lost are deleted; the rest is kept."""
-        for name in lost_models(self.models.values(), error, self._told):
+        for name in lost_models(self.models.values(), error, self._logged_errors):
             self._remove(self.models[name])
 
     def random(self, name: str, tick: int | None = None) -> np.random.Generator:

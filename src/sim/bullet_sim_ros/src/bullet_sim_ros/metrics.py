@@ -31,7 +31,7 @@ class MetricsTopic:
     def _publish(self) -> None:
         self._due = time.monotonic() + PERIOD
         simulation = self._simulation
-        msg = PerformanceMetrics(real_time_factor=simulation.speed.real_time_factor)
+        msg = PerformanceMetrics(real_time_factor=simulation.real_time_factor.measured)
         convert.stamped(msg, simulation.world.time)
         contexts = simulation.sensors()
         self._rates = {context: self._rates.get(context) or _Rates() for context in contexts}

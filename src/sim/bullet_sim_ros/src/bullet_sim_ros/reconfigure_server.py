@@ -26,7 +26,7 @@ class Value:
 
 
 class Owner(Protocol):
-    """What a server lives as long as: a plugin's host or a controller's."""
+    """What a server lives as long as: the context of a plugin or of a controller."""
 
     def describe(self) -> str:
         """Whose log line it is."""

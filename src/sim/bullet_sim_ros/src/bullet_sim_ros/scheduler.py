@@ -29,7 +29,7 @@ class PeriodicTask:
 
 
 class Scheduler:
-    """All duties, done in the order in which they were added."""
+    """All periodic tasks, run in the order in which they were added."""
 
     def __init__(self, world: World):
         self._world = world

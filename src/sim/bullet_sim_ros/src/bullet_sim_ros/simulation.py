@@ -34,7 +34,7 @@ class Simulation:
         self.mailbox = Mailbox()
         self.scheduler = Scheduler(world)
         self.pacer = Pacer()
-        self.speed = RealTimeFactorMonitor(world.profiler, parameters.profile)
+        self.real_time_factor = RealTimeFactorMonitor(world.profiler, parameters.profile)
         self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
@@ -97,7 +97,7 @@ class Simulation:
             self.scheduler.run()
         with world.profiler.measure("lockstep"):
             self._lockstep.wait(self._stopped)
-        self.speed.update(world.time, self.pacer.factor)
+        self.real_time_factor.update(world.time, self.pacer.factor)
         return steps
 
     def step(self) -> None:
@@ -132,7 +132,7 @@ class Simulation:
 
     def _restart_pace(self) -> None:
         self.pacer.restart()
-        self.speed.restart(self.world.time)
+        self.real_time_factor.restart(self.world.time)
 
     # --- contents
 
@@ -173,7 +173,7 @@ class Simulation:
         """Answer calls that still wait; release renderer and engine."""
         self.mailbox.close()
         self._drawing.close()
-        self.speed.close()
+        self.real_time_factor.close()
         self.world.close()
 
     def _close_plugins(self, model: str) -> None:

@@ -1,4 +1,4 @@
-"""An unseen hand: a spring and a critical damper pull a link to a wanted pose."""
+"""A spring and a critical damper pull a link to a wanted pose."""
 
 import math
 

@@ -47,8 +47,8 @@ def read_parts(
         part = read(element, source, link)
         return [] if part is None else [part]
     key = f"mesh of {file.parent.name}"
-    if key not in source.said:
-        source.said.add(key)
+    if key not in source.warned:
+        source.warned.add(key)
         logger.info("%s: %s is not here; the plain shapes of model://%s are taken", link,
                     child_text(element, "geometry/mesh/uri"), file.parent.name)
     inside = source.entering(file)

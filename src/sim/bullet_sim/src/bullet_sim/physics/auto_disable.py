@@ -1,6 +1,6 @@
 """Knows when nothing moves: then a step would only repeat the one before, and is left out.
 
-And whether something moves briskly: then steps need not be solved to the last bit.
+And whether something moves fast: then steps need not be solved to the last bit.
 
 Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
@@ -56,7 +56,7 @@ class AutoDisable:
     def __init__(self):
         self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
-        self.is_fast = False  # whether anything was brisk when last looked at
+        self.is_fast = False  # whether anything was fast when last looked at
         self.found_nan = False  # whether a speed was no number when last looked at
         self.steps = 0  # that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)

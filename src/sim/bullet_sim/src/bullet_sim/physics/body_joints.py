@@ -82,8 +82,8 @@ class BodyJoints(EngineHandle):
         rows = self._feedback.get(index)
         if not rows or not self.client.auto_disable.disabled:
             return self._last_effort(index)
-        efforts, bore = zip(*rows, strict=True)
-        return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
+        efforts, loads = zip(*rows, strict=True)
+        return fmean(efforts), tuple(map(fmean, zip(*loads, strict=True)))
 
     def keep_feedback(self) -> None:
         """Record the last step's loads; as many steps as there are between two samples."""

@@ -117,7 +117,7 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         config = roslaunch.config.load_config_default(
             [(str(path), arguments)], None, verbose=False, assign_machines=False)
     except ERRORS as error:
-        sender.send(_said(error))
+        sender.send(_error_line(error))
         return
     sender.send(Launch(
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
@@ -130,7 +130,7 @@ def _data_size() -> int:
     return int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
 
 
-def _said(error: Exception) -> str:
+def _error_line(error: Exception) -> str:
     """roslaunch's words as one line, without the files on the way to the one that is wrong."""
     if isinstance(error, MemoryError):
         return TOO_MUCH

@@ -60,10 +60,10 @@ class TextChecker:
 
             with listening():
                 code = run_bounded(expand_into_file, str(path))
-            said = result.read_text(encoding="utf-8") if result.exists() else "it failed"
+            output = result.read_text(encoding="utf-8") if result.exists() else "it failed"
         if code:
-            raise FormatError(said)
-        return said
+            raise FormatError(output)
+        return output
 
     def _find_package(self, name: str) -> str:
         return str(self._resources.package_folder(name))

@@ -128,7 +128,7 @@ class ControllerManager:
                 context.close()
                 raise ManagerError(f"The model of controller '{name}' was deleted")
             self._loaded = {**self._loaded, name: loaded}
-            self._note_duties()
+            self._collect_tasks()
 
     def _make(self, name: str, context: ControllerContext) -> Loaded:
         kind = context.parameters.value("type", None)
@@ -162,7 +162,7 @@ class ControllerManager:
                 raise ManagerError(f"Could not unload controller with name '{name}' because it is "
                                    "still running")
             self._loaded = {key: other for key, other in self._loaded.items() if key != name}
-            self._note_duties()
+            self._collect_tasks()
             loaded.context.close()
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
@@ -207,5 +207,5 @@ class ControllerManager:
                                    "paused?")
             raise Gone("Could not switch controllers: the simulation or the model is gone")
 
-    def _note_duties(self) -> None:
+    def _collect_tasks(self) -> None:
         self._tasks = [task for loaded in self._loaded.values() for task in loaded.context.tasks]

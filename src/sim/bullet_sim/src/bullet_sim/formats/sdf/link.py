@@ -38,10 +38,10 @@ def read_link(
         frames = Frames(source, model)
         frames.add(name, "", IDENTITY)
     place = _PartPlaces(name, frames, source, where)
-    said = len(source.said)
+    warned = len(source.warned)
     collisions = [place(collision, part) for part in element.findall("collision")
                   for collision in read_parts(read_collision, part, source, where, name)]
-    if not collisions and len(source.said) == said:
+    if not collisions and len(source.warned) == warned:
         _warn_of_lost_collisions(element, source, where)
     visuals = [place(visual, part) for part in element.findall("visual")
                for visual in read_parts(read_visual, part, source, where, name)]
