@@ -53,8 +53,8 @@ def imported(source: str) -> list[tuple[int, str]]:
     return found
 
 
-def room_of(path: str) -> str | None:
-    return max((room for room in RULES if path.startswith(room + "/")), key=len, default=None)
+def rule_folder(path: str) -> str | None:
+    return max((folder for folder in RULES if path.startswith(folder + "/")), key=len, default=None)
 
 
 def own_name(path: str) -> str:
@@ -67,29 +67,29 @@ def own_name(path: str) -> str:
     return ""
 
 
-def complaint(room: str, package: str, module: str) -> str | None:
-    """Why this room may not import this module, or None."""
-    rule = RULES[room]
+def complaint(folder: str, package: str, module: str) -> str | None:
+    """Why this folder may not import this module, or None."""
+    rule = RULES[folder]
     if module == package or module in rule["ours"] or module in sys.stdlib_module_names:
         return None
-    if module == "pybullet" and room != "src/sim/bullet_sim":
+    if module == "pybullet" and folder != "src/sim/bullet_sim":
         return "pybullet belongs to src/sim/bullet_sim alone"
     if module in OURS:
-        return f"{room} may import of ours only {rule['ours']}"
+        return f"{folder} may import of ours only {rule['ours']}"
     if ROS.fullmatch(module):
-        return None if rule["ros"] else f"{room} may not import ROS"
+        return None if rule["ros"] else f"{folder} may not import ROS"
     if "only" in rule and module not in rule["only"]:
-        return f"{room} may import besides the standard library only {rule['only']}"
+        return f"{folder} may import besides the standard library only {rule['only']}"
     return None
 
 
 def broken_arrows(path: str, source: str) -> list[str]:
-    room = room_of(path)
-    if room is None:
-        return [f"{path}: no room in test/arrows.yaml has this folder"]
+    folder = rule_folder(path)
+    if folder is None:
+        return [f"{path}: no rule in test/arrows.yaml has this folder"]
     found = []
     for line, module in imported(source):
-        why = complaint(room, own_name(path), module)
+        why = complaint(folder, own_name(path), module)
         if why:
             found.append(f"{path}:{line}: imports {module}: {why}")
     return found

@@ -145,7 +145,7 @@ def test_a_body_that_the_engine_has_lost_takes_its_model_with_it(world, caplog):
     assert gone == ["m"] and list(world.models) == ["other"]
     assert falls.pose.position[2] < -0.15
     said = [record for record in caplog.records if record.levelno >= logging.ERROR]
-    assert len(said) == 1 and "model m is taken out" in said[0].message
+    assert len(said) == 1 and "model m is deleted" in said[0].message
 
 
 def test_an_error_that_no_model_causes_is_said_once(world, caplog):
@@ -156,7 +156,7 @@ def test_an_error_that_no_model_causes_is_said_once(world, caplog):
     world.step(50)
     assert world.tick == 50
     assert [record.message for record in caplog.records] == [
-        "the engine did not do a step as it should: not today; the world goes on"]
+        "an engine step failed: not today; the world goes on"]
 
 
 def test_numbers_that_are_only_kept_have_to_be_numbers(world):

@@ -33,7 +33,7 @@ class Model(ModelState):
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
         super().__init__(name, description, pose)
-        self.has_recovered = False  # whether its motion has been no number once
+        self.has_recovered = False  # whether its pose or velocity was not finite once
         self._auto_disable = client.auto_disable
         trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
         check_trees(name, trees)
@@ -191,7 +191,7 @@ class Model(ModelState):
         held = [joint for joint in self.description.joints if joint.name == name]
         if held and self.static:
             raise SimulationError(f"joint {name!r} does not move, as model {self.name} is static; "
-                                  "take <static> out of it")
+                                  "remove <static>")
         if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
                                   f"{held[0].type}, of which there is nothing to read or drive")

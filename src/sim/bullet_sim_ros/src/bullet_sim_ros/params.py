@@ -42,8 +42,8 @@ def _number(name: str, default: float) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        where = rospy.resolve_name(name)
-        rospy.logwarn("parameter %s is %r, which is no number; %g is used", where, value, default)
+        rospy.logwarn("parameter %s is %r, which is not a number; %g is used",
+                      rospy.resolve_name(name), value, default)
         return default
 
 

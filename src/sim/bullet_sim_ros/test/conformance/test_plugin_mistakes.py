@@ -25,8 +25,8 @@ def robot(plugin: str, tags: str, name: str = "bot") -> str:
 def test_a_number_that_is_none(bench, caplog, plugin, tag, more):
     # conforms: libgazebo_grasp_plugin.so/max_grip_count, libgazebo_ros_control.so/controlPeriod
     # conforms: libhector_gazebo_ros_magnetic.so/inclination, libgazebo_ros_p3d.so/updateRate
-    for word, why in (("inf", "not finite"), ("-inf", "not finite"), ("nan", "no number"),
-                      ("m1", "no number"), (",5", "no number"), ("ten", "no number")):
+    for word, why in (("inf", "not finite"), ("-inf", "not finite"), ("nan", "not a number"),
+                      ("m1", "not a number"), (",5", "not a number"), ("ten", "not a number")):
         caplog.clear()
         bench.spawn(robot(plugin, f"{more}<{tag}>{word}</{tag}>"))
         said = [record.message for record in caplog.records if record.levelname == "ERROR"]

@@ -205,4 +205,4 @@ def _number(given: Any) -> int | float | str | None:
 
 
 def _no_number(name: str) -> None:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")

@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 TRUE_WORDS = ("true", "1")
-# Lengths, masses and poses beyond this are mistakes, and their squares are no numbers any more.
+# Lengths, masses and poses beyond this are mistakes, and their squares overflow.
 # (Limits of joints may be larger: saved files write the largest number there is.)
 LARGEST = 1e12
 LONGEST_QUOTE = 80  # characters

@@ -57,7 +57,7 @@ class AutoDisable:
         self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
         self.is_fast = False  # whether anything was fast when last looked at
-        self.found_nan = False  # whether a speed was no number when last looked at
+        self.found_nan = False  # whether a speed was not finite when last looked at
         self.steps = 0  # that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)
         self.set_step(SAMPLE_PERIOD)
@@ -109,7 +109,7 @@ class AutoDisable:
 
 
 def _motion(speed: float, rate: float, wants_to_move: bool) -> float:
-    """How fast it is, in parts of what counts as still; infinite if it is not, or not a number."""
+    """How fast it is, in parts of what counts as still; infinite if it is not, or not finite."""
     if speed < REST_SPEED and rate < REST_RATE and not wants_to_move:
         return max(speed / REST_SPEED, rate / REST_RATE)
     return math.inf

@@ -3,9 +3,8 @@
 Overlapping shapes push one another without end, too fast for `auto_disable` and too slowly to get
 anywhere. As in Gazebo's ODEPhysics::Load (physics/ode/ODEPhysics.cc): models without joints that
 touch are disabled once all of them have kept below 0.1 m/s and 0.1 rad/s for a second; whatever
-changes one of them, or pushes it, ends that.
-Unlike there, the means over that second count, and a body that touches none of its kind goes on:
-a ball that rolls slowly rolls.
+changes one of them, or pushes it, ends that. Unlike there, the means over that second count, and a
+body that touches none of its kind goes on: a ball that rolls slowly rolls.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""What there is to see: lights, and links with surfaces and poses, as data without a renderer."""
+"""The scene: lights, and links with surfaces and poses, as data without a renderer."""
 
 import itertools
 import logging

@@ -150,8 +150,8 @@ def _watch_includes(loader: type) -> None:
         files.append(filename)
         if files.count(filename) > REPEATED:
             way = f" by way of {files[-2]}" if files[-2] != filename else ""
-            raise SimulationError(f"{filename} includes itself{way} without end; take the "
-                                  "<include> out or give it an if")
+            raise SimulationError(f"{filename} includes itself{way} without end; remove "
+                                  "the <include> or give it an if")
         return parse_launch(self, filename, verbose)
 
     def include(*arguments, **named):

@@ -21,7 +21,7 @@ WORDS = ("inf", "nan", "infinity")  # that a stream does not know, but xacro and
 def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
     """The numbers at the beginning of a text, `count` at most, and whether that was all of it.
 
-    It goes on until something is no number any more.
+    It goes on until something is not a number.
     """
     values: list[float] = []
     for word in text.split():
@@ -94,24 +94,24 @@ class PluginParameters:
         return found
 
     def number(self, tag: str, default: float) -> float:
-        """A finite number; PluginError if it is none."""
+        """A finite number; PluginError if it is not finite."""
         value = self.bound(tag, default)
         if self.text(tag) and math.isinf(value):
             raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
         return value
 
     def bound(self, tag: str, default: float) -> float:
-        """A number that may be infinite: there is no such bound. PluginError if it is no number."""
+        """A number that may be infinite: no bound. PluginError if it is not a number."""
         text = self.text(tag)
         if not text:
             return default
         values = self._leading(tag, text, 1)
         if not values or math.isnan(values[0]):
-            raise PluginError(f"<{tag}> is {text!r}, which is no number")
+            raise PluginError(f"<{tag}> is {text!r}, which is not a number")
         return values[0]
 
     def deviation(self, tag: str) -> float:
-        """A standard deviation; 0 if absent, PluginError if it is negative or no number."""
+        """A standard deviation; 0 if absent, PluginError if it is negative or not a number."""
         value = self.number(tag, 0.0)
         if value < 0:
             raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")

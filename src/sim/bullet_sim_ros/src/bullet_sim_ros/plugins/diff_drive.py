@@ -75,8 +75,8 @@ class DiffDrivePlugin:
                 geometry):
             return left, right
         log.warning("%s: <leftJoint> %s is the right wheel, seen where it drives to: taken as "
-                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; to turn as "
-                    "told by Melodic and Noetic say <legacyMode>false</legacyMode>",
+                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; for the "
+                    "behaviour of Melodic and Noetic write <legacyMode>false</legacyMode>",
                     label, left.name)
         return right, left
 

@@ -80,7 +80,7 @@ def set_link_properties(simulation: Simulation, request, response) -> None:
             and all(value > 0 for value in (request.mass, *inertia[::3], inertia[5]))):
         raise ServiceError(
             "SetLinkProperties: mass, ixx, iyy and izz must be above 0, and all numbers finite; "
-            "get_link_properties tells the present ones")
+            "get_link_properties returns the current ones")
     turn = link.description.inertial.pose.orientation
     with prefixed("SetLinkProperties:", ServiceError):
         centre = Pose(convert.triple(request.com.position), turn)

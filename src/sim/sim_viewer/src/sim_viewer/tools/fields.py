@@ -61,7 +61,7 @@ def expand(path: str, message_class: type) -> list[str]:
         numbers = [f"{single}/{slot}".lstrip("/") for slot, of in slots(class_of(kind)).items()
                    if is_number(of)]
         if not numbers:
-            raise Refused(f"{kind} is no number; it has: {_choices(kind)}")
+            raise Refused(f"{kind} is not a number; it has: {_choices(kind)}")
         found.extend(numbers)
     return found
 

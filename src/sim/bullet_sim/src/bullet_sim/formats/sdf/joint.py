@@ -93,7 +93,7 @@ def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
 def read_limit(text: str, key: str, where: str) -> float:
     """One number of a joint's limits; infinity is allowed here and means none.
 
-    FormatError of what is no number.
+    FormatError of what is not a number.
     """
     if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
         return getattr(UNLIMITED, key)

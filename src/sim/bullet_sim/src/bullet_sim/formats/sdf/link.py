@@ -31,8 +31,8 @@ def read_link(
     if not name:
         raise FormatError(f"{model}: a <link> has no name")
     if name == WORLD:
-        raise FormatError(f"{model}: no link can be named 'world', joints have that name for what "
-                          "stands still; choose another")
+        raise FormatError(f"{model}: no link can be named 'world', joints use that name for the "
+                          "fixed world; choose another")
     where = f"{model}, link {name!r}"
     if frames is None:
         frames = Frames(source, model)

@@ -1,4 +1,4 @@
-"""The bones of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
+"""The link tree of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

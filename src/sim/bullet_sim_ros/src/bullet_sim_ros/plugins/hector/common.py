@@ -50,7 +50,7 @@ class HectorSensor(SensorPlugin):
     def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
         """An error of the sensor with this many components; see HectorError.
 
-        PluginError of a tag that is no number.
+        PluginError of a tag that is not a number.
         """
         self._errors.append(HectorError(self.context, name, size, *prefixes))
         return self._errors[-1]
@@ -86,7 +86,7 @@ class HectorSensor(SensorPlugin):
 class HectorError(ErrorModel):
     """An error model as a plugin's tags have it, that dynamic_reconfigure can change.
 
-    PluginError of a tag that is no number.
+    PluginError of a tag that is not a number.
     """
 
     def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
