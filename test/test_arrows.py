@@ -1,4 +1,4 @@
-"""Imports follow the house's arrows: see arrows.yaml beside this file."""
+"""Imports follow the arrows of arrows.yaml beside this file."""
 
 import ast
 import graphlib

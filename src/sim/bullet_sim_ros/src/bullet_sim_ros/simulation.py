@@ -56,7 +56,7 @@ class Simulation:
     # --- the loop
 
     def run(self, iterations: int = 0) -> None:
-        """Step until told to stop or ROS shuts down, or for so many steps."""
+        """Step until `stop` or until ROS shuts down, or for so many steps."""
         self._publish_clock()
         left = iterations or float("inf")
         while left and not self._stopped():

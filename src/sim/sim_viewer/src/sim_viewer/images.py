@@ -57,7 +57,7 @@ class Stream:
         self._watchers = [*self._watchers, send]
 
     def remove(self, send: Callable[..., None]) -> bool:
-        """Whether that was the last one; then the topic is let go."""
+        """Whether that was the last one; then the topic is unsubscribed."""
         self._watchers = [other for other in self._watchers if other is not send]
         if not self._watchers:
             self._subscriber.unregister()

@@ -67,7 +67,7 @@ class CameraSettings:
         if written and abs(written - drawn) > _SAME_FOCAL_PX:
             log.warning(
                 "%s: <focalLength> is %g, but pictures of %d px with a <horizontal_fov> of %g rad "
-                "have %g; only camera_info tells the former: leave the tag out", self._context.
+                "have %g; only camera_info has the former: leave the tag out", self._context.
                 describe(), written, camera.width, camera.horizontal_fov, drawn)
         return written
 

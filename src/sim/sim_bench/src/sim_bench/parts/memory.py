@@ -92,12 +92,12 @@ def _with_camera(run: RosRun, length: float, settings: Settings) -> Samples:
 def _sample(run: RosRun, length: float, settings: Settings) -> Samples:
     """The simulator's memory at even steps of simulated time, until so much has passed."""
     begin = simulator.simulated_time()
-    samples, told = [], time.monotonic()
+    samples, reported_at = [], time.monotonic()
     while (passed := simulator.simulated_time() - begin) < length:
         if passed >= len(samples) * length / LOOKS:
             samples.append((passed, memory(SIMULATOR)))
-        if time.monotonic() - told > SAY_PERIOD:
-            told = time.monotonic()
+        if time.monotonic() - reported_at > SAY_PERIOD:
+            reported_at = time.monotonic()
             settings.say(f"  {passed:.0f} of {length:.0f} simulated s")
         run.pause(0.1)
     return samples

@@ -34,10 +34,10 @@ class Child:
             raise Refused(f"package rosbag has no {program} here; type: apt install rosbag")
         self.path = path
         self.started = time.monotonic()
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
         self._process = subprocess.Popen(
             ["setpriv", "--pdeathsig", "INT", found[0], *arguments], stdin=subprocess.DEVNULL,
-            stdout=self._said, stderr=subprocess.STDOUT, start_new_session=True)
+            stdout=self._output, stderr=subprocess.STDOUT, start_new_session=True)
 
     @property
     def running(self) -> bool:
@@ -48,8 +48,8 @@ class Child:
         """Its last words if it ended by itself and badly, else nothing."""
         if self._process.poll() in (None, 0, -signal.SIGINT):
             return ""
-        self._said.seek(0)
-        lines = self._said.read().decode(errors="replace").strip().splitlines()
+        self._output.seek(0)
+        lines = self._output.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else f"rosbag ended with {self._process.returncode}"
 
     def interrupt(self) -> None:

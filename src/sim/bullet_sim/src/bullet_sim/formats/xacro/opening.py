@@ -56,8 +56,8 @@ def _check(filename: str) -> None:
         try:
             check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")
         except FormatError as error:
-            said = str(error).removeprefix(f"{filename} cannot be read: ")
-            raise OSError(errno.EINVAL, said) from None
+            reason = str(error).removeprefix(f"{filename} cannot be read: ")
+            raise OSError(errno.EINVAL, reason) from None
 
 
 def _unreadable(filename: str, error: OSError) -> str:
