@@ -4,7 +4,7 @@ Two legs, each with the waffle driving: without a camera subscriber for MEMORY_S
 and with lesson 05 in lockstep at 640x480 for a quarter of that. Growth is from the second tenth of
 a leg to its last; the first tenth, in which caches fill, is not counted. At the end of the first
 leg the world is paused: /clock must then be less than one of its periods behind the world's ticks,
-and every time it ever said a whole number of periods.
+and every time that it published a whole number of periods.
 """
 
 from __future__ import annotations
