@@ -15,8 +15,8 @@ class Stick:
 
     Axes go from -1 to 1, left and up are positive, and within `deadzone` (0 to 0.9) they are 0.
     `default_trig_val`: axes that stand off centre at the start (triggers, at 1) are reported as
-    they are, else as 0 until they are touched. `sticky_buttons`: a press changes over, a release does
-    nothing.
+    they are, else as 0 until they are touched. `sticky_buttons`: a press changes over, a release
+    does nothing.
     """
 
     deadzone: float = 0.05
