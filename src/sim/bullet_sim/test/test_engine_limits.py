@@ -11,7 +11,7 @@ from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.physics.collision_filters import CollisionFilters
-from bullet_sim.physics.limits import KEPT, MOST_POSITIONS
+from bullet_sim.physics.parameter_bounds import KEPT, MOST_POSITIONS
 from bullet_sim.physics.quiet import EngineError, pybullet
 from bullet_sim.pose import Pose
 from bullet_sim.world import World

@@ -12,8 +12,8 @@ from bullet_sim_ros.control import (
     controllers,  # noqa: F401  (they register)
     registry,
 )
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
-from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 
 

@@ -17,8 +17,8 @@ from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.collision_filters import CollisionFilters
 from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.physics.levelling import levelled
-from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loop_constraints import LoopConstraints
+from bullet_sim.physics.parameter_bounds import check_trees
 from bullet_sim.physics.weld import Weld
 from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference

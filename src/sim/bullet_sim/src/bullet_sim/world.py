@@ -13,19 +13,19 @@ import numpy as np
 from bullet_sim.actors import Actor
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
-from bullet_sim.forces import Forces
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.nan_recovery import lost_models, recover_from_nan
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
-from bullet_sim.physics.limits import check_kept, check_physics, possible_physics
+from bullet_sim.physics.parameter_bounds import check_kept, check_physics, possible_physics
 from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
+from bullet_sim.timed_forces import TimedForces
 from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)
@@ -45,7 +45,7 @@ class World:
         self.paused = False
         self.models: dict[str, Model] = {}
         self.scene = Scene(self.description.scene)
-        self.forces = Forces()
+        self.forces = TimedForces()
         self.profiler = Profiler()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
         self.each_removal: list[Callable[[str], None]] = []  # with the name of a removed model

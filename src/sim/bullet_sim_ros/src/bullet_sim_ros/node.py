@@ -15,7 +15,7 @@ from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_world
-from bullet_sim.physics.limits import possible_physics
+from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split

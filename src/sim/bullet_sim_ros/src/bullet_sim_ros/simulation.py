@@ -19,7 +19,7 @@ from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.scheduler import Scheduler
 
@@ -38,7 +38,7 @@ class Simulation:
         self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
-        self._services = SimServices(
+        self._services = SharedByPlugins(
             world, self.mailbox, self.scheduler, self._drawing, self._lockstep
         )
         self._plugins: dict[str, list[PluginContext]] = {}

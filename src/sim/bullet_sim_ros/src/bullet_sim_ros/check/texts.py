@@ -7,8 +7,8 @@ from xml.etree.ElementTree import ParseError, fromstring
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
+from bullet_sim.formats.xacro.bounds import run_bounded
 from bullet_sim.formats.xacro.files import expand_file
-from bullet_sim.formats.xacro.limits import run_bounded
 from bullet_sim.formats.xml_text import read_bytes
 from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup

@@ -3,7 +3,7 @@
 import math
 
 from bullet_sim.formats.urdf.facts import RobotFacts
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 
 def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,

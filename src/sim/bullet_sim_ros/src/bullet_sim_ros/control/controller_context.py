@@ -10,7 +10,7 @@ from bullet_sim.control.rate import Rate
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
 

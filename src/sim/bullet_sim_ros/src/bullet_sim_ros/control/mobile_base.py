@@ -11,7 +11,7 @@ from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
 from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 

@@ -14,7 +14,7 @@ from bullet_sim.control.trajectory.request import (
 from bullet_sim.control.trajectory.segment import Waypoint
 from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 
 def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:

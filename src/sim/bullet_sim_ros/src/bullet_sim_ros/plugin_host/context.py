@@ -13,9 +13,9 @@ from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError, format_error
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.scope import PluginScope
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.scheduler import PeriodicTask, always
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -24,9 +24,9 @@ log = logging.getLogger("bullet_sim.plugins")
 class PluginContext(PluginScope):
     """One plugin's view of the simulation. Made and used in the loop's thread."""
 
-    def __init__(self, services: SimServices, model: Model | None, description: PluginDescription,
-                 sensor: SensorDescription | None = None, link: Link | None = None,
-                 visual: Visual | None = None):
+    def __init__(self, services: SharedByPlugins, model: Model | None,
+                 description: PluginDescription, sensor: SensorDescription | None = None,
+                 link: Link | None = None, visual: Visual | None = None):
         super().__init__(services.world, model, description, sensor, link, visual)
         self.services = services
         self.parameters = PluginParameters(model.name if model else "(world)", description)

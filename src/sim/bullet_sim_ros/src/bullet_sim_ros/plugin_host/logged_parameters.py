@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Sequence
 
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 log = logging.getLogger("bullet_sim.plugins")
 defaults = logging.getLogger("bullet_sim.plugins.defaults")

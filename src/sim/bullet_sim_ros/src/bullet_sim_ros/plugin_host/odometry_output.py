@@ -11,7 +11,7 @@ from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 
 class OdometryOutput:

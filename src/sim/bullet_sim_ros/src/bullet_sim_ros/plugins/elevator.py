@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from std_msgs.msg import String
 
-from bullet_sim.drives.elevator import Elevator
+from bullet_sim.mechanisms.elevator import Elevator
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin

@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 
 from geometry_msgs.msg import Twist
 
-from bullet_sim.drives.force import ForceDrive, ForceGains
+from bullet_sim.drives.force_based_move import ForceDrive, ForceGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext

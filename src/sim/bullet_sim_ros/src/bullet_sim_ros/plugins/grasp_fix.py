@@ -3,10 +3,10 @@
 import logging
 import math
 
-from bullet_sim.drives.grasp import Grasp, GraspParameters
+from bullet_sim.mechanisms.grasp import Grasp, GraspParameters
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")

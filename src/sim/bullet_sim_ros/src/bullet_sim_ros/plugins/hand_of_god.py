@@ -4,7 +4,7 @@ import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
-from bullet_sim.drives.spring_damper import SpringDamper
+from bullet_sim.mechanisms.spring_damper import SpringDamper
 from bullet_sim.pose import Pose
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError

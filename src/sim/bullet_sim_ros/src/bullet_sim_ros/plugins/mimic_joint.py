@@ -3,7 +3,7 @@
 import logging
 
 from bullet_sim.control.pid import Pid
-from bullet_sim.drives.mimic import MimicJoint, MimicParameters
+from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
 from bullet_sim_ros.plugin_host.context import PluginContext

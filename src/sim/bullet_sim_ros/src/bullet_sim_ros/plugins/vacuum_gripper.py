@@ -3,7 +3,7 @@
 from std_msgs.msg import Bool
 from std_srvs.srv import Empty, EmptyResponse
 
-from bullet_sim.drives.vacuum import Vacuum, VacuumParameters
+from bullet_sim.mechanisms.vacuum import Vacuum, VacuumParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin

@@ -2,8 +2,8 @@
 
 from gazebo_msgs.srv import ApplyBodyWrench, ApplyJointEffort, BodyRequest, JointRequest
 
-from bullet_sim.forces import Effort, Span, Wrench
 from bullet_sim.pose import IDENTITY, rotate
+from bullet_sim.timed_forces import Effort, Span, Wrench
 from bullet_sim.twist import add, cross
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names

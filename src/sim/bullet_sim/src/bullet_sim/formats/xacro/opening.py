@@ -10,8 +10,8 @@ import xacro
 
 from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
+from bullet_sim.formats.xacro.bounds import TooLarge
 from bullet_sim.formats.xacro.errors import includes_itself, place
-from bullet_sim.formats.xacro.limits import TooLarge
 
 MOST_FILES = 2000  # includes; large robots have 100
 LARGEST_FILE = 8 * 10**6  # bytes; large robots have 100 kB

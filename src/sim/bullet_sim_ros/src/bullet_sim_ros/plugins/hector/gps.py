@@ -7,7 +7,7 @@ from geometry_msgs.msg import Vector3, Vector3Stamped
 from sensor_msgs.msg import NavSatFix, NavSatStatus
 
 from bullet_sim.description import SphericalDescription
-from bullet_sim.sensors.gps import GeoReference
+from bullet_sim.sensors.geo_reference import GeoReference
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin

@@ -45,7 +45,7 @@ class Effort:
     span: Span
 
 
-class Forces:
+class TimedForces:
     """All that act or are to act, in the order of the requests."""
 
     def __init__(self):

@@ -10,7 +10,7 @@ from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.scheduler import Scheduler
 
 
-class SimServices:
+class SharedByPlugins:
     """What all plugins of one simulation use together."""
 
     def __init__(self, world: World, mailbox: Mailbox, scheduler: Scheduler, drawing: DrawingThread,
