@@ -122,7 +122,7 @@ class Subscriber:
 
 
 class Service:
-    """In place of rospy.Service; calls go to the handler in the graph."""
+    """In place of rospy.Service; rospy.ServiceException of a name that is taken."""
 
     def __init__(self, graph: Graph, name: str, service_class: type, handler: Callable,
                  **_options):

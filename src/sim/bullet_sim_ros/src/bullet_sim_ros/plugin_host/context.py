@@ -173,7 +173,10 @@ class PluginContext(PluginScope):
         return True
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
-        """A service; a name that is taken is a warning."""
+        """A service; a name that is taken is a warning.
+
+        PluginError of a name that ROS does not allow.
+        """
         try:
             service = rospy.Service(_legal(name), kind, handler)
         except rospy.ServiceException as error:

@@ -16,7 +16,10 @@ NOT_NEGATIVE = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax")
 
 @service(names.GET_JOINT_PROPERTIES, GetJointProperties)
 def get_joint_properties(simulation: Simulation, request, response) -> None:
-    """Position and rate; as in getJointProperties the type is REVOLUTE, and damping left out."""
+    """Position and rate; as in getJointProperties the type is REVOLUTE, and damping left out.
+
+    ServiceError without such a joint.
+    """
     _, _, joint = find_joint(simulation.world, request.joint_name,
                              "GetJointProperties: joint not found")
     response.type = response.REVOLUTE

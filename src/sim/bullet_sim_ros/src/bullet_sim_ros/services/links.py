@@ -21,7 +21,10 @@ INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 @service(names.GET_LINK_STATE, GetLinkState)
 def get_link_state(simulation: Simulation, request, response) -> None:
-    """Pose and twist of a link, in the world or relative to another entity."""
+    """Pose and twist of a link, in the world or relative to another entity.
+
+    ServiceError without such a link or frame.
+    """
     world = simulation.world
     link = find_link(world, request.link_name, f"GetLinkState: {LINK_UNKNOWN}")
     state = response.link_state
@@ -55,7 +58,10 @@ def set_link_state(world: World, state: LinkState) -> None:
 
 @service(names.GET_LINK_PROPERTIES, GetLinkProperties)
 def get_link_properties(simulation: Simulation, request, response) -> None:
-    """Mass, centre of mass and inertia; the orientation of the latter's axes is left out."""
+    """Mass, centre of mass and inertia; the orientation of the latter's axes is left out.
+
+    ServiceError without such a link.
+    """
     link = find_link(simulation.world, request.link_name,
                      f"GetLinkProperties: {LINK_UNKNOWN}").description
     response.com.position = Point(*link.inertial.pose.position)

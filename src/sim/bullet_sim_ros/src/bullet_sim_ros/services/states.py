@@ -16,7 +16,10 @@ from bullet_sim_ros.simulation import Simulation
 
 @service(names.GET_MODEL_STATE, GetModelState)
 def get_model_state(simulation: Simulation, request, response) -> None:
-    """Pose and twist of a model, in the world or relative to another entity."""
+    """Pose and twist of a model, in the world or relative to another entity.
+
+    ServiceError without such a model or frame.
+    """
     world, calls = simulation.world, simulation.state_calls
     convert.stamped(response, world.time, request.relative_entity_name)
     model = find_part(world, request.model_name, "GetModelState: model does not exist")

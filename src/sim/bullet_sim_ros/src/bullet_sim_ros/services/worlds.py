@@ -40,7 +40,7 @@ def get_world_properties(simulation: Simulation, _request, response) -> None:
 
 @service(names.GET_MODEL_PROPERTIES, GetModelProperties)
 def get_model_properties(simulation: Simulation, request, response) -> None:
-    """Names of what a model consists of, unscoped."""
+    """Names of what a model consists of, unscoped. ServiceError without such a model."""
     part = find_part(simulation.world, request.model_name,
                      "GetModelProperties: model does not exist")
     response.parent_model_name = part.parent_name

@@ -2,8 +2,8 @@
 
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import CameraDescription, Lens
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.sdf.noise import read_noise
 
 DISTORTION = ("k1", "k2", "p1", "p2", "k3")  # the order of OpenCV and of camera_info

@@ -3,9 +3,9 @@
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim import description
 from bullet_sim.errors import FormatError, ResourceNotFound
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.source import Source
 
 IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
@@ -53,7 +53,10 @@ def read_polylines(geometry: Element, source: Source, where: str) -> description
 
 
 def read_image(element: Element, source: Source, where: str) -> description.ImageExtrusion | None:
-    """A floor plan; None, with a warning, where the picture cannot be had."""
+    """A floor plan; None, with a warning, where the picture cannot be had.
+
+    FormatError of a number that cannot be.
+    """
     where = f"{where} <image>"
     path = _image(element, source, where, "left out")
     if path is None:

@@ -4,9 +4,9 @@ import math
 from functools import partial
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import JointAxis, JointDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.frames import MODEL, Frames, end_of
 from bullet_sim.formats.source import Source

@@ -2,9 +2,9 @@
 
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim import description
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.sdf.generated_shapes import read_heightmap, read_image, read_polylines
 from bullet_sim.formats.sdf.material import read_material
@@ -102,7 +102,10 @@ def _restitution(element: Element, where: str) -> float:
 
 def read_geometry(element: Element | None, source: Source,
                   where: str) -> description.Geometry | None:
-    """The first shape we know; None for `<empty>`, or with a warning."""
+    """The first shape we know; None for `<empty>`, or with a warning.
+
+    FormatError of numbers that no shape has.
+    """
     for shape in () if element is None else element:
         if shape.tag == "polyline":
             return read_polylines(element, source, where)

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import (
     JointDescription,
     LightDescription,
@@ -12,7 +13,6 @@ from bullet_sim.description import (
     WorldDescription,
 )
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.scale import scaled_model
 from bullet_sim.pose import IDENTITY, Pose

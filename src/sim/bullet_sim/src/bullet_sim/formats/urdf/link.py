@@ -3,9 +3,9 @@
 from functools import partial
 from xml.etree.ElementTree import Element, SubElement
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import xml_values as xml
 from bullet_sim.formats.mistakes import mistake
 from bullet_sim.formats.urdf.tree import read_origin
 from bullet_sim.pose import Pose
