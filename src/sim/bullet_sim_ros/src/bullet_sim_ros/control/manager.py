@@ -6,8 +6,9 @@ import time as wall
 from collections.abc import Callable, Sequence
 
 from bullet_sim.control.rate import Rate
-from bullet_sim_ros.control import registry, switching
+from bullet_sim_ros.control import switching
 from bullet_sim_ros.control.controller_context import ControllerContext
+from bullet_sim_ros.control.loading import make_controller
 from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError, Switch
 from bullet_sim_ros.errors import format_error
 
@@ -120,7 +121,7 @@ class ControllerManager:
                     f"Could not load controller '{name}': {format_error(error)}"
                 ) from error
             try:
-                loaded = self._make(name, context)
+                loaded = make_controller(name, context)
             except Exception:
                 context.close()
                 raise
@@ -129,28 +130,6 @@ class ControllerManager:
                 raise ManagerError(f"The model of controller '{name}' was deleted")
             self._loaded = {**self._loaded, name: loaded}
             self._collect_tasks()
-
-    def _make(self, name: str, context: ControllerContext) -> Loaded:
-        kind = context.parameters.value("type", None)
-        if kind is None:
-            raise ManagerError(
-                f"Could not load controller '{name}' because the type was not specified. Did you "
-                "load the controller configuration on the parameter server (namespace: "
-                f"'{context.namespace}')? Parameter {context.parameters.where('type')} is not set")
-        made = registry.find(str(kind))
-        if made is None:
-            close = registry.nearest(str(kind))
-            raise ManagerError(
-                f"Could not load controller '{name}' because controller type '{kind}' does not "
-                "exist." + (f" Did you mean '{close}'?" if close else "")
-                + " Use 'rosservice call controller_manager/list_controller_types' to get the "
-                "available types")
-        try:
-            return Loaded(name, str(kind), made(context), context)
-        except Exception as error:
-            raise ManagerError(
-                f"Initializing controller '{name}' failed: {format_error(error)}"
-            ) from error
 
     def unload(self, name: str) -> None:
         """Forget a controller; ManagerError if it runs, or is not there."""
