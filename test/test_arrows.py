@@ -171,3 +171,14 @@ def test_the_check_for_circles_itself() -> None:
 )
 def test_the_check_itself(path: str, source: str, broken: bool) -> None:
     assert bool(broken_arrows(path, source)) is broken
+
+
+def test_what_reads_files_knows_no_engine_and_no_controller() -> None:
+    known = modules()
+    reached = {other.split(".")[1] for name, path in known.items()
+               if name.startswith("bullet_sim.formats.")
+               for other in imported_modules(name, path.read_text(encoding="utf-8"), known)
+               if other.startswith("bullet_sim.")}
+    assert {"description", "errors", "pose"} <= reached
+    assert not reached & {"control", "drives", "joint", "link", "mechanisms", "model", "physics",
+                          "rendering", "sensors", "world"}
