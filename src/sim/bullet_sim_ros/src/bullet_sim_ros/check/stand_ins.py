@@ -8,7 +8,6 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 
 import rospy
 
@@ -70,10 +69,12 @@ class Graph:
 class Publisher:
     """In place of rospy.Publisher."""
 
-    def __init__(self, graph: Graph, name: str, data_class: type, **options):
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, data_class: type, **options):
         self.name, self.resolved_name = name, rospy.resolve_name(name)
         self.options = options
-        self._topic = graph.topics[self.resolved_name]
+        self._topic = self.graph.topics[self.resolved_name]
         self._topic.kind = data_class
         self._topic.publishers.append(self)
 
@@ -98,11 +99,13 @@ class Publisher:
 class Subscriber:
     """In place of rospy.Subscriber."""
 
-    def __init__(self, graph: Graph, name: str, data_class: type, callback=None,
-                 callback_args=None, **_options):
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, data_class: type, callback=None, callback_args=None,
+                 **_options):
         self.resolved_name = rospy.resolve_name(name)
         self.callback, self.args = callback, callback_args
-        self._topic = graph.topics[self.resolved_name]
+        self._topic = self.graph.topics[self.resolved_name]
         self._topic.kind = self._topic.kind or data_class
         self._topic.subscribers.append(self)
 
@@ -124,21 +127,23 @@ class Subscriber:
 class Service:
     """In place of rospy.Service; rospy.ServiceException of a name that is taken."""
 
-    def __init__(self, graph: Graph, name: str, service_class: type, handler: Callable,
-                 **_options):
-        self._graph, self.resolved_name = graph, rospy.resolve_name(name)
-        if self.resolved_name in graph.services:
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, service_class: type, handler: Callable, **_options):
+        self.resolved_name = rospy.resolve_name(name)
+        if self.resolved_name in self.graph.services:
             raise rospy.ServiceException(f"service [{self.resolved_name}] already registered")
-        graph.services[self.resolved_name] = (service_class, handler)
+        self.graph.services[self.resolved_name] = (service_class, handler)
 
     def shutdown(self, _reason: str = "") -> None:
         """Offer it no longer."""
-        self._graph.services.pop(self.resolved_name, None)
+        self.graph.services.pop(self.resolved_name, None)
 
 
 def stand_ins(graph: Graph) -> dict[str, object]:
     """What replaces rospy's own: they write into `graph`."""
-    return {**{kind.__name__: partial(kind, graph) for kind in (Publisher, Subscriber, Service)},
+    return {**{kind.__name__: type(kind.__name__, (kind,), {"graph": graph})
+               for kind in (Publisher, Subscriber, Service)},
             **{name: getattr(graph, name) for name in ("get_param", "has_param", "set_param")}}
 
 
