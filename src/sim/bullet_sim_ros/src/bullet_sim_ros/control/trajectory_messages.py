@@ -48,14 +48,14 @@ def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) ->
 
 
 def _replaced(default: dict[str, Tolerance],
-              wishes: Sequence[JointTolerance]) -> dict[str, Tolerance]:
+              requested: Sequence[JointTolerance]) -> dict[str, Tolerance]:
     result = dict(default)
-    for wish in wishes:
-        if wish.name not in result:
-            raise InvalidTrajectory(f"a tolerance is for joint {wish.name!r}; this controller has "
+    for each in requested:
+        if each.name not in result:
+            raise InvalidTrajectory(f"a tolerance is for joint {each.name!r}; this controller has "
                                     f"{', '.join(result)}")
-        result[wish.name] = result[wish.name].replaced(wish.position, wish.velocity,
-                                                       wish.acceleration)
+        result[each.name] = result[each.name].replaced(each.position, each.velocity,
+                                                       each.acceleration)
     return result
 
 

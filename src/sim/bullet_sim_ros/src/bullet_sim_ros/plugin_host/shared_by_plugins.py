@@ -24,7 +24,7 @@ class SharedByPlugins:
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
     def announce_transforms(self) -> None:
-        """Make /tf known, so that who is there before time begins misses nothing."""
+        """Make /tf known, so that early subscribers miss nothing."""
         if self._broadcaster is None:
             self._broadcaster = tf2_ros.TransformBroadcaster()
 

@@ -25,10 +25,10 @@ CONSEQUENCES = {
     "libKeysToJointsPlugin": "actuator: keys will not move the joints",
     "libFlashLightPlugin": "looks: the light will not blink",
     "libLedPlugin": "looks: the light will not blink",
-    "libCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libDepthCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libRayPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libImuSensorPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+    "libCameraPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libDepthCameraPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libRayPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libImuSensorPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
 }
 
 
