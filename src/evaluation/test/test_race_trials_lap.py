@@ -32,7 +32,7 @@ from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
 from evaluation.track import load_track
-from evaluation.trial.runner import try_case
+from evaluation.trial.protocol import try_case
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
 PACKAGES = rospkg.RosPack()
