@@ -1,4 +1,4 @@
-"""A trial whose cases sleep, in place of simulators; by itself a program with its options.
+"""A trial whose cases sleep, in place of simulators.
 
 --naps N: so many cases. --seconds S: how long each sleeps. --fails, --dies NAME: a case that cannot
 be run, and one whose process is killed. --enough N: so many results are enough.
@@ -6,14 +6,11 @@ be run, and one whose process is killed. --enough N: so many results are enough.
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from dataclasses import asdict, dataclass
 
 from evaluation.session.failure import RunError
 from evaluation.trial.protocol import Case, Trial
-from evaluation.trial.runner import run_trial
 
 
 @dataclass(frozen=True)
@@ -29,7 +26,7 @@ class SleepTrial(Trial):
 
     program = "sleep_trial"
     does = "Sleep."
-    good = "all slept in folders of their own"
+    good = "some slept"
     writes = "report.json and a note of each nap"
 
     def add_options(self, parser):
@@ -68,7 +65,7 @@ class SleepTrial(Trial):
         return Nap(self.case.name, record)
 
     def passed(self, results):
-        return all(each.files == 1 for each in results)
+        return bool(results)
 
     def line(self, result):
         return f"{result.name} slept"
@@ -81,21 +78,3 @@ class SleepTrial(Trial):
 
     def from_values(self, values):
         return [Nap(**each) for each in values["naps"]]
-
-
-def command(*words):
-    """What runs it as a program."""
-    return [sys.executable, "-c", "import sleep_trial, sys; sys.exit("
-            "sleep_trial.run_trial(sleep_trial.SleepTrial(), sys.argv[1:]))", *words]
-
-
-def start(*words, folder, **options):
-    """That program, with this folder on its path."""
-    here = os.path.dirname(os.path.abspath(__file__))
-    path = os.pathsep.join(filter(None, [here, os.environ.get("PYTHONPATH", "")]))
-    return subprocess.Popen(
-        command("--out", str(folder), *words), env={**os.environ, "PYTHONPATH": path},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
-
-
-__all__ = ["SleepTrial", "run_trial", "start"]

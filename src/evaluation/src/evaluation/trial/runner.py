@@ -53,9 +53,10 @@ class Tally:
         self._place = {case.name: number for number, case in enumerate(self.cases)}
 
     def is_needed(self, case: Case) -> bool:
-        """Whether a case has still to be tried."""
+        """Whether a case has still to be tried, after the results of those before it."""
         there = {result.name for result in self.results}
-        return case.name not in there and self._trial.is_needed(case, self.results)
+        before = [each for each in self.results if self._number(each) < self._place[case.name]]
+        return case.name not in there and self._trial.is_needed(case, before)
 
     def take(self, result: Any, say: Callable[[str], None]) -> None:
         """One more result; the report has it."""
