@@ -277,7 +277,7 @@ def test_a_scheduler_that_goes_away_ends_the_run_and_keeps_what_is_done(tmp_path
     until((out / "report.json").exists)
     cluster.scheduler.kill()
     _, errors = trial.communicate(timeout=LIMIT)
-    assert trial.returncode == NOT_RUN
+    assert trial.returncode == NOT_RUN, errors
     assert errors.splitlines()[-1].endswith("--resume goes on"), errors
     assert 0 < len(names(out)) < 50
     until(lambda: not sleepers(seconds))

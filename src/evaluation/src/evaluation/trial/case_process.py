@@ -6,6 +6,8 @@ says, its last line the reason where there is no result, goes to its standard ou
 
 from __future__ import annotations
 
+import contextlib
+import os
 import pickle
 import sys
 from collections.abc import Sequence
@@ -26,9 +28,12 @@ class Order:
     trial: type[Trial]
     arguments: Sequence[str]
     case: Case
+    start: str  # the folder in which relative paths among the arguments begin
 
 
 def _run(order: Order, folder: Path) -> int:
+    with contextlib.suppress(OSError):  # another machine may not have it
+        os.chdir(order.start)
     trial = order.trial()
     options = trial.parse([*order.arguments, "--out", str(folder / OUT)])
     options.out.mkdir()

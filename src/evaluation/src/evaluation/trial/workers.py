@@ -18,6 +18,7 @@ from uuid import uuid4
 
 import dask
 from dask.distributed import Client, Future, LocalCluster, as_completed
+from distributed.client import ClosedClientError
 
 from evaluation.session.failure import RunError
 from evaluation.trial.case_process import Order
@@ -37,13 +38,15 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
     A case's files are in `options.out` when its result comes. Ending the generator ends what runs.
     """
     dask.config.set(SETTINGS)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client"):  # failures are the runner's to tell
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     with _connected(options) as client:
         if not client.scheduler_info()["workers"]:
             say(f"no workers at {options.scheduler} yet: waiting")
 
         def ask(asked: Sequence[Case]) -> dict[Future, Case]:
-            orders = [pickle.dumps(Order(type(trial), arguments, case)) for case in asked]
+            orders = [pickle.dumps(Order(type(trial), arguments, case, os.getcwd()))
+                      for case in asked]
             group = f"{trial.program}-{uuid4()}"  # a key each, so that no other run's is taken
             futures = client.map(
                 run_case, orders, out=str(options.out), retries=RETRIES,
@@ -56,9 +59,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
             case = waiting.pop(future, None)
             if case is None:
                 continue
-            if future.cancelled():  # the connection broke, and Dask makes it anew
-                if client.status == "closed":
-                    raise RunError(f"the scheduler {options.scheduler} is gone; --resume goes on")
+            if future.cancelled():  # the connection broke, and Dask has made it anew or gives up
                 waiting |= (again := ask([case]))
                 finished.update(again)
                 continue
@@ -76,12 +77,21 @@ def _connected(options: argparse.Namespace) -> Iterator[Client]:
         cluster = options.scheduler or opened.enter_context(LocalCluster(
             n_workers=1, threads_per_worker=options.workers, processes=False,
             dashboard_address=None))
+        client = opened.enter_context(_client_of(cluster))
         try:
-            client = Client(cluster, timeout=CONNECT_TIME, set_as_default=False)
-        except (OSError, ValueError, TypeError) as error:
-            raise RunError(f"no Dask scheduler at {options.scheduler} (--scheduler, SCHEDULER=):"
-                           f" {error}") from error
-        yield opened.enter_context(client)
+            yield client
+        except ClosedClientError as error:
+            raise RunError(f"the scheduler {options.scheduler} is gone; --resume goes on"
+                           ) from error
+
+
+def _client_of(cluster: str | LocalCluster) -> Client:
+    try:
+        return Client(cluster, timeout=CONNECT_TIME, set_as_default=False)
+    except (OSError, RuntimeError, TypeError, ValueError) as error:
+        why = str(error)
+    # Not within `except`: Dask's half a client is let go of, and ends, first.
+    raise RunError(f"no Dask scheduler at {cluster} (--scheduler, SCHEDULER=): {why}")
 
 
 def _outcome(future: Future, out: Path) -> Any:
