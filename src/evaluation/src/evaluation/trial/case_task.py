@@ -48,8 +48,8 @@ def run_case(order: bytes, out: str) -> tuple[bytes, bytes]:
         if code == 0:
             return (folder / RESULT).read_bytes(), files
         said = [line.replace(str(folder / OUT), out) for line in read_log(log) if line.strip()]
-        reason = said.pop().partition(": ")[2] if code > 0 and said else describe_exit(code)
-        error = CaseError(reason, "\n".join(said[-DETAILS:]))
+        reason = said.pop() if code > 0 and said else describe_exit(code)
+        error = CaseError(reason.partition(": ")[2] or reason, "\n".join(said[-DETAILS:]))
         error.files = files
         raise error
 

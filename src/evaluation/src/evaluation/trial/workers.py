@@ -11,6 +11,7 @@ import shutil
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,6 @@ from evaluation.trial.protocol import Case, Trial
 
 RETRIES = 1  # of a case that could not be run; workers that die with it are counted by Dask
 CONNECT_TIME = 10.0  # s, wall
-SETTINGS = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.limit": "1h"}
 
 
 def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namespace,
@@ -37,7 +37,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
 
     A case's files are in `options.out` when its result comes. Ending the generator ends what runs.
     """
-    dask.config.set(SETTINGS)
+    dask.config.set({"distributed.worker.profile.enabled": False})  # it costs processor time
     for name in ("distributed", "distributed.client"):  # failures are the runner's to tell
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with _connected(options) as client:
@@ -59,11 +59,13 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
             case = waiting.pop(future, None)
             if case is None:
                 continue
-            if future.cancelled():  # the connection broke, and Dask has made it anew or gives up
+            try:
+                outcome = _outcome(future, options.out)
+            except CancelledError:  # the connection broke: Dask has made it anew, or gives up
                 waiting |= (again := ask([case]))
                 finished.update(again)
                 continue
-            yield case, _outcome(future, options.out)
+            yield case, outcome
             if trial.open_ended:
                 for other in [other for other, each in waiting.items() if not is_needed(each)]:
                     del waiting[other]
