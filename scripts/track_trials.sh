@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Many seeded drives after the red cylinder: out/track_trials/.
 #
-#   scripts/track_trials.sh [--seeds N] [--first-seed N] [--sets SET ...] [--resume] [--out DIR]
+#   scripts/track_trials.sh [--seeds N] [--first-seed N] [--sets SET ...] [--out DIR]
+#                           [--resume] [--workers N | --scheduler ADDRESS]
 #
 # Exit code 0: enough of each set good; 1: not so; 2: it could not run.
 failure_code=2
