@@ -32,7 +32,7 @@ class Lap:
     max_lateral: float
     frames_dropped: int  # images without a command: such a drive will not be repeated
     disturbance: Disturbance
-    folder: str
+    folder: str  # below that of all results
 
     @property
     def name(self) -> str:

@@ -76,7 +76,7 @@ class RaceTrial(Trial):
                 for seed, follower in itertools.product(range(first, first + count), followers)]
 
     def setup(self, session: Session, case: RaceCase) -> None:
-        out = session.out
+        self._out = out = session.out
         self._case, self._disturbance = case, draw(case.seed)
         self._venue = (racetrack() if case.set == RACETRACK else
                        random_track(case.seed, out / "tracks"))
@@ -96,7 +96,8 @@ class RaceTrial(Trial):
 
     def score(self, record: dict) -> Lap:
         return lap_from_report(
-            record, self._venue, self._case.seed, self._disturbance, self._folder)
+            record, self._venue, self._case.seed, self._disturbance,
+            self._folder.relative_to(self._out))
 
     def passed(self, results: Sequence[Lap]) -> bool:
         return all(lap.within_limits for lap in results if lap.follower == self._first)

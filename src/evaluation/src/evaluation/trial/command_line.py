@@ -26,10 +26,10 @@ class Parser(argparse.ArgumentParser):
         raise RunError(f"{message} (see: rosrun {self._package} {program} --help)")
 
     def add_whole(self, flag: str, default: int, text: str, *, variable: str = "",
-                  most: int = MOST) -> None:
+                  least: int = 0, most: int = MOST) -> None:
         """An option that takes a whole number; `variable` is what the Makefile calls it."""
         name = f"{flag} ({variable}=)" if variable else flag
-        self.add_argument(flag, type=partial(whole, name, most=most), default=default,
+        self.add_argument(flag, type=partial(whole, name, least=least, most=most), default=default,
                           metavar="N", help=f"{text} ({default})")
 
     def add_pace(self, text: str) -> None:
