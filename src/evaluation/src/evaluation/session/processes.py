@@ -120,7 +120,7 @@ class Family:
         """Process ids of all descendants; collects those that ended."""
         own = {child.process.pid: child.process for child in self._children}
         living = []
-        for pid, state in _descendants(os.getpid()):
+        for pid, state in descendants(os.getpid()):
             if state != "Z":
                 living.append(pid)
             elif pid in own:
@@ -156,7 +156,7 @@ def _collect(pid: int) -> None:
         return  # not ours yet: its own parent has still to be collected
 
 
-def _descendants(root: int) -> list[tuple[int, str]]:
+def descendants(root: int) -> list[tuple[int, str]]:
     """Process id and state of everything below a process."""
     children: dict[int, list[tuple[int, str]]] = {}
     for entry in os.listdir("/proc"):

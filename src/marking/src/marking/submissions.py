@@ -1,0 +1,130 @@
+"""The submissions of a folder: a file, a folder or an archive each, named by the student's id."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+from marking.unpacking import (
+    MOST_BYTES,
+    MOST_FILES,
+    UnpackError,
+    archive_stem,
+    is_archive,
+    unpack,
+)
+
+NO_PROGRAMS = ("__init__.py", "setup.py", "conftest.py", "test_*.py", "*_test.py")
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What one student handed in; `fault` says in one line why it cannot be run."""
+
+    student: str
+    source: Path  # as it was handed in
+    fault: str = ""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A submission ready to run: a copy in a folder of its own, and the program in it."""
+
+    folder: Path
+    program: Path  # relative to the folder
+
+
+def find_submissions(folder: Path) -> list[Submission]:
+    """In the order of their names; RunError if there are none."""
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except OSError as error:
+        raise RunError(f"--submissions (SUBMISSIONS=) {folder}: {error.strerror}") from error
+    found: dict[str, Submission] = {}
+    for entry in entries:
+        if entry.name.startswith("."):
+            continue
+        student, fault = _student(entry)
+        earlier = found.get(student)
+        if earlier:
+            fault = f"{earlier.source.name} and {entry.name} are both {student}'s"
+        found[student] = Submission(student, Path(entry.path), fault)
+    if not found:
+        raise RunError(f"--submissions (SUBMISSIONS=) {folder}: there is nothing in it")
+    return list(found.values())
+
+
+def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Prepared:
+    """Copy or unpack it into the folder, made anew, and choose its program; UnpackError."""
+    if submission.fault:
+        raise UnpackError(submission.fault)
+    source = submission.source
+    if is_archive(source) and source.is_file():
+        unpack(source, folder)
+    else:
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        _copy(source, folder)
+    return Prepared(folder, choose_program(folder, patterns))
+
+
+def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
+    """The only Python file, else the only one that fits the first pattern that fits any."""
+    files = [path.relative_to(folder) for path in sorted(folder.rglob("*.py"))
+             if path.is_file() and not any(fnmatch(path.name, each) for each in NO_PROGRAMS)
+             and "__MACOSX" not in path.parts]
+    for pattern in ("*", *patterns) if len(files) == 1 else patterns:
+        fitting = [path for path in files if fnmatch(path.name, pattern)]
+        if len(fitting) == 1:
+            return fitting[0]
+        if fitting:
+            break
+    if not files:
+        raise UnpackError("there is no Python program in it (a file NAME.py)")
+    named = ", ".join(str(path) for path in files[:5]) + (", ..." if len(files) > 5 else "")
+    raise UnpackError(f"which program drives? There are {named}; hand in one, or name one of "
+                      f"them {patterns[0]}")
+
+
+def _student(entry: os.DirEntry) -> tuple[str, str]:
+    """The student's id, and what is wrong with the entry."""
+    stem = archive_stem(entry.name)
+    student = stem.removesuffix(".py") if stem == entry.name else stem
+    if entry.is_symlink():
+        return student, f"{entry.name} is a symbolic link"
+    if entry.is_dir() or is_archive(Path(entry.name)) or entry.name.endswith(".py"):
+        return student, ""
+    return entry.name, f"{entry.name} is no Python file, no folder, no zip and no tar"
+
+
+def _copy(source: Path, folder: Path) -> None:
+    """Regular files alone, within an archive's limits."""
+    if source.is_file():
+        _copy_files([source], source.parent, folder)
+        return
+    files = []
+    for path in sorted(source.rglob("*")):
+        if path.is_symlink():
+            raise UnpackError(f"{path.relative_to(source)} is a symbolic link")
+        if path.is_file():
+            files.append(path)
+    _copy_files(files, source, folder)
+
+
+def _copy_files(files: Sequence[Path], root: Path, folder: Path) -> None:
+    if len(files) > MOST_FILES:
+        raise UnpackError(f"more than {MOST_FILES} files")
+    if sum(path.stat().st_size for path in files) > MOST_BYTES:
+        raise UnpackError(f"more than {MOST_BYTES >> 20} MiB")
+    for path in files:
+        copy = folder / path.relative_to(root)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            shutil.copyfile(path, copy)
+        except OSError as error:
+            raise UnpackError(f"{path.name}: {error.strerror}") from error

@@ -1,0 +1,117 @@
+"""Unpacks zip and tar files of strangers: bounded, and nothing outside the folder."""
+
+from __future__ import annotations
+
+import shutil
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+MOST_BYTES = 64 * 2**20  # of all files together, unpacked
+MOST_FILES = 2000
+LONGEST_NAME = 200  # bytes of one name in UTF-8; file systems take 255
+UTF8_NAME = 0x800  # bit of a zip entry's flags: its name is UTF-8
+ENDINGS = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
+
+
+class UnpackError(Exception):
+    """One line on what is wrong with an archive."""
+
+
+@dataclass(frozen=True)
+class _Member:
+    """One file of an archive; `open` gives its bytes."""
+
+    name: str
+    open: Callable[[], IO[bytes]]
+
+
+def is_archive(path: Path) -> bool:
+    """By its name, as course systems export them."""
+    return path.name.lower().endswith(ENDINGS)
+
+
+def archive_stem(name: str) -> str:
+    """A file's name without the ending of an archive."""
+    ending = max((e for e in ENDINGS if name.lower().endswith(e)), key=len, default="")
+    return name[:len(name) - len(ending)]
+
+
+def unpack(archive: Path, folder: Path) -> None:
+    """Unpack into a folder, which is made anew; UnpackError leaves none."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    try:
+        if archive.name.lower().endswith(".zip"):
+            with zipfile.ZipFile(archive) as opened:
+                _write(_zip_members(opened), folder)
+        else:
+            with tarfile.open(archive) as opened:
+                _write(_tar_members(opened), folder)
+    except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, NotImplementedError,
+            RuntimeError, OSError, ValueError) as error:
+        shutil.rmtree(folder)
+        raise UnpackError(f"{archive.name}: cannot be unpacked: {error}") from error
+    except UnpackError as error:
+        shutil.rmtree(folder)
+        raise UnpackError(f"{archive.name}: {error}") from None
+
+
+def _write(members: Iterator[_Member], folder: Path) -> None:
+    left = MOST_BYTES
+    for count, member in enumerate(members, start=1):
+        if count > MOST_FILES:
+            raise UnpackError(f"more than {MOST_FILES} files")
+        path = folder / _inside(member.name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with member.open() as source, path.open("xb") as target:
+            while block := source.read(min(2**16, left + 1)):
+                left -= len(block)
+                if left < 0:
+                    raise UnpackError(f"more than {MOST_BYTES >> 20} MiB unpacked")
+                target.write(block)
+
+
+def _inside(name: str) -> PurePosixPath:
+    """A relative path that stays in the folder; Windows writes backslashes."""
+    path = PurePosixPath(name.replace("\\", "/"))
+    if path.is_absolute() or ".." in path.parts or not path.parts or ":" in path.parts[0]:
+        raise UnpackError(f"{name!r} is a path out of the archive")
+    if "\0" in name or any(len(part.encode()) > LONGEST_NAME for part in path.parts):
+        raise UnpackError(f"the name {name[:40]!r}... is too long or has a zero byte")
+    return path
+
+
+def _zip_members(archive: zipfile.ZipFile) -> Iterator[_Member]:
+    for entry in archive.infolist():
+        if entry.is_dir():
+            continue
+        if (entry.external_attr >> 16) & 0o170000 == 0o120000:
+            raise UnpackError(f"{entry.filename!r} is a symbolic link")
+        yield _Member(_zip_name(entry), lambda entry=entry: archive.open(entry))
+
+
+def _zip_name(entry: zipfile.ZipInfo) -> str:
+    """Chinese Windows writes names in GBK, which Python reads as code page 437."""
+    if entry.flag_bits & UTF8_NAME:
+        return entry.filename
+    for encoding in ("utf-8", "gbk"):
+        try:
+            return entry.filename.encode("cp437").decode(encoding)
+        except UnicodeError:
+            continue
+    return entry.filename
+
+
+def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
+    for entry in archive:
+        if entry.isdir():
+            continue
+        if not entry.isreg():
+            kind = "a link" if entry.islnk() or entry.issym() else "a device or pipe"
+            raise UnpackError(f"{entry.name!r} is {kind}")
+        yield _Member(entry.name, lambda entry=entry: archive.extractfile(entry))
