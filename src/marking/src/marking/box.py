@@ -6,18 +6,22 @@ processes it sees its own; the network is the case's own loopback (see `namespac
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import os
 import shutil
 import signal
 import subprocess
 import threading
+import time
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 
 from evaluation.session.failure import RunError
 from evaluation.session.processes import descendants
 from marking.rules import Limits
+from marking.text import one_line
 
 SYSTEM = ("/usr",)
 # What Python, ROS, OpenCV and the dynamic linker read there, and no more.
@@ -29,6 +33,8 @@ HOME, SUBMISSION = "/home/student", "/home/submission"
 KEPT_OUTPUT = 64 * 1024  # bytes of the student's output that are kept
 FIRST_UID = 2_000_000_000  # of users that nobody has
 OPEN_FILES = 512
+GUARD_PERIOD, END_TIME = 0.1, 2.0  # s, wall
+LONGEST_REASON = 200  # characters
 
 
 class Kind(enum.Enum):
@@ -43,8 +49,10 @@ def available() -> Kind:
     """The kind that this machine allows; RunError if none, with what to do."""
     kind = Kind.ROOT if os.getuid() == 0 else Kind.USER
     if not shutil.which("bwrap"):
-        raise RunError("no sandbox: bubblewrap is not installed: scripts/setup.sh --marking")
-    probe = [*namespace(kind), "bwrap", *_view(kind, Limits(*[1.0] * 8), None, None), "true"]
+        raise RunError("no sandbox: bubblewrap is not installed: apt-get install bubblewrap")
+    limits = Limits(*[64.0] * len(fields(Limits)))
+    probe = [*namespace(kind), "bwrap", *_view(kind, limits, None, None),
+             *_limited(kind, limits), "true"]
     done = subprocess.run(probe, capture_output=True, text=True, timeout=20, check=False)
     if done.returncode:
         why = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
@@ -82,44 +90,58 @@ class Box:
             command, cwd=folder if kind is Kind.NONE else "/", env={**environment, **own},
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             start_new_session=True)
-        self._printed = 0
-        self._reader = threading.Thread(target=self._read, args=(output,), daemon=True)
-        self._output = output
-        self._reader.start()
+        self._output, self._printed, self._excess = output, 0, ""
+        self._threads = [threading.Thread(target=each, daemon=True)
+                         for each in (self._read, self._guard)]
+        for thread in self._threads:
+            thread.start()
 
     def fault(self) -> str:
-        """Why it has ended, or must, in one line; "": it runs."""
-        if self._process.poll() is not None:
-            self._reader.join(1.0)
-            return f"the program ended ({_describe(self._process.returncode)}){self._last_words()}"
-        if self._printed > self._limits.output_mb * 1e6:
-            return f"it printed more than {self._limits.output_mb:g} MB"
-        used_mb = sum(_resident_bytes(pid) for pid, _ in descendants(self._process.pid)) / 1e6
-        if used_mb > self._limits.memory_mb:
-            return f"it used more than {self._limits.memory_mb:g} MB of memory"
-        return ""
+        """Why it has ended, in one line; "": it runs."""
+        if self._process.poll() is None:
+            return ""
+        for thread in self._threads:
+            thread.join(END_TIME)
+        return self._excess or (
+            f"the program ended ({_describe(self._process.returncode)}){self._last_words()}")
 
     def end(self) -> None:
         """Kill it with all that it started."""
+        self._kill()
+        self._process.wait()
+        for thread in self._threads:
+            thread.join(END_TIME)
+
+    def _kill(self) -> None:
         below = [pid for pid, _ in descendants(self._process.pid)]
         for pid in (self._process.pid, *below):
-            try:
+            with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                continue
-        self._process.wait()
-        self._reader.join(2.0)
 
-    def _read(self, output: Path) -> None:
-        with output.open("wb") as file:
+    def _guard(self) -> None:
+        """End it where it uses too much: what the kernel limits only for each process."""
+        limits = self._limits
+        while self._process.poll() is None and not self._excess:
+            used_mb = sum(_resident_bytes(pid)
+                          for pid, _ in descendants(self._process.pid)) / 1e6
+            if self._printed > limits.output_mb * 1e6:
+                self._excess = f"it printed more than {limits.output_mb:g} MB"
+            elif used_mb > limits.memory_mb:
+                self._excess = f"it used more than {limits.memory_mb:g} MB of memory"
+            time.sleep(GUARD_PERIOD)
+        if self._excess:
+            self._kill()
+
+    def _read(self) -> None:
+        with self._output.open("wb") as file:
             while block := self._process.stdout.read1(65536):
                 file.write(block[:max(0, KEPT_OUTPUT - self._printed)])
                 self._printed += len(block)
 
     def _last_words(self) -> str:
         text = self._output.read_text(encoding="utf-8", errors="replace")
-        lines = [line.strip() for line in text.splitlines() if line.strip()]
-        return f": {lines[-1][:200]}" if lines else ""
+        lines = [line for line in map(one_line, text.splitlines()) if line]
+        return f": {lines[-1][:LONGEST_REASON]}" if lines else ""
 
 
 def _view(kind: Kind, limits: Limits, workspace: Path | None, folder: Path | None) -> list[str]:
@@ -185,4 +207,3 @@ def _describe(code: int) -> str:
         return f"killed by {signal.Signals(number).name}" if number > 0 else f"exit code {code}"
     except ValueError:
         return f"exit code {code}"
-

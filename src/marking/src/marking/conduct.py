@@ -29,42 +29,54 @@ class Course:
     own_calls: Counter[str]  # services that the judge itself calls, and how often
 
 
-def violations(master_log: Iterable[str], state_log: Iterable[str], course: Course) -> list[str]:
-    """One line each, in the order in which they were seen first."""
-    found = [*_of_calls(state_log, course), *_of_registrations(master_log, course)]
-    return list(dict.fromkeys(found))
+class Conduct:
+    """Reads the logs as they grow; what was found stays."""
+
+    def __init__(self, course: Course):
+        self._course = course
+        self._calls: Counter[str] = Counter()
+        self._found: set[str] = set()
+
+    @property
+    def violations(self) -> list[str]:
+        """One line each; in an order that does not depend on when they were seen."""
+        return sorted(self._found)
+
+    def see_states(self, lines: Iterable[str]) -> None:
+        """New lines of the state log."""
+        for line in lines:
+            entry = json.loads(line)
+            if entry.get("shutdown", "").startswith("external shutdown"):
+                self._found.add("it ended the node /gazebo")
+            if name := entry.get("call"):
+                self._calls[name] += 1
+                if name not in self._course.may_call and (
+                        self._calls[name] > self._course.own_calls[name]):
+                    self._found.add(f"it called {name}")
+
+    def see_end(self, what: str) -> None:
+        """A part of the course ended, and did not crash."""
+        if not self._found:
+            self._found.add(f"it ended a node of the course: {what}")
+
+    def see_registrations(self, lines: Iterable[str]) -> None:
+        """New lines of the master's log."""
+        for line in lines:
+            if found := REGISTRATION.search(line):
+                self._found |= set(_of_registration(*found.groups(), self._course))
 
 
-def _of_calls(lines: Iterable[str], course: Course) -> Iterator[str]:
-    calls: Counter[str] = Counter()
-    for line in lines:
-        entry = json.loads(line)
-        if entry.get("shutdown", "").startswith("external shutdown"):
-            yield "it ended the node /gazebo"
-        name = entry.get("call")
-        if name is None:
-            continue
-        calls[name] += 1
-        if name not in course.may_call and calls[name] > course.own_calls[name]:
-            yield f"it called {name}"
-
-
-def _of_registrations(lines: Iterable[str], course: Course) -> Iterator[str]:
-    for line in lines:
-        found = REGISTRATION.search(line)
-        if not found:
-            continue
-        sign, kind, name, node = found.groups()
-        if kind == "PARAM":
-            if _belongs_to_course(name, course):
-                yield f"it {'changed' if sign == '+' else 'deleted'} the parameter {name}"
-        elif node in course.nodes:
-            yield (f"it took the name of the node {node}" if sign == "+" else
-                   f"it unregistered the node {node}")
-        elif sign == "+" and kind == "SERVICE" and name in course.services:
-            yield f"it offered the service {name} in place of the course's"
-        elif sign == "+" and kind == "PUB" and name in course.topics - course.may_publish:
-            yield f"it published {name}"
+def _of_registration(sign: str, kind: str, name: str, node: str, course: Course) -> Iterator[str]:
+    if kind == "PARAM":
+        if _belongs_to_course(name, course):
+            yield f"it {'changed' if sign == '+' else 'deleted'} the parameter {name}"
+    elif node in course.nodes:
+        yield (f"it took the name of the node {node}" if sign == "+" else
+               f"it unregistered the node {node}")
+    elif sign == "+" and kind == "SERVICE" and name in course.services:
+        yield f"it offered the service {name} in place of the course's"
+    elif sign == "+" and kind == "PUB" and name in course.topics - course.may_publish:
+        yield f"it published {name}"
 
 
 def _belongs_to_course(parameter: str, course: Course) -> bool:

@@ -13,11 +13,12 @@ import os
 import socket
 import struct
 import sys
+import threading
 import time
 import xmlrpc.client
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -30,7 +31,7 @@ from evaluation.lap import LapScorer, Sample, Verdict, fingerprint
 from evaluation.picture import path_picture
 from evaluation.session import names
 from evaluation.session.connections import Connections, look_up
-from evaluation.session.course_file import Course, load_course
+from evaluation.session.course_file import Course
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
 from evaluation.session.observer import missing_connection
@@ -41,10 +42,14 @@ from evaluation.trial.report import write_json
 from marking import conduct
 from marking.box import Box, Kind
 from marking.rules import Rules, load_rules
+from marking.venues import driven
 
 ME = "/judge"  # never registered at the master
-STARTUP_LIMIT = 60.0  # s, wall: for the course, and again for the submission
+STARTUP_LIMIT = 60.0  # s, wall, for the course
 LOOK_PERIOD = 0.1  # s, wall
+SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
+ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
+MOST_LOGGED = 20_000_000  # bytes of one log in one case
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
 UNANSWERED_SAYS = "lockstep: no message on"
 CASE, REPORT, PATH_PICTURE, OUTPUT = "case.json", "report.json", "path.png", "output.txt"
@@ -73,23 +78,23 @@ class MarkedDrive:
         self._scorer = LapScorer(build_track(self._track_file), rules.laps,
                                  off_course=course.off_course)
         self._state_log = _Tail(files.out / "state.jsonl")
-        self._lines: list[str] = []  # of the state log, since the submission started
         self._contacts: Counter[str] = Counter()
-        self._registrations: list[str] = []  # of the master's log, since then
-        self._violations: list[str] = []
         self._fault = ""
 
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
         launched = self._session.launched("car")
         self._bring_up(launched)
-        self._before = self._look_around(launched)
+        self._conduct = conduct.Conduct(self._look_around(launched))
         box = Box(self._kind, self._files.submission, self._files.program, self._files.workspace,
                   self._limits, _environment(launched.master_uri), self._files.out / OUTPUT)
         try:
             self._drive(launched, box)
+            if self._conduct.violations:
+                time.sleep(SETTLE_TIME)  # all of them, whichever was seen first
         finally:
             box.end()
+        self._read_logs()
         return self._report(launched)
 
     def _bring_up(self, launched: Launched) -> None:
@@ -135,11 +140,12 @@ class MarkedDrive:
         while (missing := self._missing_link()) is not None:
             if self._is_over(launched, box):
                 return
-            if time.monotonic() - began > STARTUP_LIMIT:
-                self._fault = f"it never drove: after {STARTUP_LIMIT:.0f} s it had not {missing}"
+            if time.monotonic() - began > self._limits.start_s:
+                self._fault = f"after {self._limits.start_s:g} s it had not {missing}"
                 return
             time.sleep(LOOK_PERIOD)
-        rospy.ServiceProxy(names.UNPAUSE, Empty)()
+        # Beside the watching: a submission may have put a service of its own in that one's place.
+        threading.Thread(target=rospy.ServiceProxy(names.UNPAUSE, Empty), daemon=True).start()
         began = time.monotonic()
         while self._scorer.verdict is Verdict.DRIVING and not self._is_over(launched, box):
             time.sleep(LOOK_PERIOD)
@@ -173,15 +179,15 @@ class MarkedDrive:
     def _is_over(self, launched: Launched, box: Box) -> bool:
         """Whether the submission did what ends a case, or has ended itself."""
         self._read_logs()
-        if self._violations or self._fault:
+        if self._conduct.violations or self._fault:
             return True
         try:
             launched.check(None)
         except RunError as dead:
             self._read_logs()
-            if not self._violations and "exit code 0" not in str(dead):
+            if not self._conduct.violations and "exit code 0" not in str(dead):
                 raise  # it crashed: nothing to mark by
-            self._violations = self._violations or [f"it ended a node of the course: {dead}"]
+            self._conduct.see_end(str(dead).partition(" (")[0])
             return True
         if self._scorer.verdict is Verdict.DRIVING:
             self._fault = box.fault()
@@ -189,8 +195,9 @@ class MarkedDrive:
 
     def _read_logs(self) -> None:
         self._take_samples()
-        self._registrations += self._master_log.lines()
-        self._violations = conduct.violations(self._registrations, self._lines, self._before)
+        self._conduct.see_registrations(self._master_log.lines())
+        if max(self._state_log.read, self._master_log.read) > MOST_LOGGED:
+            self._fault = "it called the simulator or the master without end"
 
     def _take_samples(self) -> None:
         """Score the state log's new lines."""
@@ -198,14 +205,14 @@ class MarkedDrive:
         for line in self._state_log.lines():
             values = json.loads(line)
             if "time" not in values:
-                self._lines.append(line)
+                self._conduct.see_states([line])
             elif robot in values["poses"] and self._scorer.verdict is Verdict.DRIVING:
                 self._scorer.add(_sample(values["time"], values["poses"][robot]))
                 self._contacts.update(other for pair in values["contacts"] if robot in pair
                                       for other in pair if other != robot)
 
     def _report(self, launched: Launched) -> dict:
-        drive = self._scorer
+        drive, violations = self._scorer, self._conduct.violations
         total = drive.total
         verdict = drive.verdict
         why = drive.why
@@ -213,9 +220,9 @@ class MarkedDrive:
             why = f"{drive.driven_share:.0%} of the lap were driven in time"
         way = len(drive.laps) + (drive.driven_share if verdict is not Verdict.CLOSED else 0.0)
         report = {
-            "outcome": "not allowed" if self._violations else "fault" if self._fault else
+            "outcome": "not allowed" if violations else "fault" if self._fault else
                        verdict.value if verdict is not Verdict.DRIVING else "time is up",
-            "violations": self._violations,
+            "violations": violations,
             "fault": self._fault,
             "why": "" if verdict is Verdict.CLOSED else why,
             "laps_wanted": drive.wanted_laps,
@@ -240,16 +247,16 @@ class _Tail:
     """Whole new lines of a file that grows."""
 
     def __init__(self, path: Path):
-        self.path, self._read, self._rest = path, 0, b""
+        self.path, self.read, self._rest = path, 0, b""  # bytes read
 
     def lines(self) -> list[str]:
         try:
             with self.path.open("rb") as file:
-                file.seek(self._read)
+                file.seek(self.read)
                 data = file.read()
         except FileNotFoundError:
             return []
-        self._read += len(data)
+        self.read += len(data)
         *lines, self._rest = (self._rest + data).split(b"\n")
         return [line.decode("utf-8", "replace") for line in lines]
 
@@ -285,9 +292,8 @@ def main(folder: Path) -> int:
 def _run(folder: Path) -> int:
     values = json.loads((folder / CASE).read_text(encoding="utf-8"))
     rules, kind = load_rules(Path(values["rules"])), Kind(values["kind"])
-    rules = replace(rules, laps=values["laps"])
-    name = values["course"]
-    course = replace(load_course(name), launch=("marking", f"{name}.launch"))
+    course = driven(values["course"])
+    socket.setdefaulttimeout(ANSWER_TIME)
     if kind is not Kind.NONE:
         bring_loopback_up()
     files = CaseFiles(Path(values["submission"]), Path(values["program"]), Path(sys.prefix).parent,

@@ -34,6 +34,7 @@ class Points:
 class Limits:
     """What a submission may use in one case."""
 
+    start_s: float
     simulated_s: float
     wall_s: float
     answer_s: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -36,7 +37,7 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
         f"<td>{mean([mark.points for mark in rows]):g}</td><td>{escape(_lost(rows))}</td>"
-        f"<td>{''.join(_thumbnail(mark) for mark in rows)}</td></tr>\n"
+        f"<td>{''.join(_thumbnail(mark, out) for mark in rows)}</td></tr>\n"
         for student, rows in marks.items())
     warning = ("<p><b>These submissions ran without a sandbox.</b></p>" if kind is Kind.NONE
                else "")
@@ -47,21 +48,28 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
 
 
 def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: Path) -> None:
-    """students/ID/index.html: it links to nothing outside its folder."""
+    """students/ID/index.html and its pictures: nothing else is in that folder."""
     for student, rows in marks.items():
         folder = out / "students" / student
         folder.mkdir(parents=True, exist_ok=True)
         total = mean([mark.points for mark in rows])
-        parts = "".join(_case_part(mark, out) for mark in rows)
+        for mark in rows:
+            if mark.folder and (drawn := out / mark.folder / PATH_PICTURE).exists():
+                shutil.copyfile(drawn, folder / _picture(mark))
+        parts = "".join(_case_part(mark, out, folder) for mark in rows)
         (folder / STUDENT_PAGE).write_text(
             _page(student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}"),
             encoding="utf-8")
 
 
-def _case_part(mark: Mark, out: Path) -> str:
+def _picture(mark: Mark) -> str:
+    return f"{mark.case}.png"
+
+
+def _case_part(mark: Mark, out: Path, folder: Path) -> str:
     lost = "".join(f"<li>{escape(each)}</li>" for each in mark.lost)
-    picture = f'<p><img src="{mark.case}/{PATH_PICTURE}" alt="the path"></p>' if (
-        mark.folder and (out / mark.folder / PATH_PICTURE).exists()) else ""
+    picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
+        folder / _picture(mark)).exists() else ""
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
             f"<ul>{lost}</ul>{picture}{_output(mark, out)}")
 
@@ -74,9 +82,9 @@ def _output(mark: Mark, out: Path) -> str:
     return f"<p>What the program printed:</p><pre>{escape(text)}</pre>" if text.strip() else ""
 
 
-def _thumbnail(mark: Mark) -> str:
-    return f'<img style="width:8em" src="{_link(mark.folder)}/{PATH_PICTURE}" alt="">' if (
-        mark.folder) else ""
+def _thumbnail(mark: Mark, out: Path) -> str:
+    path = f"students/{mark.student}/{_picture(mark)}"
+    return f'<img style="width:8em" src="{_link(path)}" alt="">' if (out / path).exists() else ""
 
 
 def _lost(rows: Sequence[Mark]) -> str:

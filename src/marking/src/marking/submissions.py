@@ -10,6 +10,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from evaluation.session.failure import RunError
+from marking.text import file_name
 from marking.unpacking import (
     MOST_BYTES,
     MOST_FILES,
@@ -52,7 +53,7 @@ def find_submissions(folder: Path) -> list[Submission]:
         student, fault = _student(entry)
         earlier = found.get(student)
         if earlier:
-            fault = f"{earlier.source.name} and {entry.name} are both {student}'s"
+            fault = f"{file_name(earlier.source.name)} and {file_name(entry.name)} are both {student}'s"
         found[student] = Submission(student, Path(entry.path), fault)
     if not found:
         raise RunError(f"--submissions (SUBMISSIONS=) {folder}: there is nothing in it")
@@ -86,20 +87,23 @@ def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
             break
     if not files:
         raise UnpackError("there is no Python program in it (a file NAME.py)")
-    named = ", ".join(str(path) for path in files[:5]) + (", ..." if len(files) > 5 else "")
+    named = ", ".join(file_name(str(path)) for path in files[:5]) + (", ..." if len(files) > 5 else "")
     raise UnpackError(f"which program drives? There are {named}; hand in one, or name one of "
                       f"them {patterns[0]}")
 
 
 def _student(entry: os.DirEntry) -> tuple[str, str]:
     """The student's id, and what is wrong with the entry."""
-    stem = archive_stem(entry.name)
-    student = stem.removesuffix(".py") if stem == entry.name else stem
+    name = file_name(entry.name)
+    stem = archive_stem(name)
+    student = stem.removesuffix(".py") if stem == name else stem
+    if not student.strip("."):
+        student = name  # it also names a folder
     if entry.is_symlink():
-        return student, f"{entry.name} is a symbolic link"
-    if entry.is_dir() or is_archive(Path(entry.name)) or entry.name.endswith(".py"):
+        return student, f"{name} is a symbolic link"
+    if entry.is_dir() or is_archive(Path(name)) or name.endswith(".py"):
         return student, ""
-    return entry.name, f"{entry.name} is no Python file, no folder, no zip and no tar"
+    return name, f"{name} is no Python file, no folder, no zip and no tar"
 
 
 def _copy(source: Path, folder: Path) -> None:
@@ -110,7 +114,7 @@ def _copy(source: Path, folder: Path) -> None:
     files = []
     for path in sorted(source.rglob("*")):
         if path.is_symlink():
-            raise UnpackError(f"{path.relative_to(source)} is a symbolic link")
+            raise UnpackError(f"{file_name(str(path.relative_to(source)))} is a symbolic link")
         if path.is_file():
             files.append(path)
     _copy_files(files, source, folder)
@@ -127,4 +131,4 @@ def _copy_files(files: Sequence[Path], root: Path, folder: Path) -> None:
         try:
             shutil.copyfile(path, copy)
         except OSError as error:
-            raise UnpackError(f"{path.name}: {error.strerror}") from error
+            raise UnpackError(f"{file_name(path.name)}: {error.strerror}") from error

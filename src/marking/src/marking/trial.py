@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import hashlib
 import json
 import math
 import os
@@ -16,7 +17,6 @@ import numpy as np
 
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
-from evaluation.session.course_file import load_course
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
@@ -30,10 +30,11 @@ from marking.points import mean, points_of
 from marking.rules import Rules, load_rules
 from marking.sheets import write_marks, write_student_pages
 from marking.submissions import find_submissions, prepare
+from marking.text import one_line
 from marking.unpacking import UnpackError
-from marking.venues import Venue, course_venue
+from marking.venues import COURSES, Venue, course_venue, driven
 
-COURSES = ("course", "race")
+NOT_RUN = "not run"
 TRIES = 2  # of a case in which the course itself could not be run
 
 
@@ -59,7 +60,8 @@ class MarkingTrial(Trial):
                             help="a file, folder, zip or tar of each student")
         parser.add_argument("--rules", type=Path, metavar="YAML",
                             help="what is driven and how it is marked (config/marking.yaml)")
-        parser.add_argument("--course", choices=COURSES, help="replaces that of the rules")
+        parser.add_argument("--course", metavar="NAME",
+                            help=f"{', '.join(COURSES)}; replaces that of the rules")
         parser.add_whole("--seeds", 0, "cases on each track; 0: as the rules say", variable="SEEDS")
         parser.add_argument("--no-sandbox", action="store_true",
                             help="run submissions unprotected, where the machine allows no sandbox")
@@ -69,10 +71,15 @@ class MarkingTrial(Trial):
         rules = load_rules(path)
         course = options.course or rules.course
         if course not in COURSES:
-            raise RunError(f"{path}: course: must be one of {', '.join(COURSES)}, is {course!r}")
+            given = "--course (COURSE=)" if options.course else f"{path}: course:"
+            raise RunError(f"{given} must be one of {', '.join(COURSES)}, is {course!r}")
+        for track in rules.tracks:
+            load_track(Path(track))
         self._rules = dataclasses.replace(rules, course=course,
                                           seeds=options.seeds or rules.seeds)
         self._rules_path, self._out = path, options.out
+        self._rules_digest = hashlib.sha256(
+            f"{course} {path.read_text(encoding='utf-8')}".encode()).hexdigest()
         self._submissions = {each.student: each for each in find_submissions(options.submissions)}
         self._kind = Kind.NONE if options.no_sandbox else available()
         self._refuse_what_the_sandbox_shows(options)
@@ -100,13 +107,13 @@ class MarkingTrial(Trial):
         try:
             prepared = prepare(self._submissions[case.student], folder / "submission",
                                self._rules.program)
-        except UnpackError as error:
-            self._fault = str(error)
+        except (UnpackError, OSError) as error:
+            self._fault = one_line(str(error))
             return
         rules, venue = self._rules, self._venue(case)
         draw = _draw(rules, case.seed)
         world = lit_drive.write_world(venue.world, venue.models, draw.light, folder / "world")
-        course = load_course(rules.course)
+        course = driven(rules.course)
         x, y, yaw = draw.start(load_track(venue.track))
         arguments = {
             "world_name": world, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
@@ -131,24 +138,25 @@ class MarkingTrial(Trial):
         command = [*namespace(self._kind), sys.executable, "-P", str(script), str(folder)]
         environment = {**os.environ, lit_drive.MODEL_PATH: self._models,
                        "ROS_HOSTNAME": "localhost"}
-        limit = self._rules.limits.wall_s + 4 * STARTUP_LIMIT
+        limits = self._rules.limits
+        limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         for _ in range(TRIES):
             try:
                 drive = self._session.start_drive(command, folder, environment)
                 return drive.report(limit, self._case.name)
             except RunError as error:
                 failure = str(error)
-        return {"outcome": "not run", "violations": [], "fault": failure}
+        return {"outcome": NOT_RUN, "violations": [], "fault": failure}
 
     def score(self, record: dict) -> Mark:
         case = self._case
         points, lost = points_of(record, self._rules.points)
         folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
         return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
-                    tuple(lost), folder)
+                    tuple(map(one_line, lost)), folder)
 
     def passed(self, results: Sequence[Mark]) -> bool:
-        return all(mark.outcome != "not run" for mark in results)
+        return all(mark.outcome != NOT_RUN for mark in results)
 
     def line(self, result: Mark) -> str:
         why = f": {result.lost[0]}" if result.lost else ""
@@ -161,24 +169,27 @@ class MarkingTrial(Trial):
         return "\n".join([" points  student", *rows, *warned])
 
     def values(self, results: Sequence[Mark]) -> dict:
-        return {"sandbox": self._kind.value,
+        return {"sandbox": self._kind.value, "rules_sha256": self._rules_digest,
                 "marks": [dataclasses.asdict(mark) for mark in results]}
 
     def from_values(self, values: dict) -> list[Mark]:
-        return [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]]
+        if values["rules_sha256"] != self._rules_digest:
+            raise RunError(f"{self._out}: was marked by other rules; choose another --out")
+        return [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
+                if each["outcome"] != NOT_RUN]
 
     def pictures(self, results: Sequence[Mark], out: Path) -> list[str]:
         marks = by_student(results)
-        write_marks(marks, self._rules, self._kind, out)
         write_student_pages(marks, self._rules, out)
+        write_marks(marks, self._rules, self._kind, out)
         return []
 
     def _folder(self, case: MarkedCase) -> Path:
-        return self._out / "students" / case.student / _case_name(case)
+        return self._out / "cases" / case.student / _case_name(case)
 
     def _venue(self, case: MarkedCase) -> Venue:
         track = Path(self._rules.tracks[case.track - 1]) if case.track else None
-        return course_venue(self._rules.course, track, self._out / "tracks")
+        return course_venue(self._rules.course, track, self._folder(case))
 
 
 def _case_name(case: MarkedCase) -> str:

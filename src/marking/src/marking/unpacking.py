@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import lzma
 import shutil
+import subprocess
+import sys
 import tarfile
 import zipfile
 import zlib
@@ -11,8 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO
 
+from marking.text import file_name, one_line
+
 MOST_BYTES = 64 * 2**20  # of all files together, unpacked
 MOST_FILES = 2000
+MOST_MEMORY, MOST_TIME = 2**30, 20  # bytes, and s of a processor, for unpacking
 LONGEST_NAME = 200  # bytes of one name in UTF-8; file systems take 255
 UTF8_NAME = 0x800  # bit of a zip entry's flags: its name is UTF-8
 ENDINGS = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
@@ -42,9 +48,28 @@ def archive_stem(name: str) -> str:
 
 
 def unpack(archive: Path, folder: Path) -> None:
-    """Unpack into a folder, which is made anew; UnpackError leaves none."""
+    """Unpack into a folder, which is made anew; UnpackError leaves none.
+
+    In a process of its own: a header alone can ask for any amount of memory or time.
+    """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
+               sys.executable, "-P", "-m", "marking.unpacking", str(archive), str(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=MOST_TIME * 4, check=False)
+        why = done.stdout.decode(errors="replace").strip() if done.returncode else ""
+        if done.returncode and not why:
+            why = "it takes too much memory or time to unpack"
+    except subprocess.TimeoutExpired:
+        why = "it takes too long to unpack"
+    if why:
+        shutil.rmtree(folder)
+        raise UnpackError(f"{file_name(archive.name)}: {why}")
+
+
+def _unpack(archive: Path, folder: Path) -> None:
+    """UnpackError says why not, and may leave a part."""
     try:
         if archive.name.lower().endswith(".zip"):
             with zipfile.ZipFile(archive) as opened:
@@ -52,13 +77,9 @@ def unpack(archive: Path, folder: Path) -> None:
         else:
             with tarfile.open(archive) as opened:
                 _write(_tar_members(opened), folder)
-    except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, NotImplementedError,
-            RuntimeError, OSError, ValueError) as error:
-        shutil.rmtree(folder)
-        raise UnpackError(f"{archive.name}: cannot be unpacked: {error}") from error
-    except UnpackError as error:
-        shutil.rmtree(folder)
-        raise UnpackError(f"{archive.name}: {error}") from None
+    except (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError,
+            NotImplementedError, RuntimeError, OSError, ValueError) as error:
+        raise UnpackError(f"cannot be unpacked: {error}") from error
 
 
 def _write(members: Iterator[_Member], folder: Path) -> None:
@@ -115,3 +136,17 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
             kind = "a link" if entry.islnk() or entry.issym() else "a device or pipe"
             raise UnpackError(f"{entry.name!r} is {kind}")
         yield _Member(entry.name, lambda entry=entry: archive.extractfile(entry))
+
+
+def main(archive: str, folder: str) -> int:
+    """Says on one line why it cannot be unpacked."""
+    try:
+        _unpack(Path(archive), Path(folder))
+    except UnpackError as error:
+        print(one_line(str(error)))
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

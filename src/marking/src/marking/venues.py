@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from evaluation.course_model import write_model
-from evaluation.session.course_file import load_course
+from evaluation.session.course_file import Course, load_course
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.track import TrackError, load_track_file
+
+
+# What can be driven: our launch file of that name, and the course file of evaluation's.
+COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,8 @@ def course_venue(course: str, track: Path | None, out: Path) -> Venue:
     """The course on its own track, or on this one; what has to be made lies below `out`."""
     if course == "race":
         return _race_venue(track)
+    if course == "lane":
+        return _lane_venue(track)
     world = find_package("learning_topic") / "worlds" / "course.world"
     models = find_package("learning_topic") / "models"
     if track is None:
@@ -35,6 +41,19 @@ def course_venue(course: str, track: Path | None, out: Path) -> Venue:
     except TrackError as error:
         raise RunError(str(error)) from error
     return Venue(world, track, made)
+
+
+def driven(name: str) -> Course:
+    """The course file, with a launch file that starts no driver."""
+    return replace(load_course(COURSES[name]), launch=("marking", f"{name}.launch"))
+
+
+def _lane_venue(track: Path | None) -> Venue:
+    if track is not None:
+        raise RunError("tracks: the lane has its own alone: tracks: []")
+    root = find_package("lane_keeping")
+    return Venue(root / "worlds" / "lane_empty.world", load_course("lane_empty").track_path(),
+                 root / "models")
 
 
 def _race_venue(track: Path | None) -> Venue:
