@@ -1,10 +1,9 @@
 """What simulator and master logged, and what of it the rules do not allow."""
 
-import json
 from collections import Counter
 
 import pytest
-from marking.conduct import Course, violations
+from marking.conduct import Conduct, Course
 
 COURSE = Course(
     nodes=frozenset({"/gazebo", "/rosout"}), topics=frozenset({"/odom", "/cmd_vel", "/rosout"}),
@@ -32,7 +31,9 @@ START = "[rosmaster.master][INFO] 2026-11-24 04:48:48,060: "
     ("+PARAM [/] by /x", ["it changed the parameter /"]),
 ])
 def test_registrations_at_the_master(line, says):
-    assert violations([START + line], [], COURSE) == says
+    conduct = Conduct(COURSE)
+    conduct.see_registrations([START + line])
+    assert conduct.violations == says
 
 
 @pytest.mark.parametrize(("entries", "says"), [
@@ -47,4 +48,7 @@ def test_registrations_at_the_master(line, says):
     ([{"time": 1.0, "poses": {}, "contacts": []}], []),
 ])
 def test_calls_of_the_simulator(entries, says):
-    assert violations([], [json.dumps(entry) for entry in entries], COURSE) == says
+    conduct = Conduct(COURSE)
+    for entry in entries:
+        conduct.see_state(entry)
+    assert conduct.violations == says

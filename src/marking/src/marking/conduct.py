@@ -6,10 +6,9 @@ then on is its doing, whatever name it gives itself.
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 # rosmaster's log, master_api.py: "+PUB [/odom] /node http://..." and "+PARAM [/name] by /node"
@@ -42,17 +41,15 @@ class Conduct:
         """One line each; in an order that does not depend on when they were seen."""
         return sorted(self._found)
 
-    def see_states(self, lines: Iterable[str]) -> None:
-        """New lines of the state log."""
-        for line in lines:
-            entry = json.loads(line)
-            if entry.get("shutdown", "").startswith("external shutdown"):
-                self._found.add("it ended the node /gazebo")
-            if name := entry.get("call"):
-                self._calls[name] += 1
-                if name not in self._course.may_call and (
-                        self._calls[name] > self._course.own_calls[name]):
-                    self._found.add(f"it called {name}")
+    def see_state(self, entry: Mapping) -> None:
+        """A line of the state log; those with poses say nothing here."""
+        if entry.get("shutdown", "").startswith("external shutdown"):
+            self._found.add("it ended the node /gazebo")
+        if name := entry.get("call"):
+            self._calls[name] += 1
+            if name not in self._course.may_call and (
+                    self._calls[name] > self._course.own_calls[name]):
+                self._found.add(f"it called {name}")
 
     def see_end(self, what: str) -> None:
         """A part of the course ended, and did not crash."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from marking.box import Kind
-from marking.drive import OUTPUT, PATH_PICTURE
+from marking.case_files import FILM, OUTPUT, PATH_PICTURE
 from marking.mark import Mark
 from marking.points import mean
 from marking.rules import Rules
@@ -54,8 +54,9 @@ def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: 
         folder.mkdir(parents=True, exist_ok=True)
         total = mean([mark.points for mark in rows])
         for mark in rows:
-            if mark.folder and (drawn := out / mark.folder / PATH_PICTURE).exists():
-                shutil.copyfile(drawn, folder / _picture(mark))
+            for made, name in ((PATH_PICTURE, _picture(mark)), (FILM, _film(mark))):
+                if mark.folder and (out / mark.folder / made).exists():
+                    shutil.copyfile(out / mark.folder / made, folder / name)
         parts = "".join(_case_part(mark, out, folder) for mark in rows)
         (folder / STUDENT_PAGE).write_text(
             _page(student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}"),
@@ -66,12 +67,18 @@ def _picture(mark: Mark) -> str:
     return f"{mark.case}.png"
 
 
+def _film(mark: Mark) -> str:
+    return f"{mark.case}.mp4"
+
+
 def _case_part(mark: Mark, out: Path, folder: Path) -> str:
     lost = "".join(f"<li>{escape(each)}</li>" for each in mark.lost)
     picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
         folder / _picture(mark)).exists() else ""
+    film = f'<p><video src="{_film(mark)}" controls width="512"></video></p>' if (
+        folder / _film(mark)).exists() else ""
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
-            f"<ul>{lost}</ul>{picture}{_output(mark, out)}")
+            f"<ul>{lost}</ul>{picture}{film}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:
@@ -83,8 +90,10 @@ def _output(mark: Mark, out: Path) -> str:
 
 
 def _thumbnail(mark: Mark, out: Path) -> str:
-    path = f"students/{mark.student}/{_picture(mark)}"
-    return f'<img style="width:8em" src="{_link(path)}" alt="">' if (out / path).exists() else ""
+    folder = f"students/{mark.student}"
+    path, film = f"{folder}/{_picture(mark)}", f"{folder}/{_film(mark)}"
+    image = f'<img style="width:8em" src="{_link(path)}" alt="">' if (out / path).exists() else ""
+    return image + (f'<br><a href="{_link(film)}">film</a>' if (out / film).exists() else "")
 
 
 def _lost(rows: Sequence[Mark]) -> str:

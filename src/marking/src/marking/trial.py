@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import hashlib
-import json
 import math
 import os
 import sys
@@ -24,7 +23,8 @@ from evaluation.track import load_track
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, Trial
 from marking.box import WORKSPACE, Kind, available, namespace
-from marking.drive import CASE, STARTUP_LIMIT
+from marking.case_files import CaseFile
+from marking.course_up import STARTUP_LIMIT
 from marking.mark import Mark, by_student
 from marking.points import mean, points_of
 from marking.rules import Rules, load_rules
@@ -63,6 +63,7 @@ class MarkingTrial(Trial):
         parser.add_argument("--course", metavar="NAME",
                             help=f"{', '.join(COURSES)}; replaces that of the rules")
         parser.add_whole("--seeds", 0, "cases on each track; 0: as the rules say", variable="SEEDS")
+        parser.add_argument("--film", action="store_true", help="also film every drive")
         parser.add_argument("--no-sandbox", action="store_true",
                             help="run submissions unprotected, where the machine allows no sandbox")
 
@@ -77,7 +78,7 @@ class MarkingTrial(Trial):
             load_track(Path(track))
         self._rules = dataclasses.replace(rules, course=course,
                                           seeds=options.seeds or rules.seeds)
-        self._rules_path, self._out = path, options.out
+        self._rules_path, self._out, self._film = path, options.out, options.film
         self._rules_digest = hashlib.sha256(
             f"{course} {path.read_text(encoding='utf-8')}".encode()).hexdigest()
         self._submissions = {each.student: each for each in find_submissions(options.submissions)}
@@ -120,12 +121,9 @@ class MarkingTrial(Trial):
             "seed": case.seed, "gui": "false", "paused": "true", "real_time_factor": 0,
             "pub_clock_frequency": 30, "lockstep": ",".join(course.lockstep),
             "lockstep_timeout": f"{rules.limits.answer_s:g}"}
-        (folder / CASE).write_text(json.dumps({
-            "rules": str(self._rules_path), "kind": self._kind.value, "course": rules.course,
-            "laps": rules.laps, "submission": str(prepared.folder),
-            "program": str(prepared.program), "track": str(venue.track),
-            "launch_args": [f"{name}:={value}" for name, value in arguments.items()],
-        }, indent=1), encoding="utf-8")
+        CaseFile(str(self._rules_path), self._kind.value, rules.course, rules.laps,
+                 str(prepared.folder), str(prepared.program), str(venue.track), self._film,
+                 [f"{name}:={value}" for name, value in arguments.items()]).write(folder)
         self._models = ":".join(str(each) for each in (
             folder / "world" / "models", venue.models, os.environ.get(lit_drive.MODEL_PATH, "")))
 
