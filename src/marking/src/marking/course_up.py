@@ -24,7 +24,7 @@ from marking.rules import Rules
 from marking.states import Tail
 
 ME = "/judge"  # never registered at the master
-STARTUP_LIMIT = 60.0  # s, wall, for the course
+STARTUP_LIMIT = 240.0  # s, wall, for the course: the machine may be busy
 LOOK_PERIOD = 0.1  # s, wall
 
 

@@ -39,7 +39,6 @@ ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
 FILM_TIME = 10.0  # s, wall, to finish the file
 MOST_LOGGED = 20_000_000  # bytes of one log in one case
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
-UNANSWERED_SAYS = "lockstep: no message on"
 
 
 class MarkedDrive:
@@ -93,9 +92,7 @@ class MarkedDrive:
             if self._scorer.samples and self._scorer.samples[-1].time > self._limits.simulated_s:
                 return
             if time.monotonic() - began > self._limits.wall_s:
-                unanswered = launched.count_said(UNANSWERED_SAYS)
-                self._fault = f"it was not done after {self._limits.wall_s:g} s" + (
-                    ", and left images without a command: answer every image" if unanswered else "")
+                self._fault = f"it was not done after {self._limits.wall_s:g} s"
 
     def _is_over(self, launched: Launched, box: Box) -> bool:
         """Whether the submission did what ends a case, or has ended itself."""
@@ -125,6 +122,9 @@ class MarkedDrive:
         for line in self._state_log.lines():
             entry = json.loads(line)
             self._conduct.see_state(entry)
+            if entry.get("unanswered", 0) > self._limits.unanswered:
+                self._fault = (f"it left more than {self._limits.unanswered:g} images without a "
+                               f"command within {self._limits.answer_s:g} s: answer every image")
             sample = sample_of(entry, self._robot)
             if sample is not None and self._scorer.verdict is Verdict.DRIVING:
                 self._scorer.add(sample)

@@ -38,6 +38,7 @@ class Limits:
     simulated_s: float
     wall_s: float
     answer_s: float
+    unanswered: float
     cpu_s: float
     memory_mb: float
     processes: float

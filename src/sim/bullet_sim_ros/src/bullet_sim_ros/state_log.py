@@ -2,10 +2,12 @@
 
 What Gazebo's state log (`gzserver --record`) is for: looking back at a run without trusting a node.
 A line is one of
-    {"time": s, "poses": {MODEL: [x, y, z, qx, qy, qz, qw]}, "contacts": [[MODEL, MODEL], ...]}
+    {"time": s, "poses": {MODEL: [x, y, z, qx, qy, qz, qw]}, "contacts": [[MODEL, MODEL], ...],
+     "unanswered": N}
     {"call": SERVICE or TOPIC, "caller": NODE}
     {"shutdown": REASON}
-Poses are those of models that can move, in the world frame, m; a contact is a pair of models.
+Poses are those of models that can move, in the world frame, m; a contact is a pair of models;
+N camera frames so far had no answer in lockstep.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ class StateLog:
 
     def __init__(self, simulation: Simulation, path: Path):
         """OSError if the file cannot be written."""
-        self._world = simulation.world
+        self._world, self._lockstep = simulation.world, simulation.lockstep
         self._file: TextIO = path.open("w", encoding="utf-8", buffering=1)
         simulation.mailbox.each_call.append(self._write_call)
         simulation.scheduler.add(RATE_HZ, self._write_state)
@@ -35,7 +37,8 @@ class StateLog:
 
     def _write_state(self) -> None:
         self._write({"time": round(self._world.time, 9), "poses": _poses(self._world),
-                     "contacts": _touching(self._world)})
+                     "contacts": _touching(self._world),
+                     "unanswered": self._lockstep.unanswered})
 
     def _write_call(self, name: str, caller: str) -> None:
         self._write({"call": name, "caller": caller})
