@@ -20,7 +20,7 @@ def test_the_shipped_rules_are_worth_100_points():
     ("points.line", "much", "points.line: must be a number"),
     ("points.bonus", 3, "unknown key 'points.bonus'"),
     ("limits.wall_s", 0, "limits.wall_s: must be more than 0"),
-    ("limits", 3, "limits must hold"),
+    ("limits", 3, "missing key 'limits.answer_s'"),
     ("light", [1.2, 0.8], "light"),
     ("seeds", True, "seeds: must be a whole number"),
     ("laps", 0, "laps: must be 1 or more"),

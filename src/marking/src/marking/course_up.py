@@ -17,7 +17,6 @@ from evaluation.session.connections import Connections, look_up
 from evaluation.session.launch import Launched
 from evaluation.session.observer import missing_connection
 from evaluation.session.processes import Child
-from evaluation.session.resources import find_package
 from marking import conduct, film
 from marking.case_files import CaseFile
 from marking.rules import Rules
@@ -87,8 +86,8 @@ class CourseUp:
                             if topic != course.commands))
 
     def _start_film(self, folder: Path) -> Child:
-        script = find_package("marking") / "scripts" / "mark_film.py"
-        child = self._launched.start("film", [sys.executable, "-P", str(script), str(folder)])
+        child = self._launched.start(
+            "film", [sys.executable, "-P", "-m", film.__name__, str(folder)])
         self._launched.wait_for(
             lambda: "the film", lambda: film.NODE in self._connections().subscribers[
                 self._course.camera], lambda _: None, STARTUP_LIMIT, LOOK_PERIOD)

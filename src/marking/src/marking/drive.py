@@ -159,3 +159,7 @@ def _run(folder: Path) -> int:
     with Session(folder) as session:
         MarkedDrive(session, case, load_rules(Path(case.rules)), folder).run()
     return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import rospy
@@ -18,7 +19,7 @@ LOOK_PERIOD = 0.1  # s, wall
 
 
 def main(folder: Path) -> int:
-    """Film until the node is asked to end; returns the exit code."""
+    """Film the case of this folder until the node is asked to end; returns the exit code."""
     case = read_case(folder)
     drive, robot, states = case.scorer(), case.robot(), Tail(folder / STATE_LOG)
     film = Film(folder / FILM, case.driven(), load_track_file(Path(case.track)), drive,
@@ -32,3 +33,7 @@ def main(folder: Path) -> int:
         rospy.rostime.wallsleep(LOOK_PERIOD)
     film.close()
     return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, get_type_hints
 
-import yaml
-
 from evaluation.session.failure import RunError
+from evaluation.session.resources import read_keys
 
 
 @dataclass(frozen=True)
@@ -67,62 +67,56 @@ class Rules:
 
 def load_rules(path: Path) -> Rules:
     """Read a marking.yaml; RunError names file and key."""
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RunError(f"{path}: {error.strerror}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
-        raise RunError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
-    rules = _read(Rules, values, str(path), "")
-    if len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[1]:
-        raise RunError(f"{path}: light: must be [least, most], more than 0")
-    if not rules.program:
-        raise RunError(f"{path}: program: must name a file")
-    if rules.laps < 1 or rules.seeds < 1:
-        raise RunError(f"{path}: {'laps' if rules.laps < 1 else 'seeds'}: must be 1 or more")
-    if not rules.points.most:
-        raise RunError(f"{path}: points: finish, line and speed are all 0")
+    values = read_keys(path, [field.name for field in fields(Rules)])
+    rules = Rules(**{key: _value(path, key, kind, values[key])
+                     for key, kind in get_type_hints(Rules).items()})
     small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
-    if small:
-        raise RunError(f"{path}: limits.{small[0]}: must be more than 0")
+    for wrong, what in (
+            (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],
+             "light: must be [least, most], more than 0"),
+            (not rules.program, "program: must name a file"),
+            (rules.laps < 1, "laps: must be 1 or more"),
+            (rules.seeds < 1, "seeds: must be 1 or more"),
+            (not rules.points.most, "points: finish, line and speed are all 0"),
+            (small, f"limits.{''.join(small[:1])}: must be more than 0")):
+        if wrong:
+            raise RunError(f"{path}: {what}")
     tracks = tuple(str((path.parent / track).resolve()) for track in rules.tracks)
     return dataclasses.replace(rules, tracks=tracks)
 
 
-def _read(kind: type, values: Any, path: str, prefix: str) -> Any:
-    names = [field.name for field in fields(kind)]
-    if not isinstance(values, dict):
-        raise RunError(f"{path}: {prefix.rstrip('.') or 'it'} must hold {', '.join(names)}")
-    for key in values:
-        if key not in names:
-            raise RunError(f"{path}: unknown key '{prefix}{key}'; there are: {', '.join(names)}")
-    for key in names:
-        if key not in values:
-            raise RunError(f"{path}: missing key '{prefix}{key}'")
-    hints = get_type_hints(kind)
-    return kind(**{key: _value(hints[key], values[key], path, prefix + key) for key in names})
-
-
-def _value(kind: Any, value: Any, path: str, key: str) -> Any:
+def _value(path: Path, key: str, kind: Any, value: Any) -> Any:
     if dataclasses.is_dataclass(kind):
-        return _read(kind, value, path, f"{key}.")
-    if kind is str and isinstance(value, str):
-        return value
-    if kind is int and type(value) is int and 0 <= value < 10**8:
-        return value
-    if kind is float and _is_number(value):
-        return float(value)
-    if kind == tuple[str, ...] and isinstance(value, list) and all(
-            isinstance(each, str) for each in value):
-        return tuple(value)
-    if kind == tuple[float, ...] and isinstance(value, list) and all(map(_is_number, value)):
-        return tuple(map(float, value))
-    raise RunError(f"{path}: {key}: must be {_WANTED[kind]}, is {value!r}")
+        names = [field.name for field in fields(kind)]
+        given = set(value) if isinstance(value, dict) else set()
+        for what, keys in (("unknown", given - set(names)), ("missing", set(names) - given)):
+            if keys:
+                raise RunError(f"{path}: {what} key {f'{key}.{min(keys, key=str)}'!r}; "
+                               f"there are: {', '.join(names)}")
+        return kind(**{name: _value(path, f"{key}.{name}", float, value[name])
+                       for name in names})
+    wanted, fits = _KINDS[kind]
+    if not fits(value):
+        raise RunError(f"{path}: {key}: must be {wanted}, is {value!r}")
+    return tuple(value) if isinstance(value, list) else kind(value)
 
 
 def _is_number(value: Any) -> bool:
     return type(value) in (int, float) and 0 <= value < math.inf
 
 
-_WANTED = {str: "a text", int: "a whole number, 0 or more", float: "a number, 0 or more",
-           tuple[str, ...]: "a list of texts", tuple[float, ...]: "a list of numbers"}
+def _list_of(fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, list) and all(map(fits, value))
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+_KINDS = {
+    str: ("a text", _is_text),
+    int: ("a whole number, 0 or more", lambda value: type(value) is int and 0 <= value < 10**8),
+    float: ("a number, 0 or more", _is_number),
+    tuple[str, ...]: ("a list of texts", _list_of(_is_text)),
+    tuple[float, ...]: ("a list of numbers", _list_of(_is_number)),
+}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -11,14 +10,7 @@ from pathlib import Path
 
 from evaluation.session.failure import RunError
 from marking.text import file_name
-from marking.unpacking import (
-    MOST_BYTES,
-    MOST_FILES,
-    UnpackError,
-    archive_stem,
-    is_archive,
-    unpack,
-)
+from marking.unpacking import UnpackError, archive_stem, is_archive, unpack
 
 NO_PROGRAMS = ("__init__.py", "setup.py", "conftest.py", "test_*.py", "*_test.py")
 
@@ -51,9 +43,9 @@ def find_submissions(folder: Path) -> list[Submission]:
         if entry.name.startswith("."):
             continue
         student, fault = _student(entry)
-        earlier = found.get(student)
-        if earlier:
-            fault = f"{file_name(earlier.source.name)} and {file_name(entry.name)} are both {student}'s"
+        if earlier := found.get(student):
+            named = " and ".join(file_name(name) for name in (earlier.source.name, entry.name))
+            fault = f"{named} are both {student}'s"
         found[student] = Submission(student, Path(entry.path), fault)
     if not found:
         raise RunError(f"--submissions (SUBMISSIONS=) {folder}: there is nothing in it")
@@ -64,13 +56,7 @@ def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Pr
     """Copy or unpack it into the folder, made anew, and choose its program; UnpackError."""
     if submission.fault:
         raise UnpackError(submission.fault)
-    source = submission.source
-    if is_archive(source) and source.is_file():
-        unpack(source, folder)
-    else:
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        _copy(source, folder)
+    unpack(submission.source, folder)
     return Prepared(folder, choose_program(folder, patterns))
 
 
@@ -87,7 +73,8 @@ def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
             break
     if not files:
         raise UnpackError("there is no Python program in it (a file NAME.py)")
-    named = ", ".join(file_name(str(path)) for path in files[:5]) + (", ..." if len(files) > 5 else "")
+    named = ", ".join([*(file_name(str(path)) for path in files[:5]),
+                       *(["..."] if len(files) > 5 else [])])
     raise UnpackError(f"which program drives? There are {named}; hand in one, or name one of "
                       f"them {patterns[0]}")
 
@@ -104,31 +91,3 @@ def _student(entry: os.DirEntry) -> tuple[str, str]:
     if entry.is_dir() or is_archive(Path(name)) or name.endswith(".py"):
         return student, ""
     return name, f"{name} is no Python file, no folder, no zip and no tar"
-
-
-def _copy(source: Path, folder: Path) -> None:
-    """Regular files alone, within an archive's limits."""
-    if source.is_file():
-        _copy_files([source], source.parent, folder)
-        return
-    files = []
-    for path in sorted(source.rglob("*")):
-        if path.is_symlink():
-            raise UnpackError(f"{file_name(str(path.relative_to(source)))} is a symbolic link")
-        if path.is_file():
-            files.append(path)
-    _copy_files(files, source, folder)
-
-
-def _copy_files(files: Sequence[Path], root: Path, folder: Path) -> None:
-    if len(files) > MOST_FILES:
-        raise UnpackError(f"more than {MOST_FILES} files")
-    if sum(path.stat().st_size for path in files) > MOST_BYTES:
-        raise UnpackError(f"more than {MOST_BYTES >> 20} MiB")
-    for path in files:
-        copy = folder / path.relative_to(root)
-        copy.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            shutil.copyfile(path, copy)
-        except OSError as error:
-            raise UnpackError(f"{file_name(path.name)}: {error.strerror}") from error

@@ -132,8 +132,8 @@ class MarkingTrial(Trial):
         if self._fault:
             return {"outcome": "fault", "violations": [], "fault": self._fault}
         folder = self._folder(self._case)
-        script = find_package("marking") / "scripts" / "mark_drive.py"
-        command = [*namespace(self._kind), sys.executable, "-P", str(script), str(folder)]
+        command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
+                   str(folder)]
         environment = {**os.environ, lit_drive.MODEL_PATH: self._models,
                        "ROS_HOSTNAME": "localhost"}
         limits = self._rules.limits

@@ -1,4 +1,4 @@
-"""Unpacks zip and tar files of strangers: bounded, and nothing outside the folder."""
+"""Copies what strangers handed in, zip and tar unpacked: bounded, nothing outside the folder."""
 
 from __future__ import annotations
 
@@ -47,35 +47,33 @@ def archive_stem(name: str) -> str:
     return name[:len(name) - len(ending)]
 
 
-def unpack(archive: Path, folder: Path) -> None:
-    """Unpack into a folder, which is made anew; UnpackError leaves none.
+def unpack(source: Path, folder: Path) -> None:
+    """Unpack or copy into a folder, which is made anew; UnpackError leaves none.
 
     In a process of its own: a header alone can ask for any amount of memory or time.
     """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
-               sys.executable, "-P", "-m", "marking.unpacking", str(archive), str(folder)]
-    try:
-        done = subprocess.run(command, capture_output=True, timeout=MOST_TIME * 4, check=False)
-        why = done.stdout.decode(errors="replace").strip() if done.returncode else ""
-        if done.returncode and not why:
-            why = "it takes too much memory or time to unpack"
-    except subprocess.TimeoutExpired:
-        why = "it takes too long to unpack"
-    if why:
+               sys.executable, "-P", "-m", "marking.unpacking", str(source), str(folder)]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+    if done.returncode:
         shutil.rmtree(folder)
-        raise UnpackError(f"{file_name(archive.name)}: {why}")
+        why = done.stdout.decode(errors="replace").strip()
+        raise UnpackError(f"{file_name(source.name)}: "
+                          f"{why or 'it takes too much memory or time to unpack'}")
 
 
-def _unpack(archive: Path, folder: Path) -> None:
+def _unpack(source: Path, folder: Path) -> None:
     """UnpackError says why not, and may leave a part."""
     try:
-        if archive.name.lower().endswith(".zip"):
-            with zipfile.ZipFile(archive) as opened:
+        if not is_archive(source) or source.is_dir():
+            _write(_plain_members(source), folder)
+        elif source.name.lower().endswith(".zip"):
+            with zipfile.ZipFile(source) as opened:
                 _write(_zip_members(opened), folder)
         else:
-            with tarfile.open(archive) as opened:
+            with tarfile.open(source) as opened:
                 _write(_tar_members(opened), folder)
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError,
             NotImplementedError, RuntimeError, OSError, ValueError) as error:
@@ -105,6 +103,16 @@ def _inside(name: str) -> PurePosixPath:
     if "\0" in name or any(len(part.encode()) > LONGEST_NAME for part in path.parts):
         raise UnpackError(f"the name {name[:40]!r}... is too long or has a zero byte")
     return path
+
+
+def _plain_members(source: Path) -> Iterator[_Member]:
+    """A file, or those of a folder."""
+    for path in [source] if source.is_file() else sorted(source.rglob("*")):
+        name = path.relative_to(source if source.is_dir() else source.parent)
+        if path.is_symlink():
+            raise UnpackError(f"{file_name(str(name))} is a symbolic link")
+        if path.is_file():
+            yield _Member(str(name), lambda path=path: path.open("rb"))
 
 
 def _zip_members(archive: zipfile.ZipFile) -> Iterator[_Member]:
@@ -138,10 +146,10 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
         yield _Member(entry.name, lambda entry=entry: archive.extractfile(entry))
 
 
-def main(archive: str, folder: str) -> int:
+def main(source: str, folder: str) -> int:
     """Says on one line why it cannot be unpacked."""
     try:
-        _unpack(Path(archive), Path(folder))
+        _unpack(Path(source), Path(folder))
     except UnpackError as error:
         print(one_line(str(error)))
         return 1

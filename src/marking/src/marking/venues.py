@@ -11,7 +11,6 @@ from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.track import TrackError, load_track_file
 
-
 # What can be driven: our launch file of that name, and the course file of evaluation's.
 COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}
 
