@@ -1,6 +1,6 @@
 """Submissions as a class might hand them in, each with what must be seen in its row of the marks.
 
-    python3 made_up.py FOLDER    writes all of them, for a try by hand
+    python3 made_up.py FOLDER    writes FOLDER/submissions, all of them, and FOLDER/marking.yaml
 """
 
 from __future__ import annotations
@@ -13,11 +13,15 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import yaml
+
 LESSON = (Path(__file__).resolve().parents[2] / "learning_topic" / "scripts" /
-          "05follower_proporation.py").read_text(encoding="utf-8")
+          "05follower_proporation.py").read_text(encoding="utf-8").replace("1 / 1000", "3 / 1000")
+CAMERA = [640, 480]  # px, a third of the width that the lesson's gain is for
 SLOW = LESSON.replace("SPEED = 0.15", "SPEED = 0.07")
-LOST = LESSON.replace("STEER_GAIN = 1 / 1000", "STEER_GAIN = -1 / 1000")
-STANDS = LESSON.replace("SPEED = 0.15", "SPEED = 0.0").replace("1 / 1000", "0.0")
+LOST = LESSON.replace("STEER_GAIN = 3", "STEER_GAIN = -3")
+STANDS = LESSON.replace("SPEED = 0.15", "SPEED = 0.0").replace("3 / 1000", "0.0")
+RULES = Path(__file__).resolve().parents[1] / "config" / "marking.yaml"
 
 # Before the lesson's own main: what else the program does, once the car drives.
 AFTER_START = '''
@@ -178,6 +182,14 @@ ARCHIVES: dict[str, tuple[bytes, str, float, float]] = {
 }
 
 
+def write_rules(path: Path, **limits: float) -> Path:
+    """The shipped rules with the small camera and these limits."""
+    rules = yaml.safe_load(RULES.read_text(encoding="utf-8"))
+    rules["limits"] |= limits
+    path.write_text(yaml.safe_dump({**rules, "camera": CAMERA}), encoding="utf-8")
+    return path
+
+
 def write(folder: Path, names: set[str] | None = None) -> dict[str, tuple[str, float, float]]:
     """Write these submissions, or all; returns for each student what its row must say."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -195,4 +207,5 @@ def write(folder: Path, names: set[str] | None = None) -> dict[str, tuple[str, f
 
 
 if __name__ == "__main__":
-    print(len(write(Path(sys.argv[1]))), "submissions")
+    print(len(write(Path(sys.argv[1]) / "submissions")), "submissions")
+    write_rules(Path(sys.argv[1]) / "marking.yaml")

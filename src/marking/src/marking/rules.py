@@ -59,6 +59,7 @@ class Rules:
     start_sideways_m: float
     start_turn_deg: float
     light: tuple[float, ...]
+    camera: tuple[int, ...]
     points: Points
     limits: Limits
     may_publish: tuple[str, ...]
@@ -74,6 +75,8 @@ def load_rules(path: Path) -> Rules:
     for wrong, what in (
             (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],
              "light: must be [least, most], more than 0"),
+            (len(rules.camera) not in (0, 2) or 0 in rules.camera,
+             "camera: must be [width, height] or []"),
             (not rules.program, "program: must name a file"),
             (rules.laps < 1, "laps: must be 1 or more"),
             (rules.seeds < 1, "seeds: must be 1 or more"),
@@ -113,10 +116,15 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
 
+def _is_whole(value: Any) -> bool:
+    return type(value) is int and 0 <= value < 10**8
+
+
 _KINDS = {
     str: ("a text", _is_text),
-    int: ("a whole number, 0 or more", lambda value: type(value) is int and 0 <= value < 10**8),
+    int: ("a whole number, 0 or more", _is_whole),
     float: ("a number, 0 or more", _is_number),
     tuple[str, ...]: ("a list of texts", _list_of(_is_text)),
+    tuple[int, ...]: ("a list of whole numbers", _list_of(_is_whole)),
     tuple[float, ...]: ("a list of numbers", _list_of(_is_number)),
 }

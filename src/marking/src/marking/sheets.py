@@ -28,11 +28,13 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
     half = out / (MARKS + ".tmp")
     with half.open("w", encoding="utf-8-sig", newline="") as file:  # Excel needs the mark
         writer = csv.writer(file)
-        writer.writerow(["student", "points", "of", *cases, "why points were lost"])
+        writer.writerow(["student", "points", "of", *cases, "sandbox",
+                         "why points were lost"])
         for student, rows in marks.items():
             points = {mark.case: mark.points for mark in rows}
             writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
-                             *[points.get(case, "") for case in cases], _cell(_lost(rows))])
+                             *[points.get(case, "") for case in cases],
+                             "no" if kind is Kind.NONE else "yes", _cell(_lost(rows))])
     half.replace(out / MARKS)
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'

@@ -120,7 +120,8 @@ class MarkingTrial(Trial):
             "world_name": world, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
             "seed": case.seed, "gui": "false", "paused": "true", "real_time_factor": 0,
             "pub_clock_frequency": 30, "lockstep": ",".join(course.lockstep),
-            "lockstep_timeout": f"{rules.limits.answer_s:g}"}
+            "lockstep_timeout": f"{rules.limits.answer_s:g}",
+            **dict(zip(("camera_width", "camera_height"), rules.camera, strict=False))}
         CaseFile(str(self._rules_path), self._kind.value, rules.course, rules.laps,
                  str(prepared.folder), str(prepared.program), str(venue.track), self._film,
                  [f"{name}:={value}" for name, value in arguments.items()]).write(folder)
