@@ -64,6 +64,7 @@ CALLED, PUBLISHED = "it called ", "it published "
 PROGRAMS: dict[str, tuple[str, str, float, float]] = {
     "good": (LESSON, "", 85, 100),
     "张伟_2023001": (LESSON, "", 85, 100),
+    "王 小明: $(env HOME)": (LESSON, "", 85, 100),
     "windows_lines": (LESSON.replace("\n", "\r\n"), "", 85, 100),
     "wrong_shebang": (LESSON.replace("/usr/bin/env python3", "/opt/python2"), "", 85, 100),
     "reads_pose": (call("/gazebo/get_model_state", "GetModelState",

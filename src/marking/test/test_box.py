@@ -9,13 +9,13 @@ from pathlib import Path
 
 import made_up
 import pytest
-from marking.box import Box, Kind, available, namespace
+from marking.box import Box
 from marking.rules import load_rules
+from marking.sandbox import Kind, available, namespace
 
 from evaluation.session.failure import RunError
 from evaluation.session.processes import descendants
 
-WORKSPACE = Path(sys.prefix).parent
 LIMIT = 30.0  # s, wall
 LIMITS = dataclasses.replace(
     load_rules(Path(__file__).parents[1] / "config" / "marking.yaml").limits, memory_mb=300,
@@ -40,7 +40,7 @@ def boxed(kind, tmp_path):
         folder.mkdir()
         (folder / "main.py").write_text(program, encoding="utf-8")
         tmp_path.chmod(0o755)
-        boxes.append(Box(kind, folder, Path("main.py"), WORKSPACE, LIMITS,
+        boxes.append(Box(kind, folder, Path("main.py"), LIMITS,
                          {"PATH": os.environ["PATH"]}, tmp_path / "output.txt"))
         return boxes[-1]
 

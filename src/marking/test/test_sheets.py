@@ -3,10 +3,10 @@
 import csv
 
 from made_up import RULES
-from marking.box import Kind
 from marking.case_files import OUTPUT, PATH_PICTURE
 from marking.mark import Mark, by_student
 from marking.rules import load_rules
+from marking.sandbox import Kind
 from marking.sheets import write_marks, write_student_pages
 from marking.text import file_name, one_line
 

@@ -27,11 +27,12 @@ from evaluation.session.launch import Launched
 from evaluation.session.session import Session
 from evaluation.trial.program import run_program
 from marking import conduct
-from marking.box import Box, Kind
+from marking.box import Box
 from marking.case_files import OUTPUT, CaseFile, read_case
 from marking.course_up import LOOK_PERIOD, CourseUp
 from marking.drive_report import write_report
 from marking.rules import Rules, load_rules
+from marking.sandbox import Kind
 from marking.states import STATE_LOG, Tail, sample_of
 
 SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
@@ -60,8 +61,7 @@ class MarkedDrive:
         self._conduct = conduct.Conduct(there)
         self._state_log.skip()
         box = Box(Kind(self._case.kind), Path(self._case.submission), Path(self._case.program),
-                  Path(sys.prefix).parent, self._limits, _environment(launched.master_uri),
-                  self._folder / OUTPUT)
+                  self._limits, _environment(launched.master_uri), self._folder / OUTPUT)
         try:
             self._drive(launched, course, box)
             if self._conduct.violations:

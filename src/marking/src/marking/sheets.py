@@ -9,11 +9,11 @@ from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
-from marking.box import Kind
 from marking.case_files import FILM, OUTPUT, PATH_PICTURE
 from marking.mark import Mark
 from marking.points import mean
 from marking.rules import Rules
+from marking.sandbox import Kind
 
 MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # which a spreadsheet would compute

@@ -5,36 +5,33 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import hashlib
-import math
 import os
+import shutil
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from evaluation.laps import lit_drive
-from evaluation.laps.disturbance import Disturbance
+from evaluation.laps.lit_drive import MODEL_PATH
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.track import load_track
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import Case, Trial
-from marking.box import WORKSPACE, Kind, available, namespace
+from evaluation.trial.protocol import REPORT, Case, Trial
 from marking.case_files import CaseFile
 from marking.course_up import STARTUP_LIMIT
 from marking.mark import Mark, by_student
 from marking.points import mean, points_of
-from marking.rules import Rules, load_rules
+from marking.rules import load_rules
+from marking.sandbox import Kind, available, namespace, shown
 from marking.sheets import write_marks, write_student_pages
 from marking.submissions import find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
-from marking.venues import COURSES, Venue, course_venue, driven
+from marking.venues import COURSES, make_scene
 
-NOT_RUN = "not run"
+NOT_RUN, SUBMISSION = "not run", "submission"
 TRIES = 2  # of a case in which the course itself could not be run
 
 
@@ -86,14 +83,12 @@ class MarkingTrial(Trial):
         self._refuse_what_the_sandbox_shows(options)
 
     def _refuse_what_the_sandbox_shows(self, options: argparse.Namespace) -> None:
-        workspace = Path(sys.prefix).parent
         for what, path in (("--submissions", options.submissions), ("--out", options.out),
                            ("--rules", options.rules)):
-            inside = path and any(path.resolve().is_relative_to(workspace / name)
-                                  for name in WORKSPACE)
+            inside = path and any(map(path.resolve().is_relative_to, shown()))
             if inside and self._kind is not Kind.NONE:
                 raise RunError(f"{what} {path}: every submission could read it there; put it "
-                               f"outside {' '.join(str(workspace / name) for name in WORKSPACE)}")
+                               f"outside {' '.join(map(str, shown()))}")
 
     def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
         rules = self._rules
@@ -106,27 +101,16 @@ class MarkingTrial(Trial):
         folder = self._folder(case)
         folder.mkdir(parents=True, exist_ok=True)
         try:
-            prepared = prepare(self._submissions[case.student], folder / "submission",
+            prepared = prepare(self._submissions[case.student], folder / SUBMISSION,
                                self._rules.program)
         except (UnpackError, OSError) as error:
             self._fault = one_line(str(error))
             return
-        rules, venue = self._rules, self._venue(case)
-        draw = _draw(rules, case.seed)
-        world = lit_drive.write_world(venue.world, venue.models, draw.light, folder / "world")
-        course = driven(rules.course)
-        x, y, yaw = draw.start(load_track(venue.track))
-        arguments = {
-            "world_name": world, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
-            "seed": case.seed, "gui": "false", "paused": "true", "real_time_factor": 0,
-            "pub_clock_frequency": 30, "lockstep": ",".join(course.lockstep),
-            "lockstep_timeout": f"{rules.limits.answer_s:g}",
-            **dict(zip(("camera_width", "camera_height"), rules.camera, strict=False))}
-        CaseFile(str(self._rules_path), self._kind.value, rules.course, rules.laps,
-                 str(prepared.folder), str(prepared.program), str(venue.track), self._film,
-                 [f"{name}:={value}" for name, value in arguments.items()]).write(folder)
-        self._models = ":".join(str(each) for each in (
-            folder / "world" / "models", venue.models, os.environ.get(lit_drive.MODEL_PATH, "")))
+        self._scene = scene = make_scene(
+            self._rules, case.track, case.seed, self._out / "scenes" / _case_name(case))
+        CaseFile(str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
+                 str(prepared.folder), str(prepared.program), str(scene.track), self._film,
+                 scene.launch_args).write(folder)
 
     def run(self) -> dict:
         """The report of the drive, or what went wrong before it."""
@@ -135,8 +119,7 @@ class MarkingTrial(Trial):
         folder = self._folder(self._case)
         command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
                    str(folder)]
-        environment = {**os.environ, lit_drive.MODEL_PATH: self._models,
-                       "ROS_HOSTNAME": "localhost"}
+        environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": "localhost"}
         limits = self._rules.limits
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         for _ in range(TRIES):
@@ -149,6 +132,7 @@ class MarkingTrial(Trial):
 
     def score(self, record: dict) -> Mark:
         case = self._case
+        shutil.rmtree(self._folder(case) / SUBMISSION, ignore_errors=True)  # the teacher has it
         points, lost = points_of(record, self._rules.points)
         folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
         return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
@@ -171,6 +155,10 @@ class MarkingTrial(Trial):
         return {"sandbox": self._kind.value, "rules_sha256": self._rules_digest,
                 "marks": [dataclasses.asdict(mark) for mark in results]}
 
+    def earlier(self, options: argparse.Namespace) -> list[Mark]:
+        """None is no mistake."""
+        return super().earlier(options) if (options.out / REPORT).exists() else []
+
     def from_values(self, values: dict) -> list[Mark]:
         if values["rules_sha256"] != self._rules_digest:
             raise RunError(f"{self._out}: was marked by other rules; choose another --out")
@@ -186,19 +174,6 @@ class MarkingTrial(Trial):
     def _folder(self, case: MarkedCase) -> Path:
         return self._out / "cases" / case.student / _case_name(case)
 
-    def _venue(self, case: MarkedCase) -> Venue:
-        track = Path(self._rules.tracks[case.track - 1]) if case.track else None
-        return course_venue(self._rules.course, track, self._folder(case))
-
 
 def _case_name(case: MarkedCase) -> str:
     return f"track{case.track}-seed{case.seed}"
-
-
-def _draw(rules: Rules, seed: int) -> Disturbance:
-    """Start and light of a case, evenly distributed within the rules' bounds."""
-    random = np.random.default_rng(seed)
-    most, turn = rules.start_sideways_m, math.radians(rules.start_turn_deg)
-    return Disturbance(sideways=random.uniform(-most, most), along=0.0,
-                       turn=random.uniform(-turn, turn), camera_noise=0.0,
-                       light=random.uniform(*rules.light))
