@@ -58,7 +58,7 @@ mark: ## let submissions drive in a sandbox, and mark them SUBMISSIONS=DIR [COUR
 	@scripts/mark.sh $(if $(SUBMISSIONS),--submissions "$(SUBMISSIONS)") $(if $(COURSE),--course "$(COURSE)") \
 	  $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(RULES),--rules "$(RULES)") \
 	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
-	  $(if $(OUT),--out "$(OUT)")
+	  $(if $(OUT),--out "$(OUT)") $(WHERE)
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh

@@ -32,7 +32,7 @@ from marking.unpacking import UnpackError
 from marking.venues import COURSES, make_scene
 
 NOT_RUN, SUBMISSION = "not run", "submission"
-TRIES = 2  # of a case in which the course itself could not be run
+TRIES = 3  # of a case in which the course itself could not be run
 
 
 @dataclass(frozen=True)
