@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import xmlrpc.client
 from collections import Counter
 from pathlib import Path
@@ -14,7 +15,7 @@ from gazebo_msgs.srv import GetWorldProperties
 
 from evaluation.session import names
 from evaluation.session.connections import Connections, look_up
-from evaluation.session.launch import Launched
+from evaluation.session.launch import MAY_FINISH, Launched
 from evaluation.session.observer import missing_connection
 from evaluation.session.processes import Child
 from marking import conduct, film
@@ -25,6 +26,7 @@ from marking.states import Tail
 ME = "/judge"  # never registered at the master
 STARTUP_LIMIT = 240.0  # s, wall, for the course: the machine may be busy
 LOOK_PERIOD = 0.1  # s, wall
+STEADY_TIME = 2.0  # s, wall, without a change at the master: the course is complete
 
 
 class CourseUp:
@@ -34,6 +36,8 @@ class CourseUp:
         """RunError if it does not come up; the simulator writes the state log."""
         self._launched, self._case, self._course = launched, case, case.driven()
         self._watching = {ME}  # who sees the camera and is no driver
+        self._registered: list | None = None  # at the master, since
+        self._since = 0.0  # s, wall
         launched.start_roscore()
         os.environ["ROS_MASTER_URI"] = launched.master_uri
         self._master = rosgraph.Master(ME, launched.master_uri)
@@ -50,7 +54,8 @@ class CourseUp:
         master_log = Tail(self._launched.log_folder / "latest" / "master.log")
         master_log.skip()
         return conduct.Course(
-            frozenset(node for _, nodes in registered for node in nodes),
+            frozenset(node for _, nodes in registered for node in nodes
+                      if not any(word in node for word in MAY_FINISH)),
             frozenset(name for name, _ in [*publishers, *subscribers]),
             frozenset(name for name, _ in services),
             frozenset(self._master.getParamNames()),
@@ -75,15 +80,17 @@ class CourseUp:
         """The robot is there, and all that stands between it and a driver."""
         try:
             reply = rospy.ServiceProxy(names.WORLD, GetWorldProperties)()
-            found = self._connections()
+            found, registered = self._connections(), self._master.getSystemState()
         except (rospy.ServiceException, OSError, xmlrpc.client.Error, rosgraph.MasterException):
             return False
         course = self._course
         needed = (course.camera, course.camera_info, course.odometry, *course.lockstep)
-        return bool(self._case.robot() in reply.model_names
-                    and found.subscribers.get(course.commands)
-                    and all(found.publishers.get(topic) for topic in needed
-                            if topic != course.commands))
+        if registered != self._registered:
+            self._registered, self._since = registered, time.monotonic()
+        return (self._case.robot() in reply.model_names
+                and all(found.subscribers[topic] for topic in (course.commands, *course.lockstep))
+                and all(found.publishers[topic] for topic in needed if topic != course.commands)
+                and time.monotonic() - self._since > STEADY_TIME)
 
     def _start_film(self, folder: Path) -> Child:
         child = self._launched.start(

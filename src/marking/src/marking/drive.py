@@ -33,12 +33,12 @@ from marking.course_up import LOOK_PERIOD, CourseUp
 from marking.drive_report import write_report
 from marking.rules import Rules, load_rules
 from marking.sandbox import Kind
-from marking.states import STATE_LOG, Tail, sample_of
+from marking.states import STATE_LOG, Tail, bytes_below, sample_of
 
 SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
 ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
 FILM_TIME = 10.0  # s, wall, to finish the file
-MOST_LOGGED = 20_000_000  # bytes of one log in one case
+MOST_LOGGED = 30e6  # bytes of all nodes' logs in one case
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
 
 
@@ -56,6 +56,7 @@ class MarkedDrive:
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
         launched = self._session.launched("car")
+        self._log_folder = launched.log_folder
         course = CourseUp(launched, self._case, self._folder, self._state_log.path)
         there, self._master_log = course.look_around(self._rules)
         self._conduct = conduct.Conduct(there)
@@ -114,8 +115,8 @@ class MarkedDrive:
     def _read_logs(self) -> None:
         self._take_samples()
         self._conduct.see_registrations(self._master_log.lines())
-        if max(self._state_log.read, self._master_log.read) > MOST_LOGGED:
-            self._fault = "it called the simulator or the master without end"
+        if self._state_log.read + bytes_below(self._log_folder) > MOST_LOGGED:
+            self._fault = f"it had more than {MOST_LOGGED / 1e6:g} MB logged"
 
     def _take_samples(self) -> None:
         """Score the state log's new lines."""

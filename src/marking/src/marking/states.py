@@ -1,7 +1,8 @@
-"""The simulator's state log, read while it grows."""
+"""The simulator's state log and others, read while they grow."""
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,6 +33,15 @@ class Tail:
     def skip(self) -> None:
         """Leave out what is there."""
         self.lines()
+
+
+def bytes_below(folder: Path) -> int:
+    """Of all files of a folder, while others write there."""
+    total = 0
+    for path in folder.rglob("*"):
+        with contextlib.suppress(FileNotFoundError):
+            total += path.lstat().st_size
+    return total
 
 
 def sample_of(entry: dict, robot: str) -> Sample | None:
