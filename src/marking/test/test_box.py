@@ -77,7 +77,7 @@ def test_what_never_ends_is_ended_with_all_it_started(boxed, student):
 
 
 def test_printed_secrets_of_a_terminal_do_not_reach_the_reason(boxed):
-    assert "\x1b" not in fault_of(boxed("raise SystemExit('\\x1b[2J red')"))
+    assert "\x1b" not in fault_of(boxed("raise RuntimeError('\\x1b[2J red')"))
 
 
 def test_its_output_is_kept_but_bounded(boxed, tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from marking.text import one_line
 KEPT_OUTPUT = 64 * 1024  # bytes of the student's output that are kept
 GUARD_PERIOD, END_TIME = 0.1, 2.0  # s, wall
 LONGEST_REASON = 200  # characters
+EXCEPTION = re.compile(r"[\w.]+(Error|Exception|Interrupt)\b")
 
 
 class Box:
@@ -89,8 +91,9 @@ class Box:
                 self._printed += len(block)
 
     def _last_words(self) -> str:
+        """Its exception, if it ended by one: other lines may differ from run to run."""
         text = self._output.read_text(encoding="utf-8", errors="replace")
-        lines = [line for line in map(one_line, text.splitlines()) if line]
+        lines = [line for line in map(one_line, text.splitlines()) if EXCEPTION.match(line)]
         return f": {lines[-1][:LONGEST_REASON]}" if lines else ""
 
 

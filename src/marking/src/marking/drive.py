@@ -51,7 +51,7 @@ class MarkedDrive:
         self._robot, self._scorer = case.robot(), case.scorer()
         self._state_log = Tail(folder / STATE_LOG)
         self._contacts: Counter[str] = Counter()
-        self._fault = ""
+        self._fault, self._time_is_up = "", False
 
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
@@ -90,7 +90,7 @@ class MarkedDrive:
         while self._scorer.verdict is Verdict.DRIVING and not self._is_over(launched, box):
             time.sleep(LOOK_PERIOD)
             self._take_samples()
-            if self._scorer.samples and self._scorer.samples[-1].time > self._limits.simulated_s:
+            if self._time_is_up:
                 return
             if time.monotonic() - began > self._limits.wall_s:
                 self._fault = f"it was not done after {self._limits.wall_s:g} s"
@@ -127,7 +127,9 @@ class MarkedDrive:
                 self._fault = (f"it left more than {self._limits.unanswered:g} images without a "
                                f"command within {self._limits.answer_s:g} s: answer every image")
             sample = sample_of(entry, self._robot)
-            if sample is not None and self._scorer.verdict is Verdict.DRIVING:
+            if sample is not None and sample.time > self._limits.simulated_s:
+                self._time_is_up = True
+            elif sample is not None and self._scorer.verdict is Verdict.DRIVING:
                 self._scorer.add(sample)
                 self._contacts.update(other for pair in entry["contacts"] if self._robot in pair
                                       for other in pair if other != self._robot)
