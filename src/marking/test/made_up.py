@@ -110,7 +110,7 @@ PROGRAMS: dict[str, tuple[str, str, float, float]] = {
     "takes_name": (LESSON.replace('init_node("follower", anonymous=True)', 'init_node("gazebo")'),
                    "the node /gazebo", 0, 0),
     "fork_bomb": ("import os\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n"
-                  "        pass\n", "it had not subscribed", 0, 0),
+                  "        pass\n", "more than 50 processes", 0, 0),
     "endless_import": ("while True:\n    pass\n", "it had not subscribed", 0, 0),
     "much_output": ("while True:\n    print('x' * 100000)\n", "it printed more than", 0, 0),
     "much_memory": ("x = []\nwhile True:\n    x.append(bytearray(10**8))\n", "MemoryError", 0, 0),

@@ -19,7 +19,7 @@ from evaluation.session.processes import descendants
 LIMIT = 30.0  # s, wall
 LIMITS = dataclasses.replace(
     load_rules(Path(__file__).parents[1] / "config" / "marking.yaml").limits, memory_mb=300,
-    disk_mb=16, output_mb=2, processes=20)
+    disk_mb=16, output_mb=2)
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def fault_of(box: Box) -> str:
 
 @pytest.mark.parametrize("student", [
     "looks_around", "much_output", "much_memory", "many_take_memory", "fills_disk", "kills_all",
-    "crash_at_once", "missing_module", "python2", "tabs"])
+    "fork_bomb", "crash_at_once", "missing_module", "python2", "tabs"])
 def test_what_ends_is_said_in_one_line(boxed, student):
     program, says, *_ = made_up.PROGRAMS[student]
     fault = fault_of(boxed(program))
@@ -68,12 +68,11 @@ def test_what_ends_is_said_in_one_line(boxed, student):
     assert "\n" not in fault
 
 
-@pytest.mark.parametrize("student", ["fork_bomb", "endless_import", "deaf_to_signals"])
+@pytest.mark.parametrize("student", ["endless_import", "deaf_to_signals"])
 def test_what_never_ends_is_ended_with_all_it_started(boxed, student):
     box = boxed(made_up.PROGRAMS[student][0])
     time.sleep(1.5)
     assert box.fault() == ""
-    assert len(descendants(os.getpid())) <= LIMITS.processes + 2
 
 
 def test_printed_secrets_of_a_terminal_do_not_reach_the_reason(boxed):

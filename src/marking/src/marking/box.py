@@ -74,9 +74,11 @@ class Box:
         """End it where it uses too much: what the kernel limits only for each process."""
         limits = self._limits
         while self._process.poll() is None and not self._excess:
-            used_mb = sum(_resident_bytes(pid)
-                          for pid, _ in descendants(self._process.pid)) / 1e6
-            if self._printed > limits.output_mb * 1e6:
+            running = [pid for pid, _ in descendants(self._process.pid)]
+            used_mb = sum(map(_resident_bytes, running)) / 1e6
+            if len(running) > limits.processes:
+                self._excess = f"it started more than {limits.processes:g} processes"
+            elif self._printed > limits.output_mb * 1e6:
                 self._excess = f"it printed more than {limits.output_mb:g} MB"
             elif used_mb > limits.memory_mb:
                 self._excess = f"it used more than {limits.memory_mb:g} MB of memory"

@@ -69,7 +69,7 @@ def sandbox(kind: Kind, limits: Limits, folder: Path | None = None) -> list[str]
                f"--fsize={disk}", f"--nofile={OPEN_FILES}", "--core=0"]
     if kind is Kind.NONE:
         return limited
-    limited.append(f"--nproc={int(limits.processes)}")
+    limited.append(f"--nproc={int(limits.processes) * 2}")  # threads, too; the rest is Box's
     if kind is Kind.ROOT:  # the kernel counts processes by user: for each sandbox another
         user = str(FIRST_UID + os.getpid())
         limited = ["setpriv", "--reuid", user, "--regid", user, "--clear-groups",
