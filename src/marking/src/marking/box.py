@@ -74,6 +74,7 @@ class Box:
         """End it where it uses too much: what the kernel limits only for each process."""
         limits = self._limits
         while self._process.poll() is None and not self._excess:
+            time.sleep(GUARD_PERIOD)
             running = [pid for pid, _ in descendants(self._process.pid)]
             used_mb = sum(map(_resident_bytes, running)) / 1e6
             if len(running) > limits.processes:
@@ -82,7 +83,6 @@ class Box:
                 self._excess = f"it printed more than {limits.output_mb:g} MB"
             elif used_mb > limits.memory_mb:
                 self._excess = f"it used more than {limits.memory_mb:g} MB of memory"
-            time.sleep(GUARD_PERIOD)
         if self._excess:
             self._kill()
 
