@@ -19,7 +19,8 @@ LESSON = (Path(__file__).resolve().parents[2] / "learning_topic" / "scripts" /
           "05follower_proporation.py").read_text(encoding="utf-8").replace("1 / 1000", "3 / 1000")
 CAMERA = [640, 480]  # px, a third of the width that the lesson's gain is for
 SLOW = LESSON.replace("SPEED = 0.15", "SPEED = 0.07")
-LOST = LESSON.replace("STEER_GAIN = 3", "STEER_GAIN = -3")
+LOST = LESSON.replace("STEER_GAIN = 3", "STEER_GAIN = -3").replace(
+    "command = Twist()", "command = Twist()\n        command.linear.x = SPEED")
 STANDS = LESSON.replace("SPEED = 0.15", "SPEED = 0.0").replace("3 / 1000", "0.0")
 RULES = Path(__file__).resolve().parents[1] / "config" / "marking.yaml"
 
