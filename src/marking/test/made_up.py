@@ -115,7 +115,7 @@ PROGRAMS: dict[str, tuple[str, str, float, float]] = {
     "endless_import": ("while True:\n    pass\n", "it had not subscribed", 0, 0),
     "much_output": ("while True:\n    print('x' * 100000)\n", "it printed more than", 0, 0),
     "much_memory": ("x = []\nwhile True:\n    x.append(bytearray(10**8))\n", "MemoryError", 0, 0),
-    "many_take_memory": ("import os, time\nfor _ in range(5):\n    if not os.fork():\n"
+    "many_take_memory": ("import os, time\nfor _ in range(20):\n    if not os.fork():\n"
                          "        x = bytearray(b'x') * 150_000_000\n        break\n"
                          "time.sleep(1000)\n", "of memory", 0, 0),
     "fills_disk": ("with open('/tmp/x', 'wb') as f:\n    while True:\n"

@@ -19,8 +19,8 @@ def write(tmp_path, kind=Kind.USER):
     (folder / OUTPUT).write_bytes(f"printed {EVIL} \xff".encode("latin-1"))
     (folder / PATH_PICTURE).write_bytes(b"png")
     marks = by_student([
-        Mark("b/0-1", "=cmd()", "track0-seed1", "fault", 0.0, (f"-100: {EVIL}",), ""),
-        Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, ("-9.5: slow",),
+        Mark("b/0-1", "=cmd()", "track0-seed1", "fault", 0.0, (f"100 points: {EVIL}",), ""),
+        Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, ("9.5 points: slow",),
              "cases/张伟/track0-seed1"),
         Mark("a/0-2", "张伟", "track0-seed2", "closed", 80.5, (), "")])
     write_student_pages(marks, load_rules(RULES), tmp_path)
@@ -34,7 +34,7 @@ def test_the_table_has_a_mean_and_each_case(tmp_path):
     assert [row["student"] for row in rows] == ["'=cmd()", "张伟"]  # no formula
     assert rows[1]["points"] == "85.5"
     assert [rows[1]["track0-seed1"], rows[1]["track0-seed2"]] == ["90.5", "80.5"]
-    assert rows[1]["why points were lost"] == "track0-seed1: -9.5: slow"
+    assert rows[1]["why points were lost"] == "track0-seed1: 9.5 points: slow"
     assert rows[1]["sandbox"] == "yes"
 
 

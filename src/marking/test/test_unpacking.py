@@ -27,9 +27,9 @@ def test_what_cannot_be_run_is_one_line_and_leaves_nothing_outside(tmp_path, nam
 def test_the_program_of_an_archive_is_found(tmp_path, name):
     made_up.write(tmp_path / "in", {name})
     [submission] = find_submissions(tmp_path / "in")
-    prepared = prepare(submission, tmp_path / "out", PATTERNS)
-    assert "follower" in prepared.program.name
-    assert (prepared.folder / prepared.program).is_file()
+    program = prepare(submission, tmp_path / "out", PATTERNS)
+    assert "follower" in program.name
+    assert (tmp_path / "out" / program).is_file()
 
 
 def test_names_that_chinese_windows_wrote_are_read(tmp_path):

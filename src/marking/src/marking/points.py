@@ -10,10 +10,9 @@ from marking.rules import Points
 def points_of(drive: Mapping, points: Points) -> tuple[float, list[str]]:
     """Points of one case, and a line for each loss; `drive` is a case's report.json."""
     if drive["violations"]:
-        return 0.0, [f"-{points.most:g}: {each}" for each in drive["violations"][:1]] + [
-            f"also: {each}" for each in drive["violations"][1:]]
+        return 0.0, [f"{points.most:g} points: {', '.join(drive['violations'])}"]
     if drive["fault"]:
-        return 0.0, [f"-{points.most:g}: {drive['fault']}"]
+        return 0.0, [f"{points.most:g} points: {drive['fault']}"]
     closed = drive["laps_closed"] >= drive["laps_wanted"]
     share = 1.0 if closed else drive["driven_share"]
     rows = [(points.finish, share, drive["why"] or "")]
@@ -26,7 +25,7 @@ def points_of(drive: Mapping, points: Points) -> tuple[float, list[str]]:
     rows.append((points.speed, speed * share,
                  f"{drive['mean_speed_m_s']:.3f} m/s on average"
                  f" (all points at {points.speed_best_m_s:g} m/s)"))
-    lost = [f"-{most * (1 - share):.1f}: {why}" for most, share, why in rows
+    lost = [f"{most * (1 - share):.1f} points: {why}" for most, share, why in rows
             if round(most * (1 - share), 1) > 0]
     return round(sum(most * share for most, share, _ in rows), 2), lost
 

@@ -24,14 +24,6 @@ class Submission:
     fault: str = ""
 
 
-@dataclass(frozen=True)
-class Prepared:
-    """A submission ready to run: a copy in a folder of its own, and the program in it."""
-
-    folder: Path
-    program: Path  # relative to the folder
-
-
 def find_submissions(folder: Path) -> list[Submission]:
     """In the order of their names; RunError if there are none."""
     try:
@@ -52,12 +44,12 @@ def find_submissions(folder: Path) -> list[Submission]:
     return list(found.values())
 
 
-def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Prepared:
-    """Copy or unpack it into the folder, made anew, and choose its program; UnpackError."""
+def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Path:
+    """Copy or unpack it into the folder, made anew; returns its program there. UnpackError."""
     if submission.fault:
         raise UnpackError(submission.fault)
     unpack(submission.source, folder)
-    return Prepared(folder, choose_program(folder, patterns))
+    return choose_program(folder, patterns)
 
 
 def choose_program(folder: Path, patterns: Sequence[str]) -> Path:

@@ -101,15 +101,15 @@ class MarkingTrial(Trial):
         folder = self._folder(case)
         folder.mkdir(parents=True, exist_ok=True)
         try:
-            prepared = prepare(self._submissions[case.student], folder / SUBMISSION,
-                               self._rules.program)
+            program = prepare(self._submissions[case.student], folder / SUBMISSION,
+                              self._rules.program)
         except (UnpackError, OSError) as error:
             self._fault = one_line(str(error))
             return
         self._scene = scene = make_scene(
             self._rules, case.track, case.seed, self._out / "scenes" / _case_name(case))
         CaseFile(str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
-                 str(prepared.folder), str(prepared.program), str(scene.track), self._film,
+                 str(folder / SUBMISSION), str(program), str(scene.track), self._film,
                  scene.launch_args).write(folder)
 
     def run(self) -> dict:

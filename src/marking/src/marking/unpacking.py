@@ -98,7 +98,7 @@ def _write(members: Iterator[_Member], folder: Path) -> None:
 def _inside(name: str) -> PurePosixPath:
     """A relative path that stays in the folder; Windows writes backslashes."""
     path = PurePosixPath(name.replace("\\", "/"))
-    if path.is_absolute() or ".." in path.parts or not path.parts or ":" in path.parts[0]:
+    if path.is_absolute() or ".." in path.parts or not path.parts:
         raise UnpackError(f"{name!r} is a path out of the archive")
     if "\0" in name or any(len(part.encode()) > LONGEST_NAME for part in path.parts):
         raise UnpackError(f"the name {name[:40]!r}... is too long or has a zero byte")
