@@ -19,7 +19,7 @@ from marking.sandbox import HOME, SUBMISSION, Kind, sandbox
 from marking.text import one_line
 
 KEPT_OUTPUT = 64 * 1024  # bytes of the student's output that are kept
-GUARD_PERIOD, END_TIME = 0.1, 2.0  # s, wall
+GUARD_PERIOD, END_TIME = 0.2, 2.0  # s, wall
 LONGEST_REASON = 200  # characters
 EXCEPTION = re.compile(r"[\w.]+(Error|Exception|Interrupt)\b")
 
