@@ -54,7 +54,7 @@ localisation-trials: ## amcl finds the robot, again, and keeps track of it [STAR
 	  $(if $(KIDNAPS),--kidnaps "$(KIDNAPS)") $(if $(SEED),--seed "$(SEED)") \
 	  $(if $(PACE),--real-time-factor "$(PACE)") $(WHERE)
 
-mark: ## let submissions drive in a sandbox, and mark them SUBMISSIONS=DIR [COURSE=course SEEDS=3 RULES=YAML FILM=1 RESUME=1 OUT=DIR]
+mark: ## let submissions drive in a sandbox, and mark them SUBMISSIONS=DIR [COURSE=course SEEDS=3 RULES=YAML FILM=1 RESUME=1 OUT=DIR WORKERS=1]
 	@scripts/mark.sh $(if $(SUBMISSIONS),--submissions "$(SUBMISSIONS)") $(if $(COURSE),--course "$(COURSE)") \
 	  $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(RULES),--rules "$(RULES)") \
 	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
