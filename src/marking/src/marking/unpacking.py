@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import lzma
+import os
 import shutil
 import subprocess
 import sys
@@ -53,12 +54,11 @@ def unpack(source: Path, folder: Path) -> None:
     In a process of its own: a header alone can ask for any amount of memory or time.
     """
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
                sys.executable, "-P", "-m", "marking.unpacking", str(source), str(folder)]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
     if done.returncode:
-        shutil.rmtree(folder)
+        shutil.rmtree(folder, ignore_errors=True)
         why = done.stdout.decode(errors="replace").strip()
         raise UnpackError(f"{file_name(source.name)}: "
                           f"{why or 'it takes too much memory or time to unpack'}")
@@ -148,6 +148,8 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
 
 def main(source: str, folder: str) -> int:
     """Says on one line why it cannot be unpacked."""
+    os.umask(0o022)  # in the sandbox it is another user's
+    Path(folder).mkdir(parents=True)
     try:
         _unpack(Path(source), Path(folder))
     except UnpackError as error:
