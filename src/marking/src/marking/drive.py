@@ -55,7 +55,7 @@ class MarkedDrive:
 
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
-        launched = self._session.launched("car")
+        launched = self._session.launched("car", alone=self._case.kind != Kind.NONE.value)
         self._log_folder = launched.log_folder
         course = CourseUp(launched, self._case, self._folder, self._state_log.path)
         there, self._master_log = course.look_around(self._rules)
