@@ -75,12 +75,13 @@ def _film(mark: Mark) -> str:
 
 def _case_part(mark: Mark, out: Path, folder: Path) -> str:
     lost = "".join(f"<li>{escape(each)}</li>" for each in mark.lost)
+    lost = f"<p>Lost:</p><ul>{lost}</ul>" if lost else ""
     picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
         folder / _picture(mark)).exists() else ""
     film = f'<p><video src="{_film(mark)}" controls width="512"></video></p>' if (
         folder / _film(mark)).exists() else ""
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
-            f"<ul>{lost}</ul>{picture}{film}{_output(mark, out)}")
+            f"{lost}{picture}{film}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:
