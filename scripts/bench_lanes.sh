@@ -6,6 +6,6 @@
 # Exit code 0: all were driven, however they drove; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-"$root/scripts/setup.sh" --bench || exit 2
+"$root/scripts/setup.sh" || exit 2
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/bench_lanes.py" "$@"

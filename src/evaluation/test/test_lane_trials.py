@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lane_keeping.world.scenery import load_crossings
 
 from evaluation.lane.comparison import LaneComparison
 from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
@@ -17,7 +18,6 @@ from evaluation.lane.results import (
     lap_table,
     to_json,
 )
-from evaluation.lane.scenery import load_crossings
 from evaluation.lane.trial import LaneTrial, course_arguments, draw, known_methods, lane_case
 from evaluation.session.failure import RunError
 from evaluation.trial.report import write_json

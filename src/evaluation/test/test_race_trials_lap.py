@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import rospkg
+from racecar_description.track.closed_line import load_track
 
 from bullet_sim.description import (
     CameraDescription,
@@ -23,7 +24,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.world import World
-from evaluation.course_run.options import parse_options
+from evaluation.course_run.main import CourseRun
 from evaluation.laps.disturbance import CAMERA_NOISE, LIGHT, Disturbance, draw
 from evaluation.laps.light import write_lit_world
 from evaluation.race_trials import trial as trial_module
@@ -31,7 +32,6 @@ from evaluation.race_trials.results import Lap
 from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
-from evaluation.track import load_track
 from evaluation.trial.runner import try_case
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -132,8 +132,8 @@ def test_no_world_is_a_clear_error(tmp_path):
 
 def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
     words = trial_module.course_arguments(racetrack(), 5, draw(5), Path("/w.world"))
-    found = parse_options(words)
-    assert (found.fast, found.video, found.seed, found.camera_px) == (True, False, 5, None)
+    found = CourseRun.parse(words)
+    assert (found.fast, found.video, found.seed, found.camera) == (True, False, 5, None)
     assert found.track == racetrack().track
     package, file = found.launch
     launch = ElementTree.parse(Path(PACKAGES.get_path(package)) / "launch" / file).getroot()

@@ -15,11 +15,12 @@ import numpy as np
 from lane_keeping.lane_keeper import LaneKeeper
 from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import load_settings
+from lane_keeping.world.ground import draw_ground, plane_of
+from lane_keeping.world.scenery import load_crossings, load_scenery
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
 
-from evaluation.lane.ground import draw_ground, plane_of
-from evaluation.lane.scenery import load_crossings, load_scenery
 from evaluation.session.resources import find_package
-from evaluation.track import build_track, load_track_file
 
 PICTURES, WARM_UP = 40, 5
 SIZE = (640, 480)  # px

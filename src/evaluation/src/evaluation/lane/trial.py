@@ -9,6 +9,10 @@ from pathlib import Path
 
 import lane_keeping.methods
 import numpy as np
+from lane_keeping.settings import SettingsError
+from lane_keeping.world.scenery import Crossings, load_crossings
+from racecar_description.track.closed_line import load_track
+from racecar_description.track.track_file import load_track_file
 
 from evaluation.lane.encounters import judge, nearest_ever
 from evaluation.lane.recording import read_recording
@@ -21,13 +25,11 @@ from evaluation.lane.results import (
     line_of,
     to_json,
 )
-from evaluation.lane.scenery import load_crossings
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
-from evaluation.track import load_track, load_track_file
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial
 
@@ -83,7 +85,7 @@ class LaneDrives(Trial):
             return found
         recording = read_recording(self._folder / "poses.txt")
         track = load_track_file(find_package("evaluation") / "tracks" / "lane.yaml")
-        met = judge(recording, load_crossings(), track.lane_width)
+        met = judge(recording, _crossings(), track.lane_width)
         nearest = round(nearest_ever(recording), 3)
         return LaneDrive(**{**vars(found), "nearest_person": nearest, "encounters": tuple(met)})
 
@@ -191,6 +193,13 @@ def course_arguments(case: LaneCase, disturbance: Disturbance, world: Path, fold
         "--startup-timeout", f"{STARTUP_LIMIT:g}",
         *lit_drive.launch_arguments(world, start, disturbance.camera_noise, ANSWER_LIMIT, *record),
     ]  # fmt: skip
+
+
+def _crossings() -> Crossings:
+    try:
+        return load_crossings()
+    except SettingsError as error:
+        raise RunError(str(error)) from error
 
 
 def known_methods() -> list[str]:

@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from evaluation.track import Track
+from racecar_description.track.closed_line import Track
 
 START_OFFSET = 0.2  # m, to each side and forwards or backwards, at most
 START_TURN = math.radians(10)  # rad, at most

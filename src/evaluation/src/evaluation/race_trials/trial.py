@@ -8,8 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from racecar_description.track.closed_line import load_track
+
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance, draw
+from evaluation.race_trials.chart import write_chart
 from evaluation.race_trials.path_sheet import write_path_sheet
 from evaluation.race_trials.results import (
     Lap,
@@ -22,9 +25,7 @@ from evaluation.race_trials.results import (
 from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, Venue, racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
-from evaluation.track import load_track
 from evaluation.trial.command_line import Parser
-from evaluation.trial.program import chart_writer
 from evaluation.trial.protocol import Case, Trial
 
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
@@ -65,7 +66,6 @@ class RaceTrial(Trial):
         if not options.seeds and not options.tracks:
             raise RunError("--seeds 0 --tracks 0: nothing to drive")
         self._first = options.followers[0]
-        self._write_chart = chart_writer("evaluation.race_trials.chart")  # missing: said at once
 
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
         """Followers take turns."""
@@ -115,7 +115,7 @@ class RaceTrial(Trial):
         return [Lap(**{**each, "disturbance": Disturbance(**each["disturbance"])}) for each in kept]
 
     def pictures(self, results: Sequence[Lap], out: Path) -> list[str]:
-        self._write_chart(results, out / "trials.png")
+        write_chart(results, out / "trials.png")
         sheets = [write_path_sheet([lap for lap in results if lap.follower == follower], out)
                   for follower in dict.fromkeys(lap.follower for lap in results)]
         return ["trials.png", *(sheet.name for sheet in sheets)]
