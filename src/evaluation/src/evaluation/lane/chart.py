@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from evaluation.lane.results import LEAST_SPEED, MOST_RMS, LaneDrive
+from evaluation.lane.results import LaneDrive
 from evaluation.picture import chart
 
 COLOUR, FAILED, LIMIT = "#1b6ca8", "#c0392b", "#7a8b99"
@@ -21,8 +21,8 @@ def write_chart(drives: Sequence[LaneDrive], times: Mapping[str, float], path: P
                 rms.plot(drive.rms_lateral * 100, number, marker, color=colour)
                 speed.plot(drive.mean_speed, number, marker, color=colour)
             time.barh(number, times.get(method, 0.0), height=0.5, color=COLOUR)
-        rms.axvline(MOST_RMS * 100, color=LIMIT, linewidth=1)
-        speed.axvline(LEAST_SPEED, color=LIMIT, linewidth=1)
+        rms.axvline(LaneDrive.most_rms * 100, color=LIMIT, linewidth=1)
+        speed.axvline(LaneDrive.least_speed, color=LIMIT, linewidth=1)
         for axes, title in ((rms, "RMS from the lane's middle, cm"), (speed, "mean speed, m/s"),
                             (time, "processor time, ms a picture")):
             axes.set_xlim(0, 1.05 * axes.get_xlim()[1])

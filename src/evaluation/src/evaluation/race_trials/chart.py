@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from evaluation.picture import chart
-from evaluation.race_trials.results import LEAST_SPEED, MOST_RMS, Lap
+from evaluation.race_trials.results import Lap
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"
 
 # Label, its value, the limit, which side of it is good.
 ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
-    ("RMS beside the line, cm", lambda lap: lap.rms_lateral * 100, MOST_RMS * 100, "at most"),
-    ("mean speed, m/s", lambda lap: lap.mean_speed, LEAST_SPEED, "at least"),
+    ("RMS beside the line, cm", lambda lap: lap.rms_lateral * 100, Lap.most_rms * 100, "at most"),
+    ("mean speed, m/s", lambda lap: lap.mean_speed, Lap.least_speed, "at least"),
 )
 
 
