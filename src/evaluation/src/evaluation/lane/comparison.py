@@ -6,9 +6,10 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from lane_keeping.world.timing import ms_a_frame
+
 from evaluation.lane.chart import write_chart
 from evaluation.lane.results import LaneDrive, lap_table, to_json
-from evaluation.lane.timing import ms_a_frame
 from evaluation.lane.trial import LaneCase, LaneDrives, check_methods, known_methods, lane_case
 from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser

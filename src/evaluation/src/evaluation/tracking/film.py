@@ -12,7 +12,15 @@ from ai_robot_tracking.scenes.world_file import RADIUS
 from evaluation.colours import BAD, CAR, GOOD, HIDDEN
 from evaluation.plan import Plan
 from evaluation.session.film import CameraFilm, side_by_side
-from evaluation.tracking.picture import FOLLOWER, MARGIN, SHADE, TARGET_WAY, target_way
+from evaluation.tracking.picture import (
+    FOLLOWER,
+    MARGIN,
+    SHADE,
+    TARGET_WAY,
+    WALL,
+    WALLS,
+    target_way,
+)
 from evaluation.tracking.score import BAND, TrackScorer
 
 PLAN_PX = 480
@@ -27,6 +35,7 @@ class TrackFilm(CameraFilm):
         edge = HALF_ROOM + MARGIN
         self._floor = Plan((-edge, -edge), (edge, edge), PLAN_PX)
         self._floor.grid(1.0)
+        self._floor.line(WALLS, WALL, 4)
         for shade in scene.shades:
             self._floor.disc(shade, SHADE_RADIUS, SHADE)
         for thing in scene.lookalikes:

@@ -17,6 +17,7 @@ from evaluation.tracking.score import BAND, Task, TrackScorer
 
 TARGET_WAY, SHADE, FOLLOWER, WALL = "#823c46", "#24262a", "#78c8f0", "#8c9196"
 MARGIN = 0.15  # m round the walls
+WALLS = HALF_ROOM * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
 CURVE = 3.0  # inches
 MOST_SHOWN = 1.0  # m beside the wanted distance, at the curve's edges
 
@@ -32,8 +33,7 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
     edge = HALF_ROOM + MARGIN
     figure, axes = map_sheet(lines[0], "   |   ".join(lines[1:3]), (-edge, -edge), (edge, edge),
                              CURVE)
-    corners = HALF_ROOM * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
-    axes.plot(*corners.T, color=WALL, linewidth=4)
+    axes.plot(*WALLS.T, color=WALL, linewidth=4)
     for place in scene.shades:
         _disc(axes, place, SHADE_RADIUS, SHADE)
     for thing in scene.lookalikes:
@@ -67,8 +67,9 @@ def _draw_curve(axes: object, drive: TrackScorer) -> None:
         since = begin - drive.samples[0].time
         axes.axvspan(since, since + HIDDEN_TIME, color=HIDDEN, alpha=0.3)
     _draw_runs(axes, times, np.clip(drive.errors, low, high), drive)
-    axes.set(xlim=(0, max(times[-1], 0.1)), ylim=(low, high), xlabel="s",
-             ylabel="m beside the wanted distance" if wanted else "m to the cylinder")
+    axes.set(xlim=(0, max(times[-1], 0.1)), ylim=(low, high), xlabel="s")
+    axes.set_title("m beside the wanted distance" if wanted else "m to the cylinder", loc="left",
+                   fontsize=9, color=FAINT)
 
 
 def _disc(axes: object, place: Sequence[float], radius: float, colour: object,

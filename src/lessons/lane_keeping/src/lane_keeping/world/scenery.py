@@ -66,7 +66,7 @@ class Scenery:
 
 def load_crossings(path: Path | None = None) -> Crossings:
     """The package's own, or another file; SettingsError names file and key."""
-    path = path or _config() / "crossings.yaml"
+    path = path or config_folder() / "crossings.yaml"
     values = _read_keys(path, [field.name for field in fields(Crossings)])
     lengths = {name: _number(path, name, values[name], least=0.0)
                for name in ("length", "half_width", "kerb", "far")}
@@ -75,7 +75,7 @@ def load_crossings(path: Path | None = None) -> Crossings:
 
 def load_scenery(path: Path | None = None) -> Scenery:
     """The package's own, or another file; SettingsError names file and key."""
-    path = path or _config() / "lane_scenery.yaml"
+    path = path or config_folder() / "lane_scenery.yaml"
     values = _read_keys(path, [field.name for field in fields(Scenery)])
     sun = values["sun"]
     if not isinstance(sun, list) or len(sun) != 3:
@@ -88,7 +88,8 @@ def load_scenery(path: Path | None = None) -> Scenery:
                    _items(path, "lamps", values["lamps"], Lamp))
 
 
-def _config() -> Path:
+def config_folder() -> Path:
+    """The package's own."""
     return Path(rospkg.RosPack().get_path("lane_keeping")) / "config"
 
 
