@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from functools import partial
+from pathlib import Path
 
 from evaluation.session.course_file import Course, load_course
 from evaluation.session.failure import RunError
@@ -36,7 +37,7 @@ def add_options(parser: Parser) -> None:
         help="passed on to roslaunch; may be given again")
     add("--launch", nargs=2, metavar=("PACKAGE", "FILE"),
         help="another launch file that brings up simulator, car and follower")
-    add("--track", metavar="YAML", help="track file (the course's own)")
+    add("--track", type=Path, metavar="YAML", help="track file (the course's own)")
 
 
 def complete(options: argparse.Namespace) -> None:
