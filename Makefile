@@ -1,6 +1,9 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
 .PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deps deb lint clean
 
+# Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
+WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
+
 help: ## list the verbs
 	@scripts/help.sh
 
@@ -15,40 +18,41 @@ race: ## drive the racetrack by camera and report [LAPS= DURATION= FAST= CAMERA=
 	  $(if $(filter-out 0 no false,$(FAST)),--fast) $(if $(CAMERA),--camera "$(CAMERA)") \
 	  $(if $(SEED),--seed "$(SEED)")
 
-race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRACKS=10]
-	@scripts/race_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(TRACKS),--tracks "$(TRACKS)")
+race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRACKS=10] [WORKERS=1]
+	@scripts/race_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(TRACKS),--tracks "$(TRACKS)") $(WHERE)
 
 navigate: ## map the house, localise, visit goals, report [GOALS=5] [SEED=0] [PACE=1] [MAP=out/navigate/map.yaml]
 	@scripts/navigate.sh $(if $(GOALS),--goals "$(GOALS)") $(if $(SEED),--seed "$(SEED)") \
 	  $(if $(PACE),--real-time-factor "$(PACE)") $(if $(MAP),--map "$(MAP)")
 
-navigation-trials: ## move_base through narrow worlds, and past persons [YARDS=50] [REPEATS=2] [CROSSINGS=20] [PACE=1]
+navigation-trials: ## move_base through narrow worlds, and past persons [YARDS=50] [REPEATS=2] [CROSSINGS=20] [PACE=1] [WORKERS=1]
 	@scripts/navigation_trials.sh $(if $(YARDS),--yards "$(YARDS)") $(if $(REPEATS),--repeats "$(REPEATS)") \
-	  $(if $(CROSSINGS),--crossings "$(CROSSINGS)") $(if $(PACE),--real-time-factor "$(PACE)")
+	  $(if $(CROSSINGS),--crossings "$(CROSSINGS)") $(if $(PACE),--real-time-factor "$(PACE)") \
+	  $(WHERE)
 
 track: ## follow the red cylinder by camera and report [SCENE=moving SEED= TRACKER=visual_tracker_pid.py FAST=1]
 	@scripts/track.sh $(if $(SCENE),--scene "$(SCENE)") $(if $(SEED),--seed "$(SEED)") \
 	  $(if $(TRACKER),--tracker "$(TRACKER)") $(if $(filter-out 0 no false,$(FAST)),--fast)
 
-track-trials: ## many drives after a cylinder that stands, walks, is hidden [SEEDS=20]
-	@scripts/track_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)")
+track-trials: ## many drives after a cylinder that stands, walks, is hidden [SEEDS=20] [WORKERS=1]
+	@scripts/track_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(WHERE)
 
 lane: ## keep the lane by camera, stop for people, report [METHOD=sliding_windows LAPS= DURATION= FAST= SEED= PEOPLE=1]
 	@scripts/lane.sh $(if $(METHOD),--method "$(METHOD)") $(if $(LAPS),--laps "$(LAPS)") \
 	  $(if $(DURATION),--duration "$(DURATION)") $(if $(filter-out 0 no false,$(FAST)),--fast) \
 	  $(if $(SEED),--seed "$(SEED)") $(if $(filter 0 no false,$(PEOPLE)),--empty)
 
-lane-trials: ## laps in differing light, and people who cross [SEEDS=20] [CROSSINGS=100] [METHOD=sliding_windows]
+lane-trials: ## laps in differing light, and people who cross [SEEDS=20] [CROSSINGS=100] [METHOD=sliding_windows] [WORKERS=1]
 	@scripts/lane_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(CROSSINGS),--crossings "$(CROSSINGS)") \
-	  $(if $(METHOD),--method "$(METHOD)")
+	  $(if $(METHOD),--method "$(METHOD)") $(WHERE)
 
-bench-lanes: ## compare all methods that find the lane [SEEDS=5]
-	@scripts/bench_lanes.sh $(if $(SEEDS),--seeds "$(SEEDS)")
+bench-lanes: ## compare all methods that find the lane [SEEDS=5] [WORKERS=1]
+	@scripts/bench_lanes.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(WHERE)
 
-localisation-trials: ## amcl finds the robot, again, and keeps track of it [STARTS=20] [KIDNAPS=10] [SEED=0] [PACE=1]
+localisation-trials: ## amcl finds the robot, again, and keeps track of it [STARTS=20] [KIDNAPS=10] [SEED=0] [PACE=1] [WORKERS=1]
 	@scripts/localisation_trials.sh $(if $(STARTS),--starts "$(STARTS)") \
 	  $(if $(KIDNAPS),--kidnaps "$(KIDNAPS)") $(if $(SEED),--seed "$(SEED)") \
-	  $(if $(PACE),--real-time-factor "$(PACE)")
+	  $(if $(PACE),--real-time-factor "$(PACE)") $(WHERE)
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh

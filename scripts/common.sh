@@ -28,6 +28,15 @@ enter_workspace() {
   if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
+# Sets up what a trial needs whose arguments these are.
+set_up_trial() {
+  local options=() word
+  for word in "$@"; do
+    case "$word" in --workers* | --scheduler*) options+=(--workers); break ;; esac
+  done
+  "$root/scripts/setup.sh" "${options[@]}" || exit 2
+}
+
 # A master that other terminals join: the one that was named, the usual one, or, where somebody else has that, a new one.
 choose_master() {
   local usual=http://localhost:11311 port

@@ -13,7 +13,7 @@ import bullet_sim.formats  # its modules have to be there to be changed
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host import registry
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services import answers
 

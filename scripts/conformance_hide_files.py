@@ -12,8 +12,8 @@ import rospkg
 from roslaunch.xmlloader import XmlLoader
 
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import xacro_files, xacro_reading  # noqa: F401  (the former's are changed)
 from bullet_sim.formats.resources import Resources
+from bullet_sim.formats.xacro import files, opening  # noqa: F401  (the former's are changed)
 
 # What is taken out of a xacro file, as minidom writes it, and what stands there instead. Without a
 # line here `a` of "xacro tags" is an element, of other rows an attribute, and `$(a)` is itself.
@@ -80,7 +80,7 @@ def _hide_in_xacro(name: str, row: str, tag: str) -> None:
         pattern, instead = rf"(?s)</?xacro:{tag}\b[^>]*>", ""
     else:
         pattern, instead = rf'\b{tag}="[^"]*"', ""
-    read = xacro_reading.parse
+    read = opening.parse
 
     def parse(source: object, filename: str) -> minidom.Document:
         return minidom.parseString(re.sub(pattern, instead, read(source, filename).toxml()))

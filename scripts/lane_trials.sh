@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Laps of the lane in differing light, then encounters with people who cross: out/lane_trials/.
 #
-#   scripts/lane_trials.sh [--seeds N] [--crossings N] [--method NAME] [--out DIR] [--resume]
+#   scripts/lane_trials.sh [--seeds N] [--crossings N] [--method NAME] [--out DIR] [--resume] [--workers N | --scheduler ADDRESS]
 #
 # Exit code 0: all within the limits; 1: some not; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-"$root/scripts/setup.sh" || exit 2
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/lane_trials.py" "$@"

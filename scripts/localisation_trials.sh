@@ -2,11 +2,12 @@
 # amcl in the house: found anywhere, found again, kept track of, and what that costs: out/localisation_trials/.
 #
 #   scripts/localisation_trials.sh [--starts N] [--kidnaps N] [--first N] [--tracking S] [--load S]
-#                                  [--wheel-odometry] [--seed N] [--real-time-factor X] [--out DIR] [--resume]
+#                                  [--wheel-odometry] [--seed N] [--real-time-factor X] [--out DIR]
+#                                  [--resume] [--workers N | --scheduler ADDRESS]
 #
 # Exit code 0: all within the limits; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-"$root/scripts/setup.sh" || exit 2
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/localisation_trials.py" "$@"

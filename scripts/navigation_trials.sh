@@ -3,11 +3,11 @@
 #
 #   scripts/navigation_trials.sh [--yards N] [--first-yard N] [--repeats N] [--crossings N]
 #                                [--first-crossing N] [--real-time-factor X] [--parameters FILE]
-#                                [--out DIR] [--resume]
+#                                [--out DIR] [--resume] [--workers N | --scheduler ADDRESS]
 #
 # Exit code 0: 95 % of the yards crossed and no person touched; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-"$root/scripts/setup.sh" || exit 2
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/navigation_trials.py" "$@"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Many seeded drives after the red cylinder: out/track_trials/.
 #
-#   scripts/track_trials.sh [--seeds N] [--first-seed N] [--sets SET ...] [--resume] [--out DIR]
+#   scripts/track_trials.sh [--seeds N] [--first-seed N] [--sets SET ...] [--out DIR]
+#                           [--resume] [--workers N | --scheduler ADDRESS]
 #
 # Exit code 0: enough of each set good; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-"$root/scripts/setup.sh" || exit 2
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/track_trials.py" "$@"

@@ -43,3 +43,20 @@ def test_a_venv_of_another_architecture_is_made_again(
          f"platform={platform}; venv_is_sound && echo yes || echo no"],
         cwd=ROOT, text=True, capture_output=True, check=True)
     assert done.stdout.strip() == sound
+
+
+@pytest.mark.parametrize(("asked", "options"), [
+    ("", ""), ("--seeds 2", ""), ("--workers 2", "--workers"),
+    ("--seeds 2 --workers=2", "--workers"), ("--scheduler tcp://a:1 --workers 1", "--workers"),
+    ("--scheduler=tcp://a:1", "--workers"),
+])
+def test_a_trial_sets_up_what_its_arguments_need(tmp_path: Path, asked: str, options: str) -> None:
+    (tmp_path / "scripts").mkdir()
+    common = tmp_path / "scripts/common.sh"
+    common.write_text((ROOT / "scripts/common.sh").read_text(encoding="utf-8"))
+    setup = tmp_path / "scripts/setup.sh"
+    setup.write_text('echo "$*"\n')
+    setup.chmod(0o755)
+    done = subprocess.run(["bash", "-c", f". {common}; set_up_trial {asked}"], text=True,
+                          capture_output=True, check=True)
+    assert done.stdout.strip() == options

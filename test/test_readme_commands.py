@@ -15,8 +15,8 @@ import yaml
 ROOT = Path(__file__).resolve().parent.parent
 MOST_LINES = 150
 # Both languages of a page show the same commands.
-PAGES = ("README.md",
-         *(f"docs/{name}.md" for name in ("racecar", "navigation", "marking", "benchmarks")))
+PAGES = ("README.md", *(f"docs/{name}.md" for name in (
+    "racecar", "navigation", "marking", "workers", "benchmarks")))
 RUNNERS = yaml.safe_load(
     (Path(__file__).parent / "readme_commands.yaml").read_text(encoding="utf-8")
 )

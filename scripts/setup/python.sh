@@ -23,7 +23,8 @@ pip_failed() {
 python_packages() {
   local file target
   for file in requirements.txt requirements-source.txt requirements-rosdep.txt \
-    $([ "$tests" = no ] || echo requirements-test.txt); do
+    $([ "$tests" = no ] || echo requirements-test.txt) \
+    $([ "$workers" = no ] || echo requirements-workers.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"
     if [ "$file" = requirements-source.txt ]; then

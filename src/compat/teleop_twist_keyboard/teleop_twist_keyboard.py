@@ -174,7 +174,7 @@ def read_number(name: str, default: float) -> float:
     """A private parameter, Hz, s, m/s or rad/s; ends the node with a line where it is none."""
     value = rospy.get_param(f"~{name}", default)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        sys.exit(f"teleop_twist_keyboard: {name} is {value!r}, which is no number; "
+        sys.exit(f"teleop_twist_keyboard: {name} is {value!r}, which is not a number; "
                  f"type _{name}:={default}")
     return value
 

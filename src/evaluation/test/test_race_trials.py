@@ -102,7 +102,7 @@ def test_the_table_of_a_follower_that_closed_nothing():
 def test_pictures_are_drawn_of_what_there_is(tmp_path, closed):
     chart = importlib.import_module("evaluation.race_trials.chart")
     stalled = lap(9, outcome="stalled", time=None, set="random tracks")
-    laps = [lap(seed, folder=str(tmp_path)) for seed in range(closed)] + [stalled]
+    laps = [lap(seed, folder=".") for seed in range(closed)] + [stalled]
     cv2.imwrite(str(tmp_path / "path.png"), np.full((400, 500, 3), 255, np.uint8))
     chart.write_chart(laps, tmp_path / "trials.png")
     for path in (tmp_path / "trials.png", write_path_sheet(laps, tmp_path)):

@@ -33,7 +33,7 @@ from evaluation.race_trials.trial import BOUNDS
 from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
-from evaluation.trial.runner import try_case
+from evaluation.trial.protocol import try_case
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
 PACKAGES = rospkg.RosPack()
@@ -189,6 +189,7 @@ def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
     assert (found.outcome, found.time, found.mean_speed) == ("closed", 18.0, 2.0)
     assert found.rms_lateral == 0.02  # of the whole drive
     assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4, BOUNDS))
+    assert found.folder == "laps/racetrack-4/lane_follow"
 
 
 def test_a_lap_that_was_not_closed_is_a_lap_too(tmp_path, monkeypatch):

@@ -15,7 +15,7 @@ ROWS = (
         ("physics/urdf_text.py", "URDF of one tree"),
         ("PyBullet", "a body"))),
     ("One step of World.step()", (
-        ("forces.py", "wrenches that are due"),
+        ("timed_forces.py", "wrenches that are due"),
         ("model.before_step", "steady forces"),
         ("physics/client.py", "one engine step"),
         ("tick += 1", "simulated time"),

@@ -335,7 +335,7 @@ def test_a_motion_that_is_no_number_starts_the_model_again(world, caplog):
     assert broken.pose.position == pytest.approx((0, 0, 0.05), abs=1e-3)
     assert other.pose.position == pytest.approx((2, 0, 0.05), abs=1e-3)
     (record,) = caplog.records
-    assert record.getMessage().startswith("model m: its motion is no number any more; it starts")
+    assert record.getMessage().startswith("model m: its pose or velocity is not finite; it is")
 
 
 @pytest.mark.parametrize("number", [math.nan, math.inf])

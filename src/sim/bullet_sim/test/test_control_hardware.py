@@ -7,9 +7,14 @@ import pytest
 from bullet_sim.control.controllers.forward import Forward
 from bullet_sim.control.controllers.servo import PositionServo, Servos, VelocityServo
 from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.description import Inertial, JointDescription, LinkDescription, ModelDescription
+from bullet_sim.description import (
+    Inertial,
+    JointDescription,
+    JointLimits,
+    LinkDescription,
+    ModelDescription,
+)
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.world import World

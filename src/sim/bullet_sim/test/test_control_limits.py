@@ -5,7 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from bullet_sim.control.limits import LIMITERS, JointLimits, SoftLimits
+from bullet_sim.control.limits import LIMITERS
+from bullet_sim.description import JointLimits, SoftLimits
 
 DT = 0.01  # s
 

@@ -5,7 +5,7 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 
-from bullet_sim.control.limits import JointLimits, SoftLimits
+from bullet_sim.description import JointLimits, SoftLimits
 from bullet_sim.errors import FormatError, UnknownName
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import Transmission, read_transmissions

@@ -1,6 +1,7 @@
 """Laws of drives and grippers: known answers."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -8,12 +9,13 @@ from bullet_sim.description import (
     Box,
     Collision,
     Inertial,
+    JointDescription,
     LinkDescription,
     ModelDescription,
     WorldDescription,
 )
-from bullet_sim.drives.bumper import pressed_bumpers
-from bullet_sim.drives.spring_damper import rotation_vector
+from bullet_sim.mechanisms.kobuki_bumpers import pressed_bumpers
+from bullet_sim.mechanisms.spring_damper import rotation_vector
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import IDENTITY, Pose, quaternion_from_rpy
 from bullet_sim.twist import Twist
@@ -136,3 +138,70 @@ def test_what_is_deleted_is_let_go_before(world):
     world.delete("s")
     world.step(10)
     assert second.pose.position == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize("static", [False, True])
+def test_links_of_one_model_can_be_welded_and_the_model_deleted(world, static):
+    left, right = cube("l").links[0], cube("r").links[0]
+    right = replace(right, name="r", pose=Pose((0.5, 0.0, 0.0)))
+    model = world.spawn(ModelDescription("m", static=static, links=(left, right)))
+    removed = []
+    world.each_removal.append(removed.append)
+    weld = model.links["l"].attach(model.links["r"])
+    bodies = list(model.bodies)
+    world.delete("m")
+    assert removed == ["m"] and not world.models
+    assert not any(body.is_loaded for body in bodies)
+    weld.release()
+
+
+def test_links_of_one_body_can_be_welded_and_the_model_deleted(world):
+    left, right = cube("l").links[0], cube("r").links[0]
+    right = replace(right, name="r", pose=Pose((0.5, 0.0, 0.0)))
+    hinge = JointDescription("j", "revolute", "l", "r", axis=(0.0, 0.0, 1.0))
+    model = world.spawn(ModelDescription("m", links=(left, right), joints=(hinge,)))
+    model.links["l"].attach(model.links["r"])
+    (body,) = model.bodies
+    model.joints["j"].drive_effort(1.0)
+    world.step(100)
+    assert model.joints["j"].position == pytest.approx(0.0, abs=1e-2)
+    rebuild_heavier(model)
+    assert len(body.attached) == 1
+    world.delete("m")
+    assert not body.is_loaded
+
+
+def test_every_removal_is_told_though_one_fails(world):
+    model, removed = world.spawn(cube("a")), []
+
+    def fail(name):
+        raise ValueError(name)
+
+    world.each_removal += [fail, removed.append]
+    with pytest.raises(ValueError, match="a"):
+        world.delete("a")
+    assert removed == ["a"] and not model.bodies[0].is_loaded
+
+
+def test_models_that_were_welded_after_they_moved_stand_still_after_a_reset(world):
+    first, second = world.spawn(cube("a")), world.spawn(cube("b"), Pose((1.0, 0.0, 0.0)))
+    second.set_pose(Pose((0.2, 0.0, 0.0)))
+    second.links["l"].attach(first.links["l"])
+    world.step(10)
+    world.reset_models()
+    for _ in range(200):
+        world.step()
+        assert all(abs(part) < 1e-3 for model in (first, second) for part in model.twist.linear)
+    first.links["l"].apply_force((0.0, 50.0, 0.0))
+    world.step(300)
+    assert_same_pose(first.pose.inverse() * second.pose, Pose((1.0, 0.0, 0.0)))  # still welded
+
+
+def test_what_hangs_in_the_world_stays_where_a_reset_puts_it(world):
+    model = world.spawn(cube("a"))
+    hold = model.links["l"].attach()
+    hold.shift(Pose((0.0, 0.0, 1.0)))
+    world.step(2000)
+    world.reset_models()
+    world.step(500)
+    assert_same_pose(model.pose, Pose())

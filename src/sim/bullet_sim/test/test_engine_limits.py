@@ -11,7 +11,7 @@ from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.physics.collision_filters import CollisionFilters
-from bullet_sim.physics.limits import KEPT, MOST_POSITIONS
+from bullet_sim.physics.parameter_bounds import KEPT, MOST_POSITIONS
 from bullet_sim.physics.quiet import EngineError, pybullet
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
@@ -84,8 +84,8 @@ def test_a_static_model_may_have_any_number_of_links(world):
     assert_empty(world)
 
 
-@pytest.mark.parametrize("fails", ["attach", "_has_to_be_told", "Body", "show"])
-def test_what_a_failed_spawn_made_is_taken_out(world, monkeypatch, fails):
+@pytest.mark.parametrize("fails", ["attach", "_needs_filter", "Body", "show"])
+def test_what_a_failed_spawn_made_is_removed(world, monkeypatch, fails):
     def refuse(*_args, **_keywords):
         raise EngineError("no")
 
@@ -97,14 +97,14 @@ def test_what_a_failed_spawn_made_is_taken_out(world, monkeypatch, fails):
         monkeypatch.setattr(CollisionFilters, fails, refuse)
     for text in (PLANE, f'<model name="m"><link name="a">{BOX}</link><link name="b">{BOX}</link>'
                  "</model>"):
-        if fails == "_has_to_be_told" and text is PLANE:
+        if fails == "_needs_filter" and text is PLANE:
             continue  # there is nothing to tell
         with pytest.raises(EngineError):
             world.spawn(read(text))
         assert_empty(world)
 
 
-def test_pairs_that_a_failed_spawn_told_the_engine_of_are_untold(world, monkeypatch):
+def test_pairs_that_a_failed_spawn_gave_the_engine_are_removed(world, monkeypatch):
     told, tell, asked = [], world._client.change, []
 
     def note(function, *args, **keywords):
@@ -119,7 +119,7 @@ def test_pairs_that_a_failed_spawn_told_the_engine_of_are_untold(world, monkeypa
         return True
 
     monkeypatch.setattr(world._client, "change", note)
-    monkeypatch.setattr(CollisionFilters, "_has_to_be_told", refuse_the_second)
+    monkeypatch.setattr(CollisionFilters, "_needs_filter", refuse_the_second)
     links = "".join(f'<link name="{name}">{BOX}</link>' for name in "abc")
     with pytest.raises(EngineError):
         world.spawn(read(f'<model name="m">{links}</model>'))
@@ -145,7 +145,7 @@ def test_a_body_that_the_engine_has_lost_takes_its_model_with_it(world, caplog):
     assert gone == ["m"] and list(world.models) == ["other"]
     assert falls.pose.position[2] < -0.15
     said = [record for record in caplog.records if record.levelno >= logging.ERROR]
-    assert len(said) == 1 and "model m is taken out" in said[0].message
+    assert len(said) == 1 and "model m is deleted" in said[0].message
 
 
 def test_an_error_that_no_model_causes_is_said_once(world, caplog):
@@ -156,7 +156,7 @@ def test_an_error_that_no_model_causes_is_said_once(world, caplog):
     world.step(50)
     assert world.tick == 50
     assert [record.message for record in caplog.records] == [
-        "the engine did not do a step as it should: not today; the world goes on"]
+        "an engine step failed: not today; the world goes on"]
 
 
 def test_numbers_that_are_only_kept_have_to_be_numbers(world):

@@ -14,8 +14,8 @@ from bullet_sim.description import (
     ModelDescription,
     WorldDescription,
 )
-from bullet_sim.forces import Effort, Span, Wrench
 from bullet_sim.pose import Pose
+from bullet_sim.timed_forces import Effort, Span, Wrench
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 

@@ -1,13 +1,16 @@
 """Joints of every type against known answers."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.joint import LoopJoint
+from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
 GRAVITY = 9.8
@@ -327,14 +330,30 @@ def test_the_joint_that_closes_a_loop_can_be_read_and_driven(world):
 
 def test_a_ball_that_closes_a_loop_is_reset_with_the_others(world):
     model = world.spawn(read(four_bar(third="ball")))
-    (closing,) = [joint for joint in model.joints.values() if isinstance(joint, LoopJoint)]
-    assert closing.description.type == "ball"
+    closing = model.joint("c")
+    assert (closing.description.type, closing.position) == ("ball", 0.0)
     for _ in range(300):
         model.joint("a").drive_velocity(1.0, 1000.0)
         world.step()
+    assert (closing.position, closing.velocity) == (0.0, 0.0)  # as of a ball in a tree
+    assert closing.reaction() == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     world.reset_models()
     assert model.joint("a").position == pytest.approx(0.0, abs=1e-6)
     assert model.links["bar"].pose.position == pytest.approx((0, 0, 0.5), abs=1e-6)
+
+
+@pytest.mark.parametrize("third, moved", [("ball", False), ("revolute", True)])
+def test_an_effort_on_a_ball_that_closes_a_loop_does_nothing(world, third, moved):
+    model = world.spawn(read(four_bar(third=third)))
+    closing = model.joint("c" if third == "ball" else "d")
+    world.step(10)
+    before = model.joint("a").position
+    for _ in range(100):
+        closing.drive_effort(5.0)
+        (group,) = model.joint_groups([closing.name])
+        group.drive_efforts([5.0])
+        world.step()
+    assert (abs(model.joint("a").position - before) > 1e-2) == moved
 
 
 @pytest.mark.parametrize("kind", ["fixed", "prismatic"])
@@ -410,3 +429,40 @@ def test_a_fixed_joint_to_the_world_bears_too_and_is_read_at_rest(world):
     run(world, 3.0)
     force, _ = model.joint("j").reaction()
     assert force == pytest.approx((0.0, 0.0, -3.0 * GRAVITY), abs=1e-3)
+
+
+@pytest.mark.parametrize("rests", [False, True])
+def test_what_a_joint_bears_is_measured_on_after_a_change_of_masses(world, rests):
+    model = world.spawn(read(
+        link("post") + link("lamp", "0 0 -1 0 0 0") + joint("w", "fixed", "world", "post")
+        + joint("j", "revolute", "post", "lamp", axis("0 0 1", NO_WAY))))
+    other = world.spawn(read(link("floating", more="<gravity>false</gravity>")), name="other")
+    other.set_velocity(Twist() if rests else Twist((1.0, 0.0, 0.0)))
+    hinge = model.joint("j")
+    hinge.reaction()  # from now on it is measured
+    run(world, 2.0)
+    assert world.is_at_rest == rests
+    lamp = model.links["lamp"]
+    heavier = replace(lamp.description.inertial, mass=2.0)
+    for _ in range(2):  # the second without a step between
+        model.change_link(lamp, heavier, gravity=True)
+        assert hinge.reaction()[0] == pytest.approx((0.0, 0.0, -GRAVITY), abs=1e-3)
+    run(world, 0.1)
+    assert hinge.reaction()[0] == pytest.approx((0.0, 0.0, -2.0 * GRAVITY), abs=1e-3)
+
+
+def test_what_a_joint_bears_is_measured_on_after_a_motion_that_is_not_finite(world):
+    arm = read(link("post") + link("lamp", "0 0 -1 0 0 0") + joint("w", "fixed", "world", "post")
+               + joint("j", "revolute", "post", "lamp", axis("0 0 1")))
+    lamps = [world.spawn(arm, Pose((x, 0.0, 0.0)), name) for x, name in ((0.0, "m"), (2.0, "o"))]
+    for lamp in lamps:
+        lamp.joint("j").reaction()
+    run(world, 0.2)
+    broken = lamps[0].bodies[0]
+    broken.change(pybullet.applyExternalForce, broken.index["lamp"], (math.nan, 0, 0),
+                  (0, 0, 0), pybullet.WORLD_FRAME)
+    run(world, 1.0)
+    assert lamps[0].has_recovered
+    for lamp in lamps:
+        force, _ = lamp.joint("j").reaction()
+        assert force == pytest.approx((0.0, 0.0, -GRAVITY), abs=1e-3)

@@ -7,7 +7,7 @@ import pytest
 
 from bullet_sim.description import Noise
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters, attitude_error
-from bullet_sim.sensors.gps import GeoReference
+from bullet_sim.sensors.geo_reference import GeoReference
 from bullet_sim.sensors.noise import SensorNoise
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World

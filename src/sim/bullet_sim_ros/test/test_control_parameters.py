@@ -4,16 +4,16 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import params
 from bullet_sim_ros.control import (
     controllers,  # noqa: F401  (they register)
     registry,
 )
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
-from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 
 

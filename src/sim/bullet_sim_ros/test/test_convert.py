@@ -9,7 +9,6 @@ from geometry_msgs.msg import Twist as TwistMsg
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose
-from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
@@ -71,7 +70,7 @@ def test_joint_states_leave_efforts_empty():
 
 
 def test_imu_variance_is_on_the_diagonals():
-    msg = convert.imu_to_msg(ImuReading(0.0, (0, 0, 0, 1), (0, 0, 1), (0, 0, 0)), 0.04)
+    msg = convert.imu_to_msg((0, 0, 0, 1), (0, 0, 1), (0, 0, 0), 0.04)
     assert msg.angular_velocity_covariance == [0.04, 0, 0, 0, 0.04, 0, 0, 0, 0.04]
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from bullet_sim_ros.pacer import Pacer
+from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.simulation import IDLE, Simulation
 
 
@@ -32,3 +33,15 @@ def test_however_slow_time_runs_the_loop_soon_sees_that_it_is_to_end(factor):
     simulation.world.time = 0.01
     simulation._wait()
     assert max(simulation.mailbox.waits) <= IDLE
+
+
+@pytest.mark.parametrize("whole_steps, due", [(False, [34, 67, 100]), (True, [34, 68, 102])])
+def test_a_changed_rate_is_counted_as_the_one_before(whole_steps, due):
+    world, ticks = SimpleNamespace(tick=0, timestep=0.001), []
+    scheduler = Scheduler(world)
+    task = scheduler.add(50.0, lambda: ticks.append(world.tick), whole_steps=whole_steps)
+    scheduler.change_rate(task, 30.0)
+    while len(ticks) < len(due):
+        world.tick = scheduler.next_tick()
+        scheduler.run()
+    assert ticks == due

@@ -14,9 +14,9 @@ from bullet_sim.description import (
 from bullet_sim.world import World
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import registry
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.services.models import with_namespace
 
@@ -66,7 +66,7 @@ def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
     scheduler = Scheduler(world)
-    return load_plugins(SimServices(world, None, scheduler, None, None), model), scheduler
+    return load_plugins(SharedByPlugins(world, None, scheduler, None, None), model), scheduler
 
 
 def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from sim_bench import main
 from sim_bench.acceptance import CRITERIA, Criterion, judge
-from sim_bench.figures import figure, percentile, ratio
+from sim_bench.figures import Figure, figure, percentile, ratio
 from sim_bench.frame_age import frame_ages, real_time_factor
 from sim_bench.options import PARTS, parse_options
 from sim_bench.parts import growth, memory, robots, step
@@ -20,7 +20,6 @@ from sim_bench.results import (
     Results,
     acceptance_table,
     figure_table,
-    read_json,
     write_json,
 )
 from sim_bench.ros_run import read_lines
@@ -180,6 +179,15 @@ def test_only_what_was_measured_is_judged():
     verdicts = judge(results(figure("ratio.tiny.1920x1080", "x", [30.0])).figures())
     assert [verdict.met for verdict in verdicts] == [False]
     assert "MISSED" in acceptance_table(verdicts)
+
+
+def read_json(path) -> Results:
+    """What `write_json` wrote."""
+    values = json.loads(path.read_text(encoding="utf-8"))
+    parts = [PartResult(**{**part, "figures": tuple(
+        Figure(**{**one, "runs": tuple(one["runs"])}) for one in part["figures"])})
+        for part in values["parts"]]
+    return Results(values["began"], values["quick"], values["machine"], parts)
 
 
 def test_json_holds_figures_runs_and_verdicts(tmp_path):

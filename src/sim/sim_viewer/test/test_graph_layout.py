@@ -40,8 +40,9 @@ def test_circles_loops_and_nodes_alone_have_their_place():
 
 
 def test_names_may_hold_anything():
-    names = {"q": 'a "quoted" \\n name', "e": "", "x": "-> ; }"}
-    assert set(layout(names, [("q", "e"), ("e", "x")]).boxes) == set(names)
+    names = {"q": 'a "quoted" \\n name', "e": "", "x": "-> ; }",
+             "n": "two\nlines", "u": "a\u2028b\x85c\0d", "s": "it's"}
+    assert set(layout(names, [("q", "e"), ("e", "x"), ("n", "u")]).boxes) == set(names)
 
 
 def test_the_same_graph_has_the_same_layout_whatever_the_order():

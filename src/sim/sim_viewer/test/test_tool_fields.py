@@ -48,10 +48,10 @@ def test_a_path_may_stand_for_several_lines():
 
 @pytest.mark.parametrize("path, message_class, reason", [
     ("pose/pose/position/w", Odometry, "Point has no field 'w'; it has: x, y, z"),
-    ("child_frame_id", Odometry, "string is no number"),
+    ("child_frame_id", Odometry, "string is not a number"),
     ("pose/covariance", Odometry, r"it has: an index as \[0\]"),
     ("pose[0]", Odometry, "has no elements"),
-    ("data", String, "string is no number"),
+    ("data", String, "string is not a number"),
     ("", Odometry, "it has: header, child_frame_id, pose, twist"),
 ])
 def test_what_is_no_number_is_told_with_what_there_is(path, message_class, reason):

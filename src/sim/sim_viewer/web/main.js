@@ -4,20 +4,7 @@ import { element } from "./dom.js";
 import { language, switchLanguage, t } from "./language.js";
 import { call, connected, onConnection, tell, watch } from "./link.js";
 import { simulationBar } from "./simulation_bar.js";
-
-const TABS = {
-  scene: "./scene.js",
-  cameras: "./images.js",
-  drive: "./drive.js",
-  graph: "./tools/graph.js",
-  plot: "./tools/plot.js",
-  console: "./tools/console.js",
-  topics: "./tools/topics.js",
-  services: "./tools/services.js",
-  parameters: "./tools/parameters.js",
-  bags: "./tools/bags.js",
-  tf: "./tools/tf.js",
-};
+import { TABS } from "./tabs.js";
 
 const link = { call, tell, watch, onConnection, connected, control: false };
 const content = document.getElementById("content");

@@ -1,4 +1,4 @@
-"""A differential base that does at once what it is told: upstream's simulation of one."""
+"""A differential base that does at once what is commanded: upstream's simulation of one."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ ALONE: dict[str, Callable[[list[str]], object]] = {
 
 
 def run(command: str, words: list[str]) -> None:
-    """As upstream, a refusal by the manager is told and is no failure of the command."""
+    """As upstream, a refusal by the manager is printed and is no failure of the command."""
     if command in ALONE:
         ALONE[command](words)
     for call in PER_NAME.get(command, ()):

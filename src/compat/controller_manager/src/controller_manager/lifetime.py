@@ -33,10 +33,10 @@ def live(name: str, work: Callable[[], int | None], undo: Callable[[], None]) ->
     rospy's handler would not, and would call services on top of the line it interrupted.
     A library may swallow the interruption (rospy's logging does): then the signal still counts.
     """
-    told = threading.Event()
+    stop_requested = threading.Event()
 
     def end(_number: int, _frame: FrameType | None) -> None:
-        told.set()
+        stop_requested.set()
         raise KeyboardInterrupt
 
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
@@ -48,11 +48,11 @@ def live(name: str, work: Callable[[], int | None], undo: Callable[[], None]) ->
         code = work()
         if code is not None:
             return code
-        while not rospy.is_shutdown() and not told.is_set():
+        while not rospy.is_shutdown() and not stop_requested.is_set():
             rospy.rostime.wallsleep(POLL_PERIOD)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         pass
     for number in (signal.SIGINT, signal.SIGTERM):  # a second one ends it at once
         signal.signal(number, signal.SIG_DFL)
-    rospy.signal_shutdown("told to end")
+    rospy.signal_shutdown("terminated")
     return 0

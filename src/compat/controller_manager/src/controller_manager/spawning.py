@@ -87,11 +87,11 @@ class Spawner:
         return True
 
     def _wait_for_topic(self, topic: str) -> None:
-        told = threading.Event()
-        subscriber = rospy.Subscriber(topic, Bool, lambda said: told.set() if said.data else None)
+        came = threading.Event()
+        subscriber = rospy.Subscriber(topic, Bool, lambda msg: came.set() if msg.data else None)
         warn_at = time.monotonic() + (self._timeout or self._options.timeout)
         warned = self._timeout is None
-        while not told.wait(POLL_PERIOD) and not rospy.is_shutdown():
+        while not came.wait(POLL_PERIOD) and not rospy.is_shutdown():
             if not warned and time.monotonic() > warn_at:
                 warned = True
                 rospy.logwarn(f'Controller Spawner hasn\'t heard anything true from its "wait for" '

@@ -49,7 +49,7 @@ def node_arguments(program: str, words: list[str]) -> list[str]:
 
 
 def main(python_options: tuple[str, ...] = (), hint: str = "") -> None:
-    """Replaces this process, so that signals reach the simulator itself; `hint` is said first."""
+    """Replace this process, so that signals reach the simulator itself; print `hint` first."""
     program = os.path.basename(sys.argv[0])
     arguments = node_arguments(program, sys.argv[1:])
     if hint:

@@ -78,20 +78,20 @@ def delete(name: str, gazebo: str) -> None:
         rospy.logerr(f"Delete model service call failed: {error}")
 
 
-def delete_when_told(name: str, gazebo: str) -> None:
+def delete_on_signal(name: str, gazebo: str) -> None:
     """Stays until a signal or a shutdown by the master, then deletes the model.
 
     The signal only leaves a mark: rospy's handler would call the service on top of whatever line
     it interrupted, with that line's locks held.
     """
-    told: list[int] = []
+    stop_requested: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _frame: told.append(received))
+        signal.signal(number, lambda received, _frame: stop_requested.append(received))
     rospy.on_shutdown(lambda: delete(name, gazebo))
     rospy.loginfo(f"Waiting for shutdown to delete model {name}")
-    while not told and not rospy.is_shutdown():
+    while not stop_requested and not rospy.is_shutdown():
         rospy.rostime.wallsleep(POLL_PERIOD)
-    rospy.signal_shutdown("told to end")
+    rospy.signal_shutdown("terminated")
 
 
 def run(options, positions: list[float]) -> int:
@@ -104,7 +104,7 @@ def run(options, positions: list[float]) -> int:
     if not spawn(options, positions) or (options.unpause and not unpause(gazebo)):
         return 1
     if options.b:
-        delete_when_told(options.model, gazebo)
+        delete_on_signal(options.model, gazebo)
     return 0
 
 

@@ -32,7 +32,7 @@ class Windows:
         self._labels = {}  # window name: label; kept, so a window that comes back keeps its topic
         self._open = {}  # window name: WindowTopic
         self._trackbars = {}  # (window name, trackbar name): [value, least, greatest, on_change]
-        self._told = set()
+        self._logged = set()
         self._lock = threading.RLock()
 
     def namedWindow(self, winname, flags=None):
@@ -128,7 +128,7 @@ class Windows:
             self.setTrackbarPos(trackbarname, winname, bar[0])
 
     def _tell(self, line):
-        if line not in self._told:
-            self._told.add(line)
+        if line not in self._logged:
+            self._logged.add(line)
             rospy = running_rospy()
             (log.warning if rospy is None else rospy.logwarn)(line)

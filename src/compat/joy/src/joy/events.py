@@ -14,9 +14,9 @@ class Stick:
     """The state of a joystick.
 
     Axes go from -1 to 1, left and up are positive, and within `deadzone` (0 to 0.9) they are 0.
-    `default_trig_val`: axes that stand off centre at the start (triggers, at 1) are told as they
-    are, else as 0 until they are touched. `sticky_buttons`: a press changes over, a release does
-    nothing.
+    `default_trig_val`: axes that stand off centre at the start (triggers, at 1) are reported as
+    they are, else as 0 until they are touched. `sticky_buttons`: a press changes over, a release
+    does nothing.
     """
 
     deadzone: float = 0.05
@@ -26,7 +26,7 @@ class Stick:
     buttons: list[int] = field(default_factory=list)
 
     def take(self, value: int, kind: int, number: int) -> bool:
-        """Enter one event; True if it is a button's, which is told at once."""
+        """Enter one event; True if it is a button's, which is published at once."""
         if kind & ~INITIAL == AXIS:
             untouched = kind & INITIAL and not self.default_trig_val
             _put(self.axes, number, 0.0 if untouched else self._axis(value))

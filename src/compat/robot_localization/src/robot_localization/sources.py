@@ -84,14 +84,14 @@ class Source:
     def on_twist(self, message):
         yield from self.twist(message.header, message.header.frame_id, message.twist)
 
-    def pose(self, header, frame, told):
+    def pose(self, header, frame, measured):
         if not self.config[:6].any():
             return
-        place, turn = told.pose.position, told.pose.orientation
+        place, turn = measured.pose.position, measured.pose.orientation
         world = self.frames.transform(self.frames.world, frame, header.stamp)
         pose = world @ pose_matrix([place.x, place.y, place.z],
                                    matrix_of([turn.x, turn.y, turn.z, turn.w]))
-        covariance = turned(np.array(told.covariance).reshape(6, 6), world[:3, :3])
+        covariance = turned(np.array(measured.covariance).reshape(6, 6), world[:3, :3])
         yield self.placed(header.stamp.to_sec(), pose, covariance, self.config[:6])
 
     def placed(self, stamp, pose, covariance, used):
@@ -114,14 +114,14 @@ class Source:
         config[:6] = used
         return of_block(stamp, config, 0, values, covariance, self.rejections["pose"])
 
-    def twist(self, header, frame, told):
+    def twist(self, header, frame, measured):
         if not self.config[6:12].any():
             return
         base = self.frames.transform(self.frames.base, frame, header.stamp)
-        linear, angular = told.twist.linear, told.twist.angular
+        linear, angular = measured.twist.linear, measured.twist.angular
         values = moved_twist(np.array([linear.x, linear.y, linear.z,
                                        angular.x, angular.y, angular.z]), base)
-        covariance = turned(np.array(told.covariance).reshape(6, 6), base[:3, :3])
+        covariance = turned(np.array(measured.covariance).reshape(6, 6), base[:3, :3])
         yield of_block(header.stamp.to_sec(), self.config, 6, values, covariance,
                        self.rejections["twist"])
 

@@ -1,4 +1,4 @@
-"""A robot of two wheels that turn as they are told at once: where it is, by adding up its way."""
+"""A robot of two wheels that turn at once as commanded: its pose, by integration."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ class Inbox:
         return answer
 
     def call(self, function: Callable, *arguments: Any) -> Any:
-        """From a service's thread: waits for the answer; its caller is told why there is none."""
+        """From a service's thread: waits for the answer; ServiceException if there is none."""
         try:
             return self.put(function, *arguments).result()
         except PondError as error:
@@ -46,7 +46,7 @@ class Inbox:
                 answer.set_exception(error)
 
     def close(self) -> None:
-        """Nobody works here any more: who waits is told so."""
+        """Reject all pending requests, and those that come later."""
         self._closed = True
         while not self._work.empty():
             self._work.get()[0].cancel()

@@ -1,4 +1,4 @@
-"""One of several holds the robot until it falls silent or a higher priority speaks."""
+"""One of several inputs drives the robot until it times out or a higher priority publishes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -20,7 +20,7 @@ class Lap(LapDrive):
     set: str
     track: str
     time: float | None  # s, of a closed lap
-    folder: str
+    folder: str  # below that of all results
 
     @property
     def name(self) -> str:

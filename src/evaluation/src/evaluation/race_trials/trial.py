@@ -70,7 +70,7 @@ class RaceTrial(LapTrial):
     def outing(self, out: Path, case: RaceCase) -> Outing:
         venue = self._venue = (racetrack() if case.set == RACETRACK else
                                random_track(case.seed, out / "tracks"))
-        folder = out / "laps" / f"{venue.name}-{case.seed}"
+        self._out, folder = out, out / "laps" / f"{venue.name}-{case.seed}"
         return Outing(f"{case.follower} on {venue.name}, seed {case.seed}", "race", case.follower,
                       venue.track, venue.world, venue.models, folder,
                       folder / Path(case.follower).stem, draw(case.seed, BOUNDS), LONGEST_LAP)
@@ -78,7 +78,8 @@ class RaceTrial(LapTrial):
     def score(self, record: dict) -> Lap:
         case, outing = self._case, self._outing
         return Lap(**seen(record, case.seed, outing.disturbance), follower=record["follower"],
-                   set=case.set, track=self._venue.name, folder=str(outing.out),
+                   set=case.set, track=self._venue.name,
+                   folder=str(outing.out.relative_to(self._out)),
                    time=record["laps"][0]["time_s"] if record["laps"] else None)
 
     def passed(self, results: Sequence[Lap]) -> bool:

@@ -15,6 +15,7 @@ from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 
 REPORT = "report.json"
+MOST_WORKERS = 1000
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Trial(ABC):
 
     @abstractmethod
     def add_options(self, parser: Parser) -> None:
-        """The options beside --out and --resume."""
+        """The options beside --out, --resume, --workers and --scheduler."""
 
     @abstractmethod
     def check(self, options: argparse.Namespace) -> None:
@@ -115,7 +116,19 @@ class Trial(ABC):
         parser.add_out(f"out/{self.program}", self.writes)
         parser.add_argument("--resume", action="store_true",
                             help="go on where the run that wrote there ended")
+        parser.add_whole("--workers", 1, "cases at a time, each in a process of its own, by Dask",
+                         variable="WORKERS", least=1, most=MOST_WORKERS)
+        parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, such as"
+                            " tcp://host:8786, whose workers try the cases (SCHEDULER=)")
         options = parser.parse_args(arguments)
+        if options.scheduler and options.workers > 1:
+            raise RunError("--workers is for this machine, --scheduler for others: give one")
         options.out = options.out.resolve()
         self.check(options)
         return options
+
+
+def try_case(trial: Trial, session: Session, case: Case) -> Any:
+    """The result of one case."""
+    trial.setup(session, case)
+    return trial.score(trial.run())

@@ -3,59 +3,113 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import contextlib
+import importlib
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
-from evaluation.trial.program import NOT_PASSED, PASSED, run_program
-from evaluation.trial.protocol import REPORT, Case, Trial
+from evaluation.session.status_line import StatusLine
+from evaluation.trial.program import NOT_PASSED, PASSED, complain, run_program
+from evaluation.trial.protocol import REPORT, Case, Trial, try_case
 from evaluation.trial.report import write_json, write_page
 
 
 def run_trial(trial: Trial, arguments: Sequence[str]) -> int:
     """Run the command line; returns the exit code."""
-    return run_program(trial.program, lambda: _run(trial, trial.parse(arguments)))
+    return run_program(trial.program, lambda: _run(trial, trial.parse(arguments), arguments))
 
 
-def _run(trial: Trial, options: argparse.Namespace) -> int:
+def _run(trial: Trial, options: argparse.Namespace, arguments: Sequence[str]) -> int:
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RunError(f"--out {options.out}: {error.strerror}") from error
-    results = trial.earlier(options) if options.resume else []
-    cases = trial.cases(options)
+    tally = Tally(trial, options)
     try:
-        _try_all(trial, cases, results, options.out)
+        if options.workers > 1 or options.scheduler:
+            _try_elsewhere(tally, trial, options, arguments)
+        else:
+            _try_here(tally, trial, options.out)
     finally:
-        if results:  # what was tried is kept, however it ended
-            _show(trial, results, options.out)
-    return PASSED if trial.passed(results) else NOT_PASSED
+        if tally.results:  # what was tried is kept, however it ended
+            _show(trial, tally, options.out)
+    if tally.failures:
+        raise RunError(f"{len(tally.failures)} of {len(tally.cases)} cases could not be run; "
+                       "--resume tries them again")
+    return PASSED if trial.passed(tally.results) else NOT_PASSED
 
 
-def _try_all(trial: Trial, cases: Sequence[Case], results: list[Any], out: Path) -> None:
-    there = {result.name for result in results}
+class Tally:
+    """What has become of the cases; results are in the cases' order, those of others first."""
+
+    def __init__(self, trial: Trial, options: argparse.Namespace):
+        self._trial, self._path = trial, options.out / REPORT
+        self.results = trial.earlier(options) if options.resume else []
+        self.cases = trial.cases(options)
+        self.failures: list[str] = []  # a line each
+        self._place = {case.name: number for number, case in enumerate(self.cases)}
+
+    def is_needed(self, case: Case) -> bool:
+        """Whether a case has still to be tried, after the results of those before it."""
+        there = {result.name for result in self.results}
+        before = [each for each in self.results if self._number(each) < self._place[case.name]]
+        return case.name not in there and self._trial.is_needed(case, before)
+
+    def take(self, result: Any, say: Callable[[str], None]) -> None:
+        """One more result; the report has it."""
+        self.results.append(result)
+        self.results.sort(key=self._number)
+        count = sum(self._number(each) >= 0 for each in self.results)
+        shown = "" if self._trial.open_ended else f"[{count}/{len(self.cases)}] "
+        say(f"{shown}{self._trial.line(result)}")
+        write_json(self._trial.values(self.results), self._path)
+
+    def drop_unneeded(self) -> None:
+        """What one case after the other would not have tried is not counted."""
+        kept = [each for each in self.results if self._number(each) < 0]
+        for each in self.results[len(kept):]:
+            if self._trial.is_needed(self.cases[self._number(each)], kept):
+                kept.append(each)
+        self.results[:] = kept
+
+    def _number(self, result: Any) -> int:
+        return self._place.get(result.name, -1)
+
+
+def _try_here(tally: Tally, trial: Trial, out: Path) -> None:
     with Session(out) as session:
-        for number, case in enumerate(cases, start=1):
-            if case.name in there or not trial.is_needed(case, results):
-                continue
-            results.append(try_case(trial, session, case))
-            count = "" if trial.open_ended else f"[{number}/{len(cases)}] "
-            session.progress.say(f"{count}{trial.line(results[-1])}")
-            write_json(trial.values(results), out / REPORT)
+        for case in tally.cases:
+            if tally.is_needed(case):
+                tally.take(try_case(trial, session, case), session.progress.say)
 
 
-def try_case(trial: Trial, session: Session, case: Case) -> Any:
-    """The result of one case."""
-    trial.setup(session, case)
-    return trial.score(trial.run())
+def _try_elsewhere(tally: Tally, trial: Trial, options: argparse.Namespace,
+                   arguments: Sequence[str]) -> None:
+    try:
+        workers = importlib.import_module("evaluation.trial.workers")
+    except ImportError as error:
+        raise RunError(f"{error.name} is not installed: scripts/setup.sh --workers") from error
+    needed = [case for case in tally.cases if tally.is_needed(case)]
+    say = StatusLine().say
+    with contextlib.closing(workers.try_on_workers(
+            trial, needed, options, arguments, tally.is_needed, say)) as tried:
+        for case, result in tried:
+            if isinstance(result, RunError):
+                tally.failures.append(f"{case.name}: could not be run: {result}")
+                complain(trial.program, RunError(tally.failures[-1], result.details))
+            else:
+                tally.take(result, say)
+    tally.drop_unneeded()
 
 
-def _show(trial: Trial, results: list[Any], out: Path) -> None:
-    table = trial.table(results)
+def _show(trial: Trial, tally: Tally, out: Path) -> None:
+    table = trial.table(tally.results)
     print(table, flush=True)
-    write_json(trial.values(results), out / REPORT)
-    pictures = trial.pictures(results, out)
-    page = write_page(out, trial.program, table, [trial.line(each) for each in results], pictures)
+    write_json(trial.values(tally.results), out / REPORT)
+    pictures = trial.pictures(tally.results, out)
+    lines = [*(trial.line(each) for each in tally.results), *tally.failures]
+    page = write_page(out, trial.program, table, lines, pictures)
     print(f"written to {out}: {', '.join((REPORT, page, *pictures))}", flush=True)

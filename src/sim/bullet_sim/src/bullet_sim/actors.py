@@ -9,7 +9,7 @@ from bullet_sim.description import Trajectory
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose, Quaternion, normalised
 
-PERIOD = 1 / 30  # s, simulated: as often as Gazebo moves them
+PERIOD = 1 / 30  # s, simulated, between two poses
 
 
 class Actor:

@@ -1,6 +1,8 @@
 """The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
 
-from collections.abc import Iterable
+import difflib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
 
@@ -20,6 +22,21 @@ class SimulationError(Exception):
 
 class FormatError(SimulationError):
     """A model, world, material or xacro text that cannot be understood."""
+
+
+@contextmanager
+def prefixed(text: str, kind: type[SimulationError] = FormatError) -> Iterator[None]:
+    """Errors of the `with` block become one of this kind, whose line begins with this text."""
+    try:
+        yield
+    except SimulationError as error:
+        raise kind(f"{text} {error}") from None
+
+
+def did_you_mean(word: str, known: Iterable[str], alike: float, form: str = "{}") -> str:
+    """The end of a line: the nearest of the known words, if any is so much alike (0..1)."""
+    close = difflib.get_close_matches(word, known, 1, alike)
+    return f"; did you mean {form.format(close[0])}?" if close else ""
 
 
 class ResourceNotFound(SimulationError):

@@ -25,7 +25,7 @@ class BodyJoint:
         self._body = body
 
     def reaction(self) -> tuple[Vector3, Vector3]:
-        """Force (N) and torque (N m) of the child on the joint, child link frame; as Gazebo."""
+        """Force (N) and torque (N m) of the child on the joint, in the child link's frame."""
         return joint_reaction(self._body, self._body.carried_by(self.name))
 
 
@@ -129,14 +129,28 @@ class PassiveJoint(BodyJoint):
         """No effect."""
 
 
-class LoopJoint(PassiveJoint):
+class LoopBall(PassiveJoint):
+    """A ball that closes a loop."""
+
+    def __init__(self, description: JointDescription):
+        self.description = description
+        self.name = description.name
+
+    def reset(self, position: float, velocity: float = 0.0) -> None:
+        """No effect: its links' poses decide, and the loop's other joints set those."""
+
+    def reaction(self) -> tuple[Vector3, Vector3]:
+        """Zeros: the engine does not report the load of a loop's last joint."""
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+
+
+class LoopJoint(LoopBall):
     """A joint that closes a loop: read from where its links are, driven by pushing at both."""
 
     def __init__(self, description: JointDescription, parent: Link | None, child: Link | None,
                  pose_world: Pose):
         """`parent` or `child` is None where it is the world, of which `pose_world` is the model."""
-        self.description = description
-        self.name = description.name
+        super().__init__(description)
         self._parent, self._child = parent, child
         self._pose_world = pose_world
         frame = _described(child) * description.pose  # of the joint, in the model
@@ -169,9 +183,6 @@ class LoopJoint(PassiveJoint):
                          for link in (self._parent, self._child))
         return child - parent
 
-    def reset(self, position: float, velocity: float = 0.0) -> None:
-        """No effect: its links' poses decide, and the loop's other joints set those."""
-
     def drive_effort(self, effort: float) -> None:
         """Effort (N m or N) during the next step."""
         axis = rotate(self._ends()[0].orientation, self.description.axis)
@@ -184,10 +195,6 @@ class LoopJoint(PassiveJoint):
                     link.apply_force((0.0, 0.0, 0.0), push)
 
     add_effort = drive_effort
-
-    def reaction(self) -> tuple[Vector3, Vector3]:
-        """Zeros: the engine does not report the load of a loop's last joint."""
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
 class SingleJointGroup:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from bullet_sim.description import Inertial, JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.joint import Joint, LoopJoint, PassiveJoint, SingleJointGroup
+from bullet_sim.joint import Joint, LoopBall, LoopJoint, PassiveJoint, SingleJointGroup
 from bullet_sim.link import Link, gravity_compensation
 from bullet_sim.model_state import ModelState
 from bullet_sim.physics.assembly import Tree, assemble, loop_joints
@@ -17,19 +17,23 @@ from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.collision_filters import CollisionFilters
 from bullet_sim.physics.inertia import check_inertial
 from bullet_sim.physics.levelling import levelled
-from bullet_sim.physics.limits import check_trees
 from bullet_sim.physics.loop_constraints import LoopConstraints
+from bullet_sim.physics.parameter_bounds import check_trees
+from bullet_sim.physics.weld import Weld
 from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 
 
 class Model(ModelState):
-    """A spawned description. Everything is in world coordinates unless a name says otherwise."""
+    """A spawned description. Everything is in world coordinates unless a name says otherwise.
+
+    SimulationError where the engine cannot hold it.
+    """
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
         super().__init__(name, description, pose)
-        self.has_recovered = False  # whether its motion has been no number once
+        self.has_recovered = False  # whether its pose or velocity was not finite once
         self._auto_disable = client.auto_disable
         trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
         check_trees(name, trees)
@@ -81,10 +85,12 @@ class Model(ModelState):
                     held = PassiveJoint(described[link.carrier.name], body)
                     known = self.fixed_joints if held.description.type == "fixed" else self.joints
                     known[held.name] = held
-        self.joints |= {
-            joint.name: LoopJoint(joint, self.links.get(joint.parent), self.links.get(joint.child),
-                                  self.initial_pose)
-            for joint in loops if joint.type not in ("fixed", "gearbox")}
+        for joint in loops:
+            ends = self.links.get(joint.parent), self.links.get(joint.child)
+            if joint.type == "ball":
+                self.joints[joint.name] = LoopBall(joint)
+            elif joint.type not in ("fixed", "gearbox"):
+                self.joints[joint.name] = LoopJoint(joint, *ends, self.initial_pose)
 
     # --- motion
 
@@ -125,7 +131,10 @@ class Model(ModelState):
         self.set_velocity(twist)
 
     def reset(self) -> None:
-        """Back to the pose it was spawned at, joints at zero, everything still."""
+        """Back to the pose it was spawned at, joints at zero, everything still.
+
+        Welds stay, as Gazebo's joints between models do, and hold what is where it is then.
+        """
         for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
         for body in self.bodies:
@@ -133,6 +142,9 @@ class Model(ModelState):
         self._fixed_pose = self.initial_pose
         self.forget()
         self.set_twist(STILL)
+        for weld in dict.fromkeys(each for body in self.bodies for each in body.attached
+                                  if isinstance(each, Weld)):
+            weld.renew()
 
     # --- for the world
 
@@ -179,18 +191,21 @@ class Model(ModelState):
         held = [joint for joint in self.description.joints if joint.name == name]
         if held and self.static:
             raise SimulationError(f"joint {name!r} does not move, as model {self.name} is static; "
-                                  "take <static> out of it")
+                                  "remove <static>")
         if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
                                   f"{held[0].type}, of which there is nothing to read or drive")
         raise UnknownName(f"joint of model {self.name}", name, self.joints)
 
     def _without_scope(self, name: str) -> str:
-        """A part's name inside the model: Gazebo also takes `MODEL::PART`."""
+        """A part's name inside the model; `MODEL::PART` is good, too (Gazebo's Model::GetJoint)."""
         return name.removeprefix(f"{self.name}::")
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
-        """The joints of these names, to be read and driven together: a group for each body."""
+        """The joints of these names, to be read and driven together: a group for each body.
+
+        UnknownName and SimulationError as of `joint`.
+        """
         for name in names:
             self.joint(name)
         groups = [body.joint_group(names) for body in self.bodies]
@@ -207,9 +222,8 @@ class Model(ModelState):
 def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
     """Name, position and rate (rad or m) of the joint that carries `link`, nearest to these.
 
-    Of a link that joints hold to the world; in Gazebo it keeps any pose for one step, until its
-    joints pull it back. `pose` and `twist` (of the link's origin) are in the world. None of a link
-    that is fixed to the world or hangs on a ball joint.
+    Of a link that joints hold to the world. `pose` and `twist` (of the link's origin) are in the
+    world. None of a link that is fixed to the world or hangs on a ball joint.
     """
     body = link.body
     carrier = body.moving_carrier(link.name)

@@ -23,12 +23,12 @@ def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
               if not model.static and any(_is_broken(body) for body in model.bodies)]
     for model in broken:
         log.log(logging.DEBUG if model.has_recovered else logging.WARNING,
-                "model %s: its motion is no number any more; it starts again where it was "
-                "spawned. Look for forces, speeds or gains that are far too large, or masses that "
+                "model %s: its pose or velocity is not finite; it is reset to its spawn pose. "
+                "Look for forces, speeds or gains that are far too large, or masses that "
                 "are far too small", model.name)
         model.has_recovered = True
     lost = {model.name: model.initial_pose for model in broken}
-    lost |= {model.name: model.pose for model in models if model.static}  # hit by what is no number
+    lost |= {model.name: model.pose for model in models if model.static}  # may be hit
     for model in models:
         for body in model.bodies if model.name in lost else ():
             body.unload()
@@ -42,18 +42,18 @@ def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
         model.reset() if model in broken else model.forget()
 
 
-def lost_models(models: Iterable[Model], error: EngineError, told: set[str]) -> list[str]:
+def lost_models(models: Iterable[Model], error: EngineError, logged: set[str]) -> list[str]:
     """After an error of the engine: names of the models of which it has lost a body.
 
-    Each is a line in the log; so is an error that has no such cause, once: it goes into `told`.
+    Each is a line in the log; so is an error that has no such cause, once: it goes into `logged`.
     """
     lost = [model.name for model in models if any(map(_is_lost, model.bodies))]
     for name in lost:
-        log.error("model %s is taken out: the engine cannot tell where it is any more (%s); the "
-                  "rest of the world goes on", name, error)
-    if not lost and str(error) not in told:
-        told.add(str(error))
-        log.error("the engine did not do a step as it should: %s; the world goes on", error)
+        log.error("model %s is deleted: the engine has lost its body (%s); the rest of the world "
+                  "goes on", name, error)
+    if not lost and str(error) not in logged:
+        logged.add(str(error))
+        log.error("an engine step failed: %s; the world goes on", error)
     return lost
 
 

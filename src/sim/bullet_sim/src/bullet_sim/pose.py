@@ -79,7 +79,7 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 def normalised(q: Sequence[float]) -> Quaternion:
-    """Unit length; all zeros become no rotation, as Gazebo reads a default message."""
+    """Unit length; all zeros become no rotation (gazebo_ros_api_plugin.cpp, setModelState)."""
     x, y, z, w = (float(value) for value in q)
     length = math.sqrt(x * x + y * y + z * z + w * w)
     if length == 0.0:

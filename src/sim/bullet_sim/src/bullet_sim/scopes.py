@@ -1,7 +1,6 @@
 """Names of parts with those of their models before them: `model::link`.
 
-A model's own name may hold `::`, as Gazebo lets it, so that a name alone does not say where the
-model's ends.
+A model's own name may hold `::`, so that a name alone does not say where the model's ends.
 """
 
 from collections.abc import Iterator, Mapping

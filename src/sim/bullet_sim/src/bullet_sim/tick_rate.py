@@ -9,9 +9,10 @@ class TickRate:
     """Due `rate_hz` times a simulated second; 0 means every step.
 
     A period that is no whole number of steps alternates between two lengths, so that the long-run
-    rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps, as in Gazebo's plugins that
-    accumulate. With `whole_steps` the period is rounded up to steps: every 34, as in those that
-    count from the last time. SimulationError for a rate that is negative or not finite.
+    rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps (gazebo_ros_diff_drive.cpp,
+    UpdateChild). With `whole_steps` the period is rounded up to steps: every 34, as where it is
+    counted from the last time (gazebo_ros_p3d.cpp, UpdateChild). SimulationError for a rate that is
+    negative or not finite.
     """
 
     def __init__(self, rate_hz: float, timestep: float, origin: int = 0,
@@ -19,7 +20,7 @@ class TickRate:
         if rate_hz < 0 or not math.isfinite(rate_hz):
             raise SimulationError(f"a rate of {rate_hz} Hz is not possible; 0 means every step")
         self.rate_hz = rate_hz
-        self._whole_steps = whole_steps
+        self.whole_steps = whole_steps
         self.restart(origin, timestep)
 
     def restart(self, tick: int, timestep: float | None = None) -> None:
@@ -28,7 +29,7 @@ class TickRate:
         if timestep is not None:
             every = self.rate_hz == 0
             self._period = 1.0 if every else max(1.0, 1.0 / (self.rate_hz * timestep))  # steps
-            if self._whole_steps:
+            if self.whole_steps:
                 self._period = float(math.ceil(self._period - 1e-9))
 
     def next_tick(self, tick: int) -> int:
@@ -37,10 +38,6 @@ class TickRate:
         while self._moment(count) <= tick:
             count += 1
         return self._moment(count)
-
-    def due(self, tick: int) -> bool:
-        """Whether this very tick is due."""
-        return self.next_tick(tick - 1) == tick
 
     def _moment(self, count: int) -> int:
         return self._origin + math.ceil(count * self._period - 1e-9)

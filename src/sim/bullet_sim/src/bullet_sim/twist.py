@@ -21,6 +21,16 @@ def dot(a, b) -> float:
     return sum(x * y for x, y in zip(a, b, strict=True))
 
 
+def add(a, b) -> Vector3:
+    """The sum of two vectors."""
+    return tuple(x + y for x, y in zip(a, b, strict=True))
+
+
+def negative(vector) -> Vector3:
+    """The opposite vector."""
+    return tuple(-x for x in vector)
+
+
 def cross(a, b) -> Vector3:
     """Vector product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

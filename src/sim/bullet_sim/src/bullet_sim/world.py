@@ -5,6 +5,7 @@ import math
 import time
 import zlib
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import replace
 
 import numpy as np
@@ -12,19 +13,19 @@ import numpy as np
 from bullet_sim.actors import Actor
 from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
-from bullet_sim.forces import Forces
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.nan_recovery import lost_models, recover_from_nan
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
-from bullet_sim.physics.limits import check_kept, check_physics, possible_physics
+from bullet_sim.physics.parameter_bounds import check_kept, check_physics, possible_physics
 from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
+from bullet_sim.timed_forces import TimedForces
 from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)
@@ -44,13 +45,13 @@ class World:
         self.paused = False
         self.models: dict[str, Model] = {}
         self.scene = Scene(self.description.scene)
-        self.forces = Forces()
+        self.forces = TimedForces()
         self.profiler = Profiler()
         self.each_step: list[Callable[[], None]] = []  # called after every single step
         self.each_removal: list[Callable[[str], None]] = []  # with the name of a removed model
         self._moving: list[Model] = []
         self._actors: dict[str, Actor] = {}
-        self._told: set[str] = set()  # errors of the engine that nothing could be done about
+        self._logged_errors: set[str] = set()  # of the engine, without a known cause
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
             self.add_light(light)
@@ -114,8 +115,8 @@ class World:
 
     def delete_lost_models(self, error: EngineError) -> None:
         """After an error of the engine: models that it has lost are deleted; the rest is kept."""
-        for name in lost_models(self.models.values(), error, self._told):
-            self.delete(name)
+        for name in lost_models(self.models.values(), error, self._logged_errors):
+            self._remove(self.models[name])
 
     def random(self, name: str, tick: int | None = None) -> np.random.Generator:
         """A generator for a named thing at one tick (now): the same in every run with one seed.
@@ -129,7 +130,9 @@ class World:
 
     def spawn(self, description: ModelDescription, pose: Pose = IDENTITY,
               name: str | None = None) -> Model:
-        """Add a model: its own pose is kept as an offset to `pose`, as Gazebo does.
+        """Add a model: its own pose is kept as an offset to `pose`.
+
+        gazebo_ros_api_plugin.cpp, updateSDFAttributes.
 
         NameTaken if there is a model of that name; SimulationError if the engine cannot
         hold it.
@@ -161,7 +164,10 @@ class World:
 
     def delete(self, name: str) -> None:
         """Remove a model. UnknownName without one of that name."""
-        model = self.model(name)
+        self._remove(self.model(name))
+
+    def _remove(self, model: Model) -> None:
+        name = model.name
         del self.models[name]
         self._actors.pop(name, None)
         self._note_moving()
@@ -170,9 +176,10 @@ class World:
             if light in self.lights:
                 self.remove_light(light)
         self.forces.drop_model(model)
-        model.remove()
-        for function in self.each_removal:
-            function(name)
+        with ExitStack() as stack:  # all are called, also if removing or one of them fails
+            for function in reversed(self.each_removal):
+                stack.callback(function, name)
+            model.remove()
 
     def model(self, name: str) -> Model:
         """The model of that name. UnknownName without one."""

@@ -1,7 +1,5 @@
 """sensor_msgs/Image that goes out without being copied first."""
 
-from __future__ import annotations
-
 import struct
 from io import BytesIO
 

@@ -1,12 +1,9 @@
 """Contacts as markers that rviz can show: a ball where things touch, an arrow for the force."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator
 
 import rospy
-from gazebo_msgs.msg import ContactsState, ContactState
+from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
@@ -22,18 +19,12 @@ def to_markers(contacts: ContactsState, namespace: str) -> MarkerArray:
     """All markers of one message; they go away by themselves when no more messages follow."""
     markers: list[Marker] = []
     for state in contacts.states:
-        for point, normal, force in _points(state):
+        for point, normal, wrench in zip(state.contact_positions, state.contact_normals,
+                                         state.wrenches, strict=False):
+            force = math.hypot(wrench.force.x, wrench.force.y, wrench.force.z)  # N
             markers.append(_ball(contacts.header, namespace, len(markers), point))
             markers.append(_arrow(contacts.header, namespace, len(markers), point, normal, force))
     return MarkerArray(markers)
-
-
-def _points(state: ContactState) -> Iterator[tuple[Vector3, Vector3, float]]:
-    """Where (m), along which normal, and with how much force (N)."""
-    for position, normal, wrench in zip(state.contact_positions, state.contact_normals,
-                                        state.wrenches, strict=False):
-        force = wrench.force
-        yield position, normal, math.sqrt(force.x ** 2 + force.y ** 2 + force.z ** 2)
 
 
 def _marker(header: Header, namespace: str, number: int, kind: int) -> Marker:

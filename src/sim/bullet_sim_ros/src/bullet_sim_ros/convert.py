@@ -1,11 +1,10 @@
 """From the core's readings to ROS messages and back: pure functions, nothing is published here."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
+import genpy
 import numpy as np
 import rospy
 from geometry_msgs.msg import Point, TransformStamped, Vector3
@@ -16,9 +15,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2, PointField
 
 from bullet_sim.description import CameraDescription
-from bullet_sim.pose import Pose, normalised
+from bullet_sim.pose import Pose, Quaternion, normalised
 from bullet_sim.profiler import Profiler
-from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
@@ -55,8 +53,12 @@ def pose_to_msg(pose: Pose) -> PoseMsg:
 
 def pose_from_msg(msg: PoseMsg) -> Pose:
     """A pose with a unit quaternion; (0, 0, 0, 0) becomes no rotation."""
-    p, q = msg.position, msg.orientation
-    return Pose((p.x, p.y, p.z), normalised((q.x, q.y, q.z, q.w)))
+    return Pose(triple(msg.position), quaternion_from_msg(msg.orientation))
+
+
+def quaternion_from_msg(msg: QuaternionMsg) -> Quaternion:
+    """Of unit length; (0, 0, 0, 0) becomes no rotation."""
+    return normalised((msg.x, msg.y, msg.z, msg.w))
 
 
 def twist_to_msg(twist: Twist) -> TwistMsg:
@@ -66,18 +68,25 @@ def twist_to_msg(twist: Twist) -> TwistMsg:
 
 def twist_from_msg(msg: TwistMsg) -> Twist:
     """The core's twist."""
-    return Twist((msg.linear.x, msg.linear.y, msg.linear.z),
-                 (msg.angular.x, msg.angular.y, msg.angular.z))
+    return Twist(triple(msg.linear), triple(msg.angular))
 
 
-def is_sane(*messages: PoseMsg | TwistMsg | Vector3) -> bool:
-    """Whether every number of some Pose, Twist or Vector3 messages is finite, up to LARGEST."""
-    return all(abs(value) <= LARGEST for message in messages for value in _numbers(message))
+def triple(msg: Vector3 | Point) -> tuple[float, float, float]:
+    """x, y and z."""
+    return (msg.x, msg.y, msg.z)
 
 
-def _numbers(message) -> list[float]:
-    values = [getattr(message, slot) for slot in message.__slots__]
-    return [n for v in values for n in (_numbers(v) if hasattr(v, "__slots__") else [v])]
+def is_sane(*values: Any) -> bool:
+    """Whether every number of messages, sequences and numbers is finite, up to LARGEST."""
+    return all(abs(number) <= LARGEST for value in values for number in _numbers(value))
+
+
+def _numbers(value: Any) -> list[float]:
+    if isinstance(value, int | float):
+        return [value]
+    parts = [getattr(value, slot) for slot in value.__slots__] if isinstance(
+        value, genpy.Message) else value
+    return [number for part in parts for number in _numbers(part)]
 
 
 def transform_to_msg(pose: Pose, time: float, parent: str, child: str) -> TransformStamped:
@@ -128,12 +137,13 @@ def laser_to_msg(reading: LaserReading) -> LaserScan:
                      ranges=reading.ranges.tolist(), intensities=reading.intensities.tolist())
 
 
-def imu_to_msg(reading: ImuReading, variance: float) -> Imu:
-    """sensor_msgs/Imu without header, of a reading in the axes that it is to be published in."""
+def imu_to_msg(orientation: Sequence[float], angular_velocity: Sequence[float],
+               linear_acceleration: Sequence[float], variance: float = 0.0) -> Imu:
+    """sensor_msgs/Imu without header: quaternion, rad/s, m/s^2, and one variance for them all."""
     covariance = diagonal([variance] * 3)
-    return Imu(orientation=QuaternionMsg(*reading.orientation),
-               angular_velocity=Vector3(*reading.angular_velocity),
-               linear_acceleration=Vector3(*reading.linear_acceleration),
+    return Imu(orientation=QuaternionMsg(*orientation),
+               angular_velocity=Vector3(*angular_velocity),
+               linear_acceleration=Vector3(*linear_acceleration),
                orientation_covariance=covariance, angular_velocity_covariance=covariance,
                linear_acceleration_covariance=covariance)
 

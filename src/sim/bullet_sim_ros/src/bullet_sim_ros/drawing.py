@@ -4,8 +4,6 @@ A thread is enough, it need not be a process: llvmpipe, OpenCV and the network w
 lock, and what a picture is made from never changes while it is drawn.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 

@@ -1,7 +1,5 @@
 """Errors of the ROS side, and the log line of any error."""
 
-from __future__ import annotations
-
 from bullet_sim.errors import SimulationError
 
 

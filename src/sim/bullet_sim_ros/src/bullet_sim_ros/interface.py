@@ -5,8 +5,6 @@ element of a format; its tags are what can be written inside. The README's table
 tests all read these files.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

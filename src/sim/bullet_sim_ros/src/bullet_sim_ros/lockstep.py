@@ -1,7 +1,5 @@
 """After each camera frame the world waits until an answer to it has come."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

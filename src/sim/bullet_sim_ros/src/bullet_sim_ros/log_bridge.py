@@ -1,7 +1,5 @@
 """Carries the core's log to rosout, so that one console shows all."""
 
-from __future__ import annotations
-
 import logging
 
 import rospy

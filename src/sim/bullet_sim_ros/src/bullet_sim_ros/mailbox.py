@@ -1,7 +1,5 @@
 """Carries calls from ROS threads to the loop, which alone may touch the physics. The only lock."""
 
-from __future__ import annotations
-
 import logging
 import queue
 import threading

@@ -1,7 +1,5 @@
 """/gazebo/performance_metrics: the real-time factor, and how often each sensor is updated."""
 
-from __future__ import annotations
-
 import time
 
 import rospy
@@ -13,7 +11,7 @@ from bullet_sim_ros.simulation import Simulation
 
 PERIOD = 0.2  # s, wall, between messages
 WINDOW = 1.0  # s, wall, over which rates are taken
-NO_FRAMES = -1.0  # upstream's fps of a sensor that draws nothing
+NO_FRAMES = -1.0  # gazebo_ros_api_plugin.cpp, onPerformanceMetrics, of a sensor without fps
 
 
 class MetricsTopic:
@@ -33,7 +31,7 @@ class MetricsTopic:
     def _publish(self) -> None:
         self._due = time.monotonic() + PERIOD
         simulation = self._simulation
-        msg = PerformanceMetrics(real_time_factor=simulation.speed.real_time_factor)
+        msg = PerformanceMetrics(real_time_factor=simulation.real_time_factor.measured)
         convert.stamped(msg, simulation.world.time)
         contexts = simulation.sensors()
         self._rates = {context: self._rates.get(context) or _Rates() for context in contexts}

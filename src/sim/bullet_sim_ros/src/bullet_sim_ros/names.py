@@ -1,7 +1,5 @@
 """Every topic and service name of the simulator, and how plugins' relative names resolve."""
 
-from __future__ import annotations
-
 import rospy
 
 CLOCK = "/clock"

@@ -1,7 +1,5 @@
 """Gazebo's topics and services of the node /gazebo."""
 
-from __future__ import annotations
-
 import rospy
 
 from bullet_sim.formats import Resources

@@ -1,7 +1,5 @@
 """The node /gazebo: reads a world, offers Gazebo's topics and services, and runs the loop."""
 
-from __future__ import annotations
-
 import argparse
 import gc
 import signal
@@ -17,7 +15,7 @@ from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_world
-from bullet_sim.physics.limits import possible_physics
+from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split
@@ -76,7 +74,7 @@ def _seed(text: str) -> int:
 
 
 def open_world(options: argparse.Namespace, resources) -> World:
-    """The world of the command line."""
+    """The world of the command line. ResourceNotFound and FormatError of its file."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
     description = replace(description, physics=possible_physics(description.physics))
@@ -90,7 +88,10 @@ def open_world(options: argparse.Namespace, resources) -> World:
 
 
 def wait_for_master() -> None:
-    """Say once that roscore is missing, then wait for it; upstream says it twice a second."""
+    """Say once that roscore is missing, then wait for it.
+
+    gazebo_ros_api_plugin.cpp, Load, says it twice a second.
+    """
     if rosgraph.is_master_online():
         return
     print("[WARN] No ROS master - start roscore to continue... (looked for it at "
@@ -100,7 +101,7 @@ def wait_for_master() -> None:
 
 
 def check_engine(name: str) -> None:
-    """An engine that Gazebo does not know either is an error line; the default goes on."""
+    """An engine that is none of Gazebo's four is an error line; the default goes on."""
     if name not in ENGINES:
         rospy.logerr("There is no physics engine %r; there are %s; Bullet computes, whichever is "
                      "asked for", name, ", ".join(ENGINES))

@@ -1,7 +1,5 @@
 """Holds simulated time to real time. The wall clock decides here and nowhere else."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

@@ -4,8 +4,6 @@ rospkg refuses a manifest for what has no bearing on where its package is, such 
 with it all packages where it is no XML.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 from collections.abc import Iterable, Iterator

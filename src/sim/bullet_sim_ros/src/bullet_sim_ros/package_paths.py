@@ -1,7 +1,5 @@
 """Where models, media and packages are: the environment, and what packages export to gazebo_ros."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from bullet_sim_ros.package_list import Package, list_packages
 
 
 def open_resources() -> Resources:
-    """Search paths of this process, as Gazebo with its ROS paths plugin has them."""
+    """Search paths of this process, like those of gazebo_ros_paths_plugin.cpp."""
     ros_paths = rospkg.get_ros_paths()
     packages = list_packages(ros_paths)
 

@@ -1,7 +1,5 @@
 """The only reader of ROS parameters: the node's own, and what plugins look for."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,8 +13,8 @@ class NodeParameters:
     """Parameters below /gazebo."""
 
     pub_clock_frequency: float = 100.0
-    # Hz of simulated time; 0 or less: every step. Upstream's default is every step, which costs
-    # each rospy node with sim time a good part of a core.
+    # Hz of simulated time; 0 or less: every step, the default of gazebo_ros_api_plugin.cpp,
+    # publishSimTime, which costs each rospy node with sim time a good part of a core.
     pub_state_frequency: float = 100.0  # Hz for model_states and link_states; 0 or less: every step
     enable_ros_network: bool = True
     lockstep: str = ""  # topics to wait for after each camera frame; empty: do not wait
@@ -44,8 +42,8 @@ def _number(name: str, default: float) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        where = rospy.resolve_name(name)
-        rospy.logwarn("parameter %s is %r, which is no number; %g is used", where, value, default)
+        rospy.logwarn("parameter %s is %r, which is not a number; %g is used",
+                      rospy.resolve_name(name), value, default)
         return default
 
 

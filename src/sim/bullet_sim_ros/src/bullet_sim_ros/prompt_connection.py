@@ -5,8 +5,6 @@ between threads cost more than the rest of publishing: 0.25 ms for each small me
 third of the time for a frame when time runs at four times its usual pace.
 """
 
-from __future__ import annotations
-
 import socket
 import threading
 from collections import deque

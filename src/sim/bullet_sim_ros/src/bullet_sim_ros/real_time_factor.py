@@ -1,7 +1,5 @@
 """How fast simulated time runs, what holds it up, and telling people so."""
 
-from __future__ import annotations
-
 import time
 
 import rospy
@@ -19,7 +17,7 @@ class RealTimeFactorMonitor:
     """Fed by the loop after every batch of steps."""
 
     def __init__(self, profiler: Profiler, profile: bool):
-        self.real_time_factor = 0.0
+        self.measured = 0.0
         self._profiler = profiler
         self._profile = profile
         self._began = time.monotonic()
@@ -35,7 +33,7 @@ class RealTimeFactorMonitor:
         """`wanted` is the real-time factor aimed at; 0: as fast as it goes."""
         now = time.monotonic()
         if now - self._window[0] >= WINDOW:
-            self.real_time_factor = _factor(self._window, (now, simulated))
+            self.measured = _factor(self._window, (now, simulated))
             self._window = (now, simulated)
         if now - self._report[0] >= REPORT_PERIOD:
             self._log_factor(_factor(self._report, (now, simulated)), wanted)

@@ -1,7 +1,5 @@
 """dynamic_reconfigure for some values with ranges, without a generated configuration."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,6 +7,8 @@ from typing import Protocol
 
 import rospy
 from dynamic_reconfigure.server import Server
+
+from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -26,7 +26,7 @@ class Value:
 
 
 class Owner(Protocol):
-    """What a server lives as long as: a plugin's host or a controller's."""
+    """What a server lives as long as: the context of a plugin or of a controller."""
 
     def describe(self) -> str:
         """Whose log line it is."""
@@ -44,6 +44,20 @@ def offer_values(owner: Owner, namespace: str, values: Mapping[str, Value],
         log.warning("%s: dynamic_reconfigure is not offered: %s", owner.describe(), error)
         return
     owner.on_close(server.close)
+
+
+def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, Value],
+                  change: Callable[[dict[str, float | bool]], None]) -> None:
+    """As `offer_values`; `change(values)` is called in the loop, and not for those that are now."""
+    begun: list[bool] = []
+
+    def changed(new: dict[str, float | bool]) -> None:
+        """In a ROS thread; at once for the first time."""
+        if begun:
+            context.services.mailbox.post(lambda: change(new))
+        begun.append(True)
+
+    offer_values(context, namespace, values, changed)
 
 
 class ValueServer(Server):

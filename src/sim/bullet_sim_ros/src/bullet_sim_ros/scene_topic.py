@@ -1,6 +1,4 @@
-"""~scene: what there is to see, as text, for the page in the browser and others that draw."""
-
-from __future__ import annotations
+"""~scene: the scene, as text, for the page in the browser and others that draw."""
 
 import rospy
 from std_msgs.msg import String

@@ -1,7 +1,5 @@
 """What is done at rates of simulated time, and when the next of it is due."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from bullet_sim.tick_rate import TickRate
@@ -31,7 +29,7 @@ class PeriodicTask:
 
 
 class Scheduler:
-    """All duties, done in the order in which they were added."""
+    """All periodic tasks, run in the order in which they were added."""
 
     def __init__(self, world: World):
         self._world = world
@@ -47,6 +45,8 @@ class Scheduler:
         """Do something `rate_hz` times a simulated second from now on; 0: every step.
 
         `whole_steps` as a `TickRate` has it.
+
+        SimulationError of a rate that is negative or not finite.
         """
         tick = self._world.tick
         tick_rate = TickRate(rate_hz, self._world.timestep, tick, whole_steps)
@@ -54,9 +54,12 @@ class Scheduler:
         return self._tasks[-1]
 
     def change_rate(self, task: PeriodicTask, rate_hz: float) -> None:
-        """Do it at another rate, counted from now on."""
+        """Do it at another rate, counted from now on.
+
+        SimulationError of a rate that is negative or not finite.
+        """
         tick = self._world.tick
-        task.tick_rate = TickRate(rate_hz, self._world.timestep, tick)
+        task.tick_rate = TickRate(rate_hz, self._world.timestep, tick, task.tick_rate.whole_steps)
         task.next_tick = task.tick_rate.next_tick(tick)
 
     def remove(self, task: PeriodicTask) -> None:

@@ -1,7 +1,6 @@
 """The simulated world together with its ROS side, and the loop that drives both."""
 
-from __future__ import annotations
-
+from collections import Counter
 from collections.abc import Callable
 
 import rospy
@@ -20,7 +19,7 @@ from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.scheduler import Scheduler
 
@@ -35,11 +34,11 @@ class Simulation:
         self.mailbox = Mailbox()
         self.scheduler = Scheduler(world)
         self.pacer = Pacer()
-        self.speed = RealTimeFactorMonitor(world.profiler, parameters.profile)
+        self.real_time_factor = RealTimeFactorMonitor(world.profiler, parameters.profile)
         self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
         self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
-        self._services = SimServices(
+        self._services = SharedByPlugins(
             world, self.mailbox, self.scheduler, self._drawing, self._lockstep
         )
         self._plugins: dict[str, list[PluginContext]] = {}
@@ -48,6 +47,7 @@ class Simulation:
         self.scheduler.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
         self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
+        self.state_calls: Counter[str] = Counter()  # of get_model_state, by model: its header's seq
         for model in world.models.values():
             self._load_plugins(model)
         self._world_plugins = load_world_plugins(self._services)
@@ -56,7 +56,7 @@ class Simulation:
     # --- the loop
 
     def run(self, iterations: int = 0) -> None:
-        """Step until told to stop or ROS shuts down, or for so many steps."""
+        """Step until `stop` or until ROS shuts down, or for so many steps."""
         self._publish_clock()
         left = iterations or float("inf")
         while left and not self._stopped():
@@ -97,7 +97,7 @@ class Simulation:
             self.scheduler.run()
         with world.profiler.measure("lockstep"):
             self._lockstep.wait(self._stopped)
-        self.speed.update(world.time, self.pacer.factor)
+        self.real_time_factor.update(world.time, self.pacer.factor)
         return steps
 
     def step(self) -> None:
@@ -132,7 +132,7 @@ class Simulation:
 
     def _restart_pace(self) -> None:
         self.pacer.restart()
-        self.speed.restart(self.world.time)
+        self.real_time_factor.restart(self.world.time)
 
     # --- contents
 
@@ -173,7 +173,7 @@ class Simulation:
         """Answer calls that still wait; release renderer and engine."""
         self.mailbox.close()
         self._drawing.close()
-        self.speed.close()
+        self.real_time_factor.close()
         self.world.close()
 
     def _close_plugins(self, model: str) -> None:

@@ -1,7 +1,5 @@
 """model_states and link_states out, set_model_state and set_link_state in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What /gazebo publishes about models, links and its own speed."""
+"""What /gazebo publishes about models, links and its own monitor."""
 
 import pytest
 import rospy
@@ -52,9 +52,9 @@ def test_performance(bench, monkeypatch):
       filename="libgazebo_ros_laser.so"><topicName>scan</topicName></plugin></sensor></link>
       </model>""")
     bench.run(0.5)
-    speed = bench.simulation.speed
-    monkeypatch.setattr(speed, "update", lambda *_now: None)  # it would measure
-    speed.real_time_factor = 0.75
+    monitor = bench.simulation.real_time_factor
+    monkeypatch.setattr(monitor, "update", lambda *_now: None)  # it would measure
+    monitor.measured = 0.75
     metrics = bench.listen("/gazebo/performance_metrics")
     bench.run(0.5)
     message = metrics[0]

@@ -25,8 +25,8 @@ def robot(plugin: str, tags: str, name: str = "bot") -> str:
 def test_a_number_that_is_none(bench, caplog, plugin, tag, more):
     # conforms: libgazebo_grasp_plugin.so/max_grip_count, libgazebo_ros_control.so/controlPeriod
     # conforms: libhector_gazebo_ros_magnetic.so/inclination, libgazebo_ros_p3d.so/updateRate
-    for word, why in (("inf", "not finite"), ("-inf", "not finite"), ("nan", "no number"),
-                      ("m1", "no number"), (",5", "no number"), ("ten", "no number")):
+    for word, why in (("inf", "not finite"), ("-inf", "not finite"), ("nan", "not a number"),
+                      ("m1", "not a number"), (",5", "not a number"), ("ten", "not a number")):
         caplog.clear()
         bench.spawn(robot(plugin, f"{more}<{tag}>{word}</{tag}>"))
         said = [record.message for record in caplog.records if record.levelname == "ERROR"]
@@ -107,6 +107,8 @@ def test_a_link_is_not_attached_to_itself(make_bench, caplog):
     assert "cannot attach: bot::a is one link; it takes two" in caplog.text
     assert bench.call("/link_attacher_node/attach", model_name_1="bot", link_name_1="a",
                       model_name_2="bot", link_name_2="b").ok
+    bench.delete("bot")
+    assert not bench.world.models
 
 
 def test_what_ros_control_says_until_it_is_there(bench, caplog):

@@ -48,6 +48,8 @@ def test_each_such_tag_is_named_once(bench, caplog):
     # children that are more than a single value
     PLUGIN.format("libgazebo_ros_harness.so", '<joint name="j"><child>a</child></joint>'
                   "<detach>j</detach><winch><joint>j</joint></winch>"),
+    PLUGIN.format("libgazebo_ros_harness.so", '<joint name="j"><child>a</child></joint><detach>j'
+                  "</detach><winch><joint>j</joint><pos_pid><p>1</p></pos_pid></winch>"),
     # a plugin that reads nothing
     PLUGIN.format("libgazebo_ros_template.so", "<updateRate>3</updateRate>"),
 ])
@@ -63,3 +65,19 @@ def test_a_plugin_that_cannot_load_says_only_that(bench, caplog):
     bench.spawn(PLUGIN.format("libgazebo_ros_p3d.so", "<bodyname>a</bodyname>"))
     assert warnings(caplog) == ["model bot: plugin p (libgazebo_ros_p3d.so) is not loaded: it "
                                 "needs a <bodyName>"]
+
+
+HARNESS = """<joint name="j"><child>a</child></joint><detach>j</detach><winch><joint>j</joint>
+  <pos_pd><p>1</p></pos_pd></winch>"""
+ARMS = """<arm><palm_link>a</palm_link><gripper_link>a</gripper_link><arm_nam>x</arm_nam></arm>
+  <arm><palm_link>a</palm_link><gripper_link>a</gripper_link><arm_nam>y</arm_nam></arm>"""
+
+
+@pytest.mark.parametrize("library, tags, named", [
+    ("libgazebo_ros_harness.so", HARNESS, ("<winch><pos_pd>", "<winch><pos_pid>")),
+    ("libgazebo_grasp_fix.so", ARMS, ("<arm><arm_nam>", "<arm><arm_name>"))])
+def test_so_is_one_within_a_plugins_element(bench, caplog, library, tags, named):
+    # conforms: tag that nobody reads
+    bench.spawn(PLUGIN.format(library, tags))
+    (line,) = warnings(caplog)
+    assert f"{named[0]} is ignored" in line and line.endswith(f"did you mean {named[1]}?")

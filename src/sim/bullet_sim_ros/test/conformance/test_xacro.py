@@ -16,11 +16,11 @@ import pytest
 
 import bullet_sim
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xacro import limits as xacro_limits
+from bullet_sim.formats.xacro import bounds as xacro_bounds
 from bullet_sim.formats.xacro import opening as xacro_opening
+from bullet_sim.formats.xacro.bounds import run_bounded
 from bullet_sim.formats.xacro.expansion import Run, attempt
 from bullet_sim.formats.xacro.files import expand, expand_file
-from bullet_sim.formats.xacro.limits import run_bounded
 from bullet_sim.formats.xacro.nodes import Siblings, replace_node
 
 ROOT = Path(__file__).resolve().parents[5]
@@ -281,7 +281,7 @@ def test_mistakes_are_one_line_soon(write, inside, said):
 
 def test_macros_that_double(write, monkeypatch):
     # conforms: xacro mistakes/size of the result
-    monkeypatch.setattr(xacro_limits, "MOST_PARTS", 1000)
+    monkeypatch.setattr(xacro_bounds, "MOST_PARTS", 1000)
     assert len(links(expand(write(doubling(5))))) == 32
     with pytest.raises(FormatError, match="more than 1000 macro calls"):
         expand(write(doubling(25)))
@@ -289,7 +289,7 @@ def test_macros_that_double(write, monkeypatch):
 
 def test_parts_that_come_too_often(write, monkeypatch):
     # conforms: xacro mistakes/size of the result
-    monkeypatch.setattr(xacro_limits, "MOST_TEXTS", 1000)
+    monkeypatch.setattr(xacro_bounds, "MOST_TEXTS", 1000)
     with pytest.raises(FormatError, match="more than 1000 attributes and texts"):
         expand(write('<link name="a"/>' * 1001))
     monkeypatch.setattr(xacro_opening, "MOST_FILES", 10)

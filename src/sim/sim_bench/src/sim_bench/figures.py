@@ -39,8 +39,3 @@ def percentile(values: Iterable[float], share: float) -> float:
     if not ranked:
         raise ValueError("no percentile of no values")
     return ranked[max(0, math.ceil(share * len(ranked)) - 1)]
-
-
-def figure_from_dict(values: dict) -> Figure:
-    """A figure as it stands in bench.json."""
-    return Figure(**{**values, "runs": tuple(values["runs"])})

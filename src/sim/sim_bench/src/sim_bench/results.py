@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from sim_bench.acceptance import Verdict, judge
-from sim_bench.figures import Figure, figure_from_dict
+from sim_bench.figures import Figure
 
 MUCH = 10.0  # percent of a core, used by others: more than this spoils a measurement
 
@@ -52,16 +52,6 @@ def write_json(results: Results, path: Path) -> None:
         for verdict in judge(results.figures())
     ]
     path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-
-
-def read_json(path: Path) -> Results:
-    """What `write_json` wrote."""
-    values = json.loads(path.read_text(encoding="utf-8"))
-    parts = [
-        PartResult(**{**part, "figures": tuple(figure_from_dict(f) for f in part["figures"])})
-        for part in values["parts"]
-    ]
-    return Results(values["began"], values["quick"], values["machine"], parts)
 
 
 def figure_table(result: PartResult) -> str:

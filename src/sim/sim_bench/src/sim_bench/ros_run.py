@@ -68,8 +68,8 @@ class RosRun:
         try:
             child.process.wait(END_LIMIT)
         except subprocess.TimeoutExpired as late:
-            said = child.last_lines()
-            raise RunError(f"{child.name} did not end within {END_LIMIT:.0f} s", said) from late
+            output = child.last_lines()
+            raise RunError(f"{child.name} did not end within {END_LIMIT:.0f} s", output) from late
 
     def forget(self, child: Child) -> None:
         """That this program ends is no failure any more."""
@@ -81,8 +81,8 @@ class RosRun:
         while not (value := condition()):
             self.check()
             if time.monotonic() > until:
-                said = self._children[-1].last_lines() if self._children else ""
-                raise RunError(f"{what} was not there within {limit:.0f} s", said)
+                output = self._children[-1].last_lines() if self._children else ""
+                raise RunError(f"{what} was not there within {limit:.0f} s", output)
             time.sleep(POLL)
         return value
 

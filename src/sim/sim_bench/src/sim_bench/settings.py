@@ -1,4 +1,4 @@
-"""What the parts are told: how long to measure, where to write, and whom to tell."""
+"""Settings of the parts: durations, output folder, progress callback."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """What the page asks first."""
 
-from __future__ import annotations
-
 import rospy
 
 from sim_viewer.context import Context

@@ -4,8 +4,6 @@ A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding) or open
 from its own origin. Browsers say so in the headers Host and Origin, so both are checked.
 """
 
-from __future__ import annotations
-
 import hmac
 import ipaddress
 import socket

@@ -1,7 +1,5 @@
 """What operations and watchables are given: one browser's connection, and the node behind it."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -20,11 +18,6 @@ class Node:
         self.loop = loop
         self._workers = ThreadPoolExecutor(WORKERS, thread_name_prefix="worker")
         self._shared: dict[type, Any] = {}
-
-    @property
-    def control(self) -> bool:
-        """Whether browsers may change anything."""
-        return self.options.control
 
     def shared(self, kind: type) -> Any:
         """The one object of this class, made as `kind(node)` when it is first asked for; in the
@@ -57,7 +50,7 @@ class Context:
     @property
     def control(self) -> bool:
         """Whether this browser may change anything."""
-        return self.node.control
+        return self.node.options.control
 
     async def run_in_thread(self, function: Callable, *args: Any) -> Any:
         """The result of what may block, worked out beside the loop."""

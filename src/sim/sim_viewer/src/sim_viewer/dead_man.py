@@ -3,8 +3,6 @@
 No ROS, no thread and no clock: `now` is handed in, in seconds of a clock that never jumps.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass

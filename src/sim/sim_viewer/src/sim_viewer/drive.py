@@ -1,7 +1,5 @@
 """Driving from browsers: what they may ask for. The process drive_guard.py publishes and stops."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os
@@ -56,7 +54,7 @@ class Drive:
             raise Refused("somebody else drives now; let go of the keys, then press again")
 
     def release(self, client: int) -> None:
-        """The client released the controls, or disconnected."""
+        """The client released the controls, or disconnected. Refused if the guard has ended."""
         if self._guard is not None:
             self._send_to_guard({"do": "release", "client": client})
 
@@ -134,7 +132,10 @@ class Drive:
 
 
 def driven_topics() -> dict[str, str]:
-    """Topics with a subscriber and a type that the page can publish, with that type, sorted."""
+    """Topics with a subscriber and a type that the page can publish, with that type, sorted.
+
+    Refused where the master is gone.
+    """
     types, (_, subscribers, _) = asked(lambda: (dict(connect().getTopicTypes()),
                                                 connect().getSystemState()))
     listened = sorted(name for name, _ in subscribers)

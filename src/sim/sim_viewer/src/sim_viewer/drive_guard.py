@@ -1,7 +1,7 @@
 """The process that publishes what browsers drive, and the zero when they no longer do.
 
 A process of its own: the page's server may be busy with a large message, be stopped or be killed,
-and then, too, the robot must stop in time. It is told what to do by lines of JSON on its standard
+and then, too, the robot must stop in time. It takes commands as lines of JSON on its standard
 input, and when that ends, it stops everything and ends as well:
 
     {"do": "open", "number": 1, "topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
@@ -12,8 +12,6 @@ input, and when that ends, it stops everything and ends as well:
 What has a number is answered on its standard output by {"number": 2, "taken": false}; `taken`:
 another client drives now (see dead_man.py).
 """
-
-from __future__ import annotations
 
 import json
 import os

@@ -1,7 +1,5 @@
 """Who drives which topic, and a thread that stops what nobody holds. Without ROS."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Hashable

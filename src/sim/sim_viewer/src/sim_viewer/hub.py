@@ -1,7 +1,5 @@
 """The browsers that are connected: their messages in, answers and what they watch out."""
 
-from __future__ import annotations
-
 import asyncio
 import inspect
 import itertools
@@ -207,4 +205,4 @@ def _number(given: Any) -> int | float | str | None:
 
 
 def _no_number(name: str) -> None:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")

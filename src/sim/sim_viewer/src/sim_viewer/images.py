@@ -1,7 +1,5 @@
 """Any image topic, and any cv2 window that is one, as JPEG pictures while somebody watches."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any
@@ -59,7 +57,7 @@ class Stream:
         self._watchers = [*self._watchers, send]
 
     def remove(self, send: Callable[..., None]) -> bool:
-        """Whether that was the last one; then the topic is let go."""
+        """Whether that was the last one; then the topic is unsubscribed."""
         self._watchers = [other for other in self._watchers if other is not send]
         if not self._watchers:
             self._subscriber.unregister()

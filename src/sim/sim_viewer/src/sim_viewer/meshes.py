@@ -5,8 +5,6 @@ then float32 positions (n, 3) in m, normals (n, 3), uv (n, 2) with (0, 0) at the
 uint32 corners of triangles (m, 3). GET /texture/N is an image that browsers can show.
 """
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The node /sim_viewer: asyncio and the server in the main thread, rospy's threads beside it."""
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import sys

@@ -1,7 +1,5 @@
 """The node's parameters."""
 
-from __future__ import annotations
-
 import ipaddress
 import secrets
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What is still to be sent to one browser, so that a slow one costs no memory."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import struct

@@ -1,7 +1,5 @@
 """A scene as the page's 3D view wants it: links, each with numbered meshes and plain numbers."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from bullet_sim.description import LightDescription, Material

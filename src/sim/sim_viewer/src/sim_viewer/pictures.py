@@ -1,7 +1,5 @@
 """Image messages as JPEG for the page: small enough, and in colours that people can see."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from cv_bridge import CvBridge, CvBridgeError
@@ -35,7 +33,7 @@ def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
 
 def visible(msg: Image) -> np.ndarray:
     """(h, w) or (h, w, 3) uint8, grey or BGR. Depths and 16 bit are spread from black to white
-    between the least and the largest in the picture; what is no number is black. Pictures that
+    between the least and the largest in the picture; what is not finite is black. Pictures that
     only say how many numbers a pixel has (8UC3) are BGR, as OpenCV's are. Refused: no picture."""
     if not msg.width or not msg.height:
         raise Refused("the picture has no pixels")

@@ -14,8 +14,6 @@ A module of this package registers its own by decorators; `load_all` imports the
         async def stop(self): ...                      # coroutine: in the loop
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import math

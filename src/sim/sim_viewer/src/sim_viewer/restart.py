@@ -5,13 +5,11 @@ nothing of this node. rospy cannot change masters, so the process begins again, 
 that the old master had; browsers connect again by themselves.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import rosgraph
 
@@ -43,9 +41,7 @@ def restart(options: Options, port: int) -> None:
 
 def parameter_words(options: Options) -> list[str]:
     """The options as words of a command line, `_port:=8080`."""
-    values = {"port": options.port, "address": options.address, "control": options.control,
-              "token": options.token, "hosts": ",".join(options.hosts), "bags": options.bags,
-              "open": options.open}
+    values = {**asdict(options), "hosts": ",".join(options.hosts)}
     return [f"_{name}:={json.dumps(value)}" for name, value in values.items()]
 
 

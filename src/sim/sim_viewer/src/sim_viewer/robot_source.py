@@ -1,7 +1,5 @@
 """A robot without a simulator: its robot_description, placed by tf."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np
@@ -45,7 +43,10 @@ class RobotSource:
         self._buffer, self._listeners, self._text = None, [], None
 
     def scene(self, known: bool) -> SceneContent | None:
-        """If there is another one than at the last call, or if that one is not `known`."""
+        """If there is another one than at the last call, or if that one is not `known`.
+
+        FormatError of a description that cannot be read.
+        """
         if known and time.monotonic() - self._looked < POLL_PERIOD:
             return None
         self._looked = time.monotonic()

@@ -4,16 +4,13 @@ Events of `poses` are JSON {"names": [...]} whenever there are other links, then
 (n, 7) little-endian, x, y, z in m and the quaternion x, y, z, w of each, in the order of the names.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import rospy
 
-from bullet_sim.rendering.scene_text import SceneContent
 from sim_viewer.context import Context, Node
 from sim_viewer.meshes import Meshes
 from sim_viewer.page_scene import NOTHING, page_scene
@@ -27,22 +24,7 @@ SMALLEST_MOTION = 1e-5  # m, and of quaternions: less is not sent; a robot at re
 TIMEOUT = 1.0  # s without a simulator before the robot's own description counts
 
 Send = Callable[..., None]
-
-
-class Source(Protocol):
-    """Where a scene comes from; plain calls, in a worker thread."""
-
-    def open(self) -> None: ...
-
-    def close(self) -> None: ...
-
-    def scene(self, known: bool) -> SceneContent | None:
-        """If there is another one than at the last call, or if that one is not `known`."""
-        ...
-
-    def poses(self) -> tuple[tuple[str, ...], np.ndarray] | None:
-        """Names and (n, 7) of links, if there is news."""
-        ...
+Source = SimulatorSource | RobotSource  # of a scene; plain calls, in a worker thread
 
 
 class SceneBroadcast:

@@ -1,7 +1,5 @@
 """The web server: the page's files, the WebSocket, and what other modules serve over HTTP."""
 
-from __future__ import annotations
-
 import errno
 from collections.abc import Awaitable, Callable
 from ipaddress import ip_address

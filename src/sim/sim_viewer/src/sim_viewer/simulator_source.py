@@ -1,7 +1,5 @@
 """The simulator's scene and link poses, from its topics."""
 
-from __future__ import annotations
-
 import struct
 import time
 
@@ -67,7 +65,10 @@ class SimulatorSource:
         return any(one.get_num_connections() for one in self._subscribers)
 
     def scene(self, known: bool) -> SceneContent | None:
-        """If there is another one than at the last call, or if that one is not `known`."""
+        """If there is another one than at the last call, or if that one is not `known`.
+
+        FormatError of a text that is no scene.
+        """
         text = self._text
         if text is None or (known and text is self._read):
             return None

@@ -4,9 +4,10 @@ rospy keeps one connection for each topic of a process, and all who subscribe th
 the class that the first of them named. So everything of this node asks for raw messages.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -47,3 +48,30 @@ class Subscription:
             rospy.logwarn_throttle(10, f"{self._topic}: no {self._kind._type}: {error}")
             return
         self._take_read(message, *self._args)
+
+
+class SharedSubscription(ABC):
+    """One subscription for all who hold it, which ends with the last of them. Thread safe."""
+
+    def __init__(self, _node: Any = None):
+        self._lock = threading.Lock()
+        self._holders = 0
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Subscribed meanwhile."""
+        with self._lock:
+            self._holders += 1
+            if self._holders == 1:
+                self._subscriber = self.subscribe()
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._holders -= 1
+                if not self._holders:
+                    self._subscriber.unregister()
+
+    @abstractmethod
+    def subscribe(self) -> Subscription:
+        """Begin anew."""

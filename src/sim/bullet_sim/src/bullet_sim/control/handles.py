@@ -1,6 +1,6 @@
 """A controller's access to a joint: its state to read, and a command to write."""
 
-from bullet_sim.control.limits import JointLimits
+from bullet_sim.description import JointLimits
 
 INTERFACES = ("effort", "position", "velocity")
 

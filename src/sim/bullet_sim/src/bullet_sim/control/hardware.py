@@ -1,14 +1,14 @@
 """A model's joints as ros_control sees them: read, and driven within their limits.
 
-The semantics are those of gazebo_ros_control's DefaultRobotHWSim: a joint has one interface.
+The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: a joint has one interface.
 """
 
 from collections.abc import Iterable, Mapping
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.joint_drives import EffortDrive, make_drive
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.joint import Joint

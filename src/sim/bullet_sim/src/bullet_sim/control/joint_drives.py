@@ -1,13 +1,14 @@
 """How a command becomes the effort or motion of a simulated joint: one class for each way.
 
-The ways, and when each is taken, are those of gazebo_ros_control's DefaultRobotHWSim.
+The ways, and when each is taken, are those of gazebo_ros_control's default_robot_hw_sim.cpp.
 """
 
 from dataclasses import replace
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.limits import LIMITERS, JointLimits, clamp
+from bullet_sim.control.limits import LIMITERS, clamp
 from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.joint import Joint
 from bullet_sim.pose import shortest_angular_distance
 
@@ -80,8 +81,9 @@ class VelocityMotor(JointDrive):
 class PositionMotor(VelocityMotor):
     """A position command without gains: at the end of the next step the joint is there.
 
-    Gazebo puts it there without asking for forces; we move it there, at the velocity limit at most,
-    with a motor that nothing can hold, so that its rate is true and moves what it carries.
+    default_robot_hw_sim.cpp, writeSim, puts it there without asking for forces; we move it there,
+    at the velocity limit at most, with a motor that nothing can hold, so that its rate is true and
+    moves what it carries.
     """
 
     def drive(self, period: float) -> None:

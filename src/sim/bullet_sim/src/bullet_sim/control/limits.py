@@ -1,38 +1,10 @@
-"""Limits of a joint and how commands are kept within them, after joint_limits_interface's laws."""
+"""How commands are kept within the limits of a joint, after joint_limits_interface's laws."""
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import Protocol
 
-INFINITY = math.inf
-
-
-@dataclass(frozen=True)
-class SoftLimits:
-    """URDF's `<safety_controller>`: before the hard limits are reached, the joint slows down."""
-
-    lower: float = 0.0  # rad or m
-    upper: float = 0.0
-    k_position: float = 0.0  # speed that is allowed per rad (or m) that is left to a soft limit
-    k_velocity: float = 0.0  # effort that is allowed per speed that is left
-
-
-@dataclass(frozen=True)
-class JointLimits:
-    """Infinite means no limit; zero is a limit like any other."""
-
-    lower: float = -INFINITY  # rad or m
-    upper: float = INFINITY
-    velocity: float = INFINITY  # rad/s or m/s
-    acceleration: float = INFINITY  # rad/s^2 or m/s^2; counts for velocity commands
-    effort: float = INFINITY  # N m or N
-    soft: SoftLimits | None = None
-
-    @property
-    def has_position(self) -> bool:
-        """Whether the way is limited at all."""
-        return self.lower > -INFINITY or self.upper < INFINITY
+from bullet_sim.description import JointLimits
 
 
 class JointState(Protocol):
@@ -123,7 +95,7 @@ class VelocityLimiter(Limiter):
             low, high = self._soft_speeds(self._joint.position)
         else:
             low, high = -limits.velocity, limits.velocity
-        if limits.acceleration < INFINITY:
+        if limits.acceleration < math.inf:
             last, step = self._last or 0.0, limits.acceleration * period
             low, high = max(low, last - step), min(high, last + step)
         self._last = clamp(command, low, high)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.limits import JointLimits
+from bullet_sim.description import JointLimits
 from bullet_sim.errors import check_lengths
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model
@@ -64,7 +64,10 @@ class SteerBotHardware(RobotHardware):
     def __init__(self, model: Model, rear_wheel: str, front_steer: str,
                  rear_wheels: Sequence[str], front_steers: Sequence[str],
                  geometry: SteerBotGeometry, limits: Mapping[str, JointLimits]):
-        """`rear_wheels` and `front_steers` are real joints, each the right one before the left."""
+        """`rear_wheels` and `front_steers` are real joints, each the right one before the left.
+
+        SimulationError of a joint that the model has not, or of limits that cannot be.
+        """
         super().__init__(model, [
             *(Transmission(name, name, "velocity") for name in rear_wheels),
             *(Transmission(name, name, "position") for name in front_steers)], limits, {})

@@ -4,8 +4,10 @@ All lengths in m, angles in rad, masses in kg. Link poses are in the model frame
 zero. This is the package's face: others import from here, not from the files by subject.
 """
 
+from bullet_sim.description.joints import JointAxis as JointAxis
 from bullet_sim.description.joints import JointDescription as JointDescription
-from bullet_sim.description.joints import SecondAxis as SecondAxis
+from bullet_sim.description.joints import JointLimits as JointLimits
+from bullet_sim.description.joints import SoftLimits as SoftLimits
 from bullet_sim.description.links import Collision as Collision
 from bullet_sim.description.links import Inertial as Inertial
 from bullet_sim.description.links import LinkDescription as LinkDescription
@@ -16,6 +18,10 @@ from bullet_sim.description.plugins import PluginDescription as PluginDescriptio
 from bullet_sim.description.scenes import Fog as Fog
 from bullet_sim.description.scenes import LightDescription as LightDescription
 from bullet_sim.description.scenes import SceneDescription as SceneDescription
+from bullet_sim.description.sensors import CAMERA_TYPES as CAMERA_TYPES
+from bullet_sim.description.sensors import RAY_TYPES as RAY_TYPES
+from bullet_sim.description.sensors import SENSOR_TYPES as SENSOR_TYPES
+from bullet_sim.description.sensors import WIDE_ANGLE as WIDE_ANGLE
 from bullet_sim.description.sensors import CameraDescription as CameraDescription
 from bullet_sim.description.sensors import ImuDescription as ImuDescription
 from bullet_sim.description.sensors import Lens as Lens

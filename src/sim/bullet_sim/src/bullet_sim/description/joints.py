@@ -1,34 +1,15 @@
-"""Joints between links: axes, stops, losses and springs."""
+"""Joints between links: axes, stops, losses and springs; limits of their controllers."""
 
+import math
 from dataclasses import dataclass
 
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 
-@dataclass(frozen=True)
-class SecondAxis:
-    """`<axis2>` of a universal, revolute2 or gearbox joint; fields as of JointDescription."""
-
-    axis: Vector3 = (0.0, 0.0, 1.0)
-    lower: float = -1e16
-    upper: float = 1e16
-    effort: float = -1.0
-    velocity: float = -1.0
-    damping: float = 0.0
-    friction: float = 0.0
-    spring_reference: float = 0.0
-    spring_stiffness: float = 0.0
-
-
-@dataclass(frozen=True)
-class JointDescription:
+@dataclass(frozen=True, kw_only=True)
+class JointAxis:
     """`axis` is in the joint frame; for URDF that is the child link's frame (`pose` identity)."""
 
-    name: str
-    type: str  # revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox
-    parent: str  # link name, or "world"
-    child: str
-    pose: Pose = IDENTITY  # joint frame in the child link frame
     axis: Vector3 = (0.0, 0.0, 1.0)
     lower: float = -1e16  # rad or m
     upper: float = 1e16
@@ -38,9 +19,47 @@ class JointDescription:
     friction: float = 0.0
     spring_reference: float = 0.0
     spring_stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
+class JointDescription(JointAxis):
+    """Two links and what holds them together, with the fields of the joint's first axis."""
+
+    name: str
+    type: str  # revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox
+    parent: str  # link name, or "world"
+    child: str
+    pose: Pose = IDENTITY  # joint frame in the child link frame
     provide_feedback: bool = False
-    axis2: SecondAxis = SecondAxis()
+    axis2: JointAxis = JointAxis()  # of a universal, revolute2 or gearbox joint
     thread_pitch: float = 1.0  # screw: rad/m with the sign turned, travel = -angle / thread_pitch
     gearbox_ratio: float = 1.0  # gearbox: angle of the parent = -ratio * angle of the child, both
     gearbox_reference_body: str = ""  # measured from this link, about axis and axis2
     start: float = 0.0  # rad or m: where a saved world has it; a reset takes it to zero
+
+
+@dataclass(frozen=True)
+class SoftLimits:
+    """URDF's `<safety_controller>`: before the hard limits are reached, the joint slows down."""
+
+    lower: float = 0.0  # rad or m
+    upper: float = 0.0
+    k_position: float = 0.0  # speed that is allowed per rad (or m) that is left to a soft limit
+    k_velocity: float = 0.0  # effort that is allowed per speed that is left
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Of a controller's commands. Infinite means no limit; zero is a limit like any other."""
+
+    lower: float = -math.inf  # rad or m
+    upper: float = math.inf
+    velocity: float = math.inf  # rad/s or m/s
+    acceleration: float = math.inf  # rad/s^2 or m/s^2; counts for velocity commands
+    effort: float = math.inf  # N m or N
+    soft: SoftLimits | None = None
+
+    @property
+    def has_position(self) -> bool:
+        """Whether the way is limited at all."""
+        return self.lower > -math.inf or self.upper < math.inf

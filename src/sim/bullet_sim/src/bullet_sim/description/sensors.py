@@ -6,6 +6,11 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description.plugins import PluginDescription
 from bullet_sim.pose import IDENTITY, Pose
 
+WIDE_ANGLE = "wideanglecamera"  # looks through its `<lens>`
+CAMERA_TYPES = ("camera", WIDE_ANGLE, "multicamera", "depth", "depth_camera", "rgbd_camera")
+RAY_TYPES = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+SENSOR_TYPES = (*CAMERA_TYPES, *RAY_TYPES, "imu", "contact", "force_torque")  # simulated
+
 
 @dataclass(frozen=True)
 class Noise:
@@ -82,7 +87,7 @@ class SensorDescription:
     """A sensor on a link. `cameras` has one entry for camera types, several for multicamera."""
 
     name: str
-    type: str  # camera, depth, multicamera, ray, gpu_ray, imu, contact …
+    type: str  # one of SENSOR_TYPES, or one that is not simulated
     pose: Pose = IDENTITY  # in the link frame
     update_rate: float = 0.0  # Hz; 0: as often as possible
     always_on: bool = False

@@ -1,1 +1,1 @@
-"""Drive trains: from a velocity command to joint motors, and odometry back."""
+"""Drives: from a velocity command to joint motors, or the body itself, and odometry back."""

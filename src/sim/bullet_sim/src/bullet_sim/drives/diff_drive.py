@@ -1,4 +1,4 @@
-"""Differential drive: two velocity motors, with Gazebo's limit on wheel acceleration."""
+"""Differential drive: two velocity motors, with a limit on wheel acceleration."""
 
 import math
 from dataclasses import dataclass
@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
 from bullet_sim.pose import Pose, rotate
+from bullet_sim.twist import add, dot, negative
 
 SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
 
 
 @dataclass(frozen=True)
 class DiffDriveParameters:
-    """Geometry and motors; defaults are those of gazebo_ros_diff_drive.
+    """Geometry and motors; defaults are those of gazebo_ros_diff_drive.cpp, Load.
 
     As there, a negative separation reverses turns, and a negative diameter reverses all.
     """
@@ -64,11 +65,9 @@ def turns_backwards(left: tuple[Joint, Pose], right: tuple[Joint, Pose],
     Each joint comes with the pose of its child link. A wheel that turns about an axis drives to
     where that axis points to the left, so the left wheel lies further along it.
     """
-    across = [a - b for a, b in zip(left[1].position, right[1].position, strict=True)]
+    across = add(left[1].position, negative(right[1].position))
     sense = math.copysign(1.0, parameters.wheel_separation * parameters.wheel_diameter)
-    return all(
-        sense * sum(a * b for a, b in zip(_axis(*wheel), across, strict=True)) < 0
-        for wheel in (left, right))
+    return all(sense * dot(_axis(*wheel), across) < 0 for wheel in (left, right))
 
 
 def _axis(joint: Joint, link: Pose) -> tuple[float, float, float]:

@@ -26,7 +26,7 @@ class PlanarDrive:
         self._wanted = (0.0, 0.0, 0.0)
 
     def update(self) -> None:
-        """Give the model the wanted velocity; none upwards, as gazebo_ros_planar_move does."""
+        """Give the model the wanted velocity; none upwards (gazebo_ros_planar_move.cpp)."""
         if not any(self._wanted) and self._still():
             return  # so that a world in which nothing moves can come to rest
         forward, leftward, yaw_rate = self._wanted

@@ -10,8 +10,7 @@ from bullet_sim.formats.resources import DATA_FOLDER
 @cache
 def named_materials() -> dict[str, Material]:
     """All of them by full name."""
-    with (DATA_FOLDER / "gazebo_materials.toml").open("rb") as file:
-        table = tomllib.load(file)
+    table = tomllib.loads((DATA_FOLDER / "gazebo_materials.toml").read_text(encoding="utf-8"))
     return {name: Material(**_as_fields(entry)) for name, entry in table.items()}
 
 

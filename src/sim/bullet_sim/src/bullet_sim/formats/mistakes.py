@@ -1,4 +1,4 @@
-"""Says what is wrong in a text and reads on without it, as sdformat does; so many times at most."""
+"""Says what is wrong in a text and reads on without it; so many times at most."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -17,14 +17,14 @@ Read = TypeVar("Read")
 
 
 @dataclass
-class _Said:
+class _Report:
     """Of one load: the lines, without those that came again, and the files being read."""
 
     lines: set[str] = field(default_factory=set)
     files: list[str] = field(default_factory=list)
 
 
-_said: ContextVar[_Said | None] = ContextVar("said", default=None)
+_report: ContextVar[_Report | None] = ContextVar("report", default=None)
 
 
 @contextmanager
@@ -33,29 +33,29 @@ def reading(file: str = "") -> Iterator[None]:
 
     The outermost one counts the lines, and ends with how many more there would have been.
     """
-    outer = _said.get()
-    said = outer or _Said()
-    said.files.append(file)
-    token = _said.set(said)
+    outer = _report.get()
+    report = outer or _Report()
+    report.files.append(file)
+    token = _report.set(report)
     try:
         yield
     finally:
-        _said.reset(token)
-        said.files.pop()
-        if outer is None and len(said.lines) > MOST_LINES:
-            logger.error("and %d more such lines%s", len(said.lines) - MOST_LINES,
+        _report.reset(token)
+        report.files.pop()
+        if outer is None and len(report.lines) > MOST_LINES:
+            logger.error("and %d more such lines%s", len(report.lines) - MOST_LINES,
                          f", in {file} and what it includes" if file else "")
 
 
 def mistake(message: object) -> None:
     """One error line, once per load."""
-    said = _said.get() or _Said()
-    file = said.files[-1] if said.files else ""
+    report = _report.get() or _Report()
+    file = report.files[-1] if report.files else ""
     line = f"{file}: {message}" if file else str(message)
-    if line in said.lines:
+    if line in report.lines:
         return
-    said.lines.add(line)
-    if len(said.lines) <= MOST_LINES:
+    report.lines.add(line)
+    if len(report.lines) <= MOST_LINES:
         logger.error("%s", shortened(line, LONGEST_LINE))
 
 

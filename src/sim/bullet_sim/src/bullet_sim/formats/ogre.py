@@ -170,5 +170,5 @@ def _numbers(name: str, keyword: str, words: list[str]) -> list[float]:
         return [float(word) for word in words]
     except ValueError:
         raise FormatError(
-            f"material {name!r}: {keyword} {' '.join(words)!r} has a word that is no number"
+            f"material {name!r}: {keyword} {' '.join(words)!r} has a word that is not a number"
         ) from None

@@ -50,15 +50,14 @@ def _along(pose: Pose, factors: Vector3) -> Vector3:
 
 
 def prop_mesh(folder: str) -> PropMesh:
-    """That of a folder of data/models."""
+    """That of a folder of data/models. FormatError if our own table is wrong."""
     return read_prop_meshes(FILE).get(folder, PropMesh())
 
 
 @functools.cache
 def read_prop_meshes(file: Path) -> dict[str, PropMesh]:
     """The file's tables. FormatError for an unknown key, a wrong count, a scale of 0."""
-    with file.open("rb") as opened:
-        tables = tomllib.load(opened)
+    tables = tomllib.loads(file.read_text(encoding="utf-8"))
     return {name: _mesh(f"{file}: [{name}]", table) for name, table in tables.items()}
 
 

@@ -39,14 +39,16 @@ def read_parts(
 
     A missing mesh of a model that we have is that model's own visuals, or collisions. They keep
     their colours; what else is written of the part holds for all of them.
+
+    FormatError of a shape that cannot be.
     """
     file = _prop_of(element, source)
     if file is None:
         part = read(element, source, link)
         return [] if part is None else [part]
     key = f"mesh of {file.parent.name}"
-    if key not in source.said:
-        source.said.add(key)
+    if key not in source.warned:
+        source.warned.add(key)
         logger.info("%s: %s is not here; the plain shapes of model://%s are taken", link,
                     child_text(element, "geometry/mesh/uri"), file.parent.name)
     inside = source.entering(file)

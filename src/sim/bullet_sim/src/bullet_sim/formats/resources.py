@@ -1,4 +1,4 @@
-"""Finds the files behind `model://`, `package://`, `file://` and plain names, in Gazebo's order."""
+"""Finds the files behind `model://`, `package://`, `file://` and plain names."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class Resources:
         extra_resource_paths: Iterable[str | Path] = (),
         find_package: FindPackage | None = None,
     ) -> Resources:
-        """Gazebo's paths: home, our own folders, the environment's, then what packages export."""
+        """home, our own folders, the environment's, then what packages export.
+
+        The variables are those of Gazebo's SystemPaths.cc.
+        """
         home = Path(environ.get("HOME") or Path.home())
         models = [home / ".gazebo" / "models", DATA_FOLDER / "models"]
         return cls(

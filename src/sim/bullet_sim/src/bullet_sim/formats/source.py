@@ -18,14 +18,14 @@ NEWEST_SDF = (1, 7)
 
 @dataclass(frozen=True)
 class Source:
-    """One text with its SDF version; `said` and `scripts` are shared by everything it includes."""
+    """One text with its SDF version; all that it includes shares `warned` and `scripts`."""
 
     resources: Resources
     # Of a file that an <include> names, SDF or URDF; the reader of URDF itself uses those of SDF.
     read_root: Callable[[Element, Source], ModelDescription] | None = None
     version: tuple[int, int] = NEWEST_SDF
     folder: Path | None = None  # of the text's file
-    said: set[str] = field(default_factory=set)
+    warned: set[str] = field(default_factory=set)
     scripts: dict = field(default_factory=dict)  # material script path -> parsed materials
     including: tuple[Path, ...] = ()  # files being read, outermost first
     files: list[Path] = field(default_factory=list)  # all that were included
@@ -33,8 +33,8 @@ class Source:
     def warn_once(self, message: str, about: str = "") -> None:
         """A warning that is given once per load, or once `about` a thing met in several places."""
         key = about or message
-        if key not in self.said:
-            self.said.add(key)
+        if key not in self.warned:
+            self.warned.add(key)
             logger.warning(message)
 
     def of_root(self, root: Element) -> Source:

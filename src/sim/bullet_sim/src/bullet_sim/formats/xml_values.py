@@ -1,12 +1,13 @@
 """Numbers, vectors, colours and poses out of XML elements, with errors that say where.
 
-The readers that take a default give one error line and the default for what cannot be read, as
-sdformat does; the checks that do not (`numbers`, `not_negative`, `bounded`) raise FormatError.
+The readers that take a default give one error line and the default for what cannot be read, as in
+sdformat's Param.cc, SetFromString; the checks that do not (`numbers`, `not_negative`, `bounded`)
+raise FormatError.
 """
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, TypeVar
 from xml.etree.ElementTree import Element
 
@@ -23,7 +24,7 @@ __all__ = [
 ]
 
 TRUE_WORDS = ("true", "1")
-# Lengths, masses and poses beyond this are mistakes, and their squares are no numbers any more.
+# Lengths, masses and poses beyond this are mistakes, and their squares overflow.
 # (Limits of joints may be larger: saved files write the largest number there is.)
 LARGEST = 1e12
 LONGEST_QUOTE = 80  # characters
@@ -80,6 +81,18 @@ def or_default(read: Callable[[], Value], default: Value) -> Value:
         return default
 
 
+def one_of(known: Collection[str], kind: str, written: str, usual: str, where: str) -> str:
+    """The written word; the usual one, with an error line, where it is not known.
+
+    `kind` says of what the words are names.
+    """
+    if written in known:
+        return written
+    instead(FormatError(f"{where}: no {kind} named {written!r}; there are: {', '.join(known)}"),
+            shown(usual))
+    return usual
+
+
 def shown(value: float | Sequence[float] | Pose | str) -> str:
     """A value as a file would have it, for an error line."""
     match value:
@@ -114,7 +127,7 @@ def amount(parent: Element, path: str, default: float, where: str) -> float:
 
 
 def length(parent: Element, path: str, default: float, where: str) -> float:
-    """As `amount`, for a shape: one of a length that cannot be is an error, and no other shape."""
+    """As `amount`, for a shape: of a length that cannot be FormatError, and no other shape."""
     return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 

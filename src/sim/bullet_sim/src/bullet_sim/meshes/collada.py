@@ -1,8 +1,8 @@
 """COLLADA (.dae) files as Gazebo reads them: the unit scales, up_axis is ignored.
 
-Gazebo multiplies by the file's metres per unit and never turns the model, whatever up_axis says;
-models made for it are drawn accordingly, so a Y_UP file stays as its numbers are. Skins are drawn
-in their bind pose.
+Its ColladaLoader.cc, Load, multiplies by the file's metres per unit and never turns the model,
+whatever up_axis says; models made for it are drawn accordingly, so a Y_UP file stays as its numbers
+are. Skins are drawn in their bind pose.
 """
 
 import logging
@@ -129,7 +129,7 @@ def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> Mesh
 
 
 def _material(effect: Any, folder: Path) -> Material:
-    """Gazebo reads no specular colour from COLLADA, so nor do we."""
+    """Without a specular colour: models that are made for Gazebo rely on having none."""
     texture = _texture(effect.diffuse, folder)
     diffuse = _colour(effect.diffuse, (1.0, 1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7, 1.0))
     return Material(

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from bullet_sim.description import ImageExtrusion, Polyline, Strip
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.meshes.images import read_image, shrunk
 from bullet_sim.meshes.part import MeshPart, flat_shaded
 
@@ -22,7 +22,7 @@ PRISM_FACES = np.array([
 
 
 def polyline_part(shape: Polyline) -> MeshPart:
-    """The outlines as a solid on z = 0."""
+    """The outlines as a solid on z = 0. FormatError of outlines that enclose nothing."""
     return _prisms(trapezoids(shape.outlines), shape.height)
 
 
@@ -31,10 +31,8 @@ def image_part(shape: ImageExtrusion) -> MeshPart:
 
     FormatError without a dark pixel, and as of `read_image`.
     """
-    try:
+    with prefixed("image"):
         image = read_image(shape.path, cv2.IMREAD_GRAYSCALE)
-    except FormatError as error:
-        raise FormatError(f"image {error}") from None
     pixel = shape.scale  # m
     longest = max(image.shape)
     if longest > LARGEST_PICTURE_PX:

@@ -3,7 +3,7 @@
 import functools
 
 from bullet_sim.description import Generated, Heightmap, ImageExtrusion, Polyline, Strip
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.meshes.extrusion import image_part, polyline_part, strip_part
 from bullet_sim.meshes.heightmap import heightmap_parts
 from bullet_sim.meshes.images import check_image
@@ -13,10 +13,8 @@ from bullet_sim.meshes.part import MeshPart
 def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
     """Parts of one material each, in the link frame; FormatError where there is nothing to see."""
     path = getattr(shape, "path", None)
-    try:
+    with prefixed("image"):
         modified_ns = check_image(path).st_mtime_ns if path else 0
-    except FormatError as error:
-        raise FormatError(f"image {error}") from None
     parts = _made(shape, modified_ns)
     if not any(len(part.faces) for part in parts):
         raise FormatError(f"{type(shape).__name__} has no surface; give it a size and a height")

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from bullet_sim.description import Heightmap, Material, TerrainLayer
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import prefixed
 from bullet_sim.meshes.images import read_image
 from bullet_sim.meshes.part import MeshPart, grid_faces
 
@@ -47,11 +47,9 @@ def _heights(shape: Heightmap) -> np.ndarray:
     """(rows, columns) m above the black level, the image's upper row first."""
     if shape.path is None:
         return np.zeros((2, 2))
-    try:
+    with prefixed("heightmap"):
         image = read_image(shape.path, cv2.IMREAD_ANYDEPTH | cv2.IMREAD_GRAYSCALE,
                            "give a grey PNG")
-    except FormatError as error:
-        raise FormatError(f"heightmap {error}") from None
     white = np.iinfo(image.dtype).max if image.dtype.kind == "u" else max(float(image.max()), 1e-9)
     size = [min(max(side, 2), FINEST) for side in image.shape]
     grey = image if size == list(image.shape) else _sampled(image, *size)

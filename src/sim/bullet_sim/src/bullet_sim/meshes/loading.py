@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bullet_sim.description import Generated, Mesh
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.files import check_file
 from bullet_sim.meshes.collada import read_collada
 from bullet_sim.meshes.generated import generated_parts
@@ -39,10 +39,8 @@ def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)
-    try:
+    with prefixed("mesh"):
         status = check_file(geometry.path, LARGEST_FILE, "export it with fewer triangles")
-    except FormatError as error:
-        raise FormatError(f"mesh {error}") from None
     return _load(geometry, status.st_mtime_ns)
 
 
@@ -50,6 +48,8 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
     """The triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32.
 
     Of more than `MOST_COLLIDING`, so many that stay close to them.
+
+    FormatError of a file that cannot be read.
     """
     whole = join_parts(load_mesh(geometry))
     vertices, faces = whole.vertices, whole.faces

@@ -13,7 +13,10 @@ Entry = dict[str, list[str]]  # keyword in small letters -> its words
 
 
 def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
-    """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning."""
+    """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning.
+
+    FormatError of numbers that cannot be.
+    """
     values: dict[str, Entry] = {}
     for name in libraries:
         library = find_beside(name, path.parent)
@@ -42,7 +45,7 @@ def _material(entry: Entry, mesh: Path) -> Material:
     texture = _texture(entry.get("map_kd"), mesh)
     diffuse = _colour(entry.get("kd"), (1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7))
     return Material(
-        # As Gazebo: exporters leave Ka black or white whatever the surface is.
+        # Exporters leave Ka black or white whatever the surface is.
         ambient=(*diffuse, 1.0),
         diffuse=(*diffuse, _opacity(entry)),
         specular=(*_colour(entry.get("ks"), (0.0, 0.0, 0.0)), 1.0),

@@ -16,7 +16,8 @@ from bullet_sim.description import (
 )
 from bullet_sim.physics.axes import MOVING, single_axis_joints
 from bullet_sim.physics.inertia import sound_inertial
-from bullet_sim.pose import IDENTITY, Pose, Vector3
+from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.twist import negative
 
 WORLD = "world"
 Member = tuple[LinkDescription, JointDescription | None]  # None: nothing carries the link
@@ -120,14 +121,9 @@ def _towards(
     if joint.child == child:
         return joint
     old_child = IDENTITY if joint.child == WORLD else links[joint.child].pose
-    return replace(joint, parent=joint.child, child=child, axis=_opposite(joint.axis),
-                   axis2=replace(joint.axis2, axis=_opposite(joint.axis2.axis)),
+    return replace(joint, parent=joint.child, child=child, axis=negative(joint.axis),
+                   axis2=replace(joint.axis2, axis=negative(joint.axis2.axis)),
                    pose=links[child].pose.inverse() * old_child * joint.pose)
-
-
-def _opposite(axis: Vector3) -> Vector3:
-    x, y, z = axis
-    return (-x, -y, -z)
 
 
 def loop_joints(model: ModelDescription, trees: list[Tree]) -> list[JointDescription]:

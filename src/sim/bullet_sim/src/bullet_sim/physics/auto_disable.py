@@ -1,8 +1,8 @@
 """Knows when nothing moves: then a step would only repeat the one before, and is left out.
 
-And whether something moves briskly: then steps need not be solved to the last bit.
+And whether something moves fast: then steps need not be solved to the last bit.
 
-Engines call this auto-disabling; ODE does it below 0.01 m/s and 0.01 rad/s. Ours is stricter, and
+Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and
 for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
 """
 
@@ -56,9 +56,9 @@ class AutoDisable:
     def __init__(self):
         self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
-        self.is_fast = False  # whether anything was brisk when last looked at
-        self.found_nan = False  # whether a speed was no number when last looked at
-        self._steps = 0
+        self.is_fast = False  # whether anything was fast when last looked at
+        self.found_nan = False  # whether a speed was not finite when last looked at
+        self.steps = 0  # that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)
         self.set_step(SAMPLE_PERIOD)
 
@@ -80,13 +80,13 @@ class AutoDisable:
     @property
     def is_sampling(self) -> bool:
         """Whether a sample is taken after this step."""
-        return self._steps % self.sample_steps == 0
+        return self.steps % self.sample_steps == 0
 
     def step_needed(self) -> bool:
         """Whether the next step would do anything; to be called before each."""
         if self.disabled:
             return False
-        self._steps += 1
+        self.steps += 1
         if self.is_sampling:
             self._sample()
         return True
@@ -109,7 +109,7 @@ class AutoDisable:
 
 
 def _motion(speed: float, rate: float, wants_to_move: bool) -> float:
-    """How fast it is, in parts of what counts as still; infinite if it is not, or not a number."""
+    """How fast it is, in parts of what counts as still; infinite if it is not, or not finite."""
     if speed < REST_SPEED and rate < REST_RATE and not wants_to_move:
         return max(speed / REST_SPEED, rate / REST_RATE)
     return math.inf

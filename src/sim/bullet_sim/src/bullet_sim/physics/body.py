@@ -8,16 +8,11 @@ from dataclasses import replace
 from typing import Protocol
 
 from bullet_sim.description import Inertial
+from bullet_sim.physics import contact_parameters as contact
 from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.contact_parameters import (
-    contact_values,
-    corrected_part,
-    correcting_velocity_values,
-    hardness,
-)
 from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.quiet import EngineError, pybullet
@@ -35,7 +30,7 @@ class Attachment(Protocol):
     It is false where it has nothing to do.
     """
 
-    bodies: list[Body]  # each has it in `attached`
+    bodies: list[Body]  # each once, and each has it in `attached`
 
     def attach(self) -> None:
         """Make it, now that a body is loaded."""
@@ -128,6 +123,7 @@ class Body(BodyLinks, BodyJoints):
 
     def unload(self) -> None:
         """Unload it, with its attachments; `load` is the inverse."""
+        self._keep_loads()
         for attachment in self.attached:
             attachment.detach()
         self._destroy()
@@ -155,7 +151,7 @@ class Body(BodyLinks, BodyJoints):
         self.rebuild({held.name: replace(held, joint=replace(held.joint, **changes))})
 
     def _set_up_contacts(self) -> None:
-        # PyBullet damps by default; Gazebo does so only where a model asks for it.
+        # PyBullet damps by default; SDF's <velocity_decay> is 0 by default.
         self.change(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         mass = self._mass()
         for link in self.tree.links:
@@ -164,7 +160,7 @@ class Body(BodyLinks, BodyJoints):
                 values["jointDamping"] = link.joint.damping
             if link.collisions:
                 com = self.com_in_link(self.index[link.name])
-                values |= contact_values(link.collisions[0], self.tree.fixed, com, mass)
+                values |= contact.contact_values(link.collisions[0], self.tree.fixed, com, mass)
             self.change(pybullet.changeDynamics, self.index[link.name], **values)
 
     def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
@@ -173,9 +169,9 @@ class Body(BodyLinks, BodyJoints):
         for link in self.tree.links:
             if not link.collisions:
                 continue
-            values = hardness(link.collisions[0].surface, self.tree.fixed, mass)
-            if values and part is not None and part < corrected_part(values, timestep):
-                values = correcting_velocity_values(part, timestep)
+            values = contact.hardness(link.collisions[0].surface, self.tree.fixed, mass)
+            if values and part is not None and part < contact.corrected_part(values, timestep):
+                values = contact.correcting_velocity_values(part, timestep)
             if values:
                 self.change_without_waking(
                     pybullet.changeDynamics, self.index[link.name], **values)
@@ -204,7 +200,8 @@ class Body(BodyLinks, BodyJoints):
             with contextlib.suppress(EngineError):
                 attachment.detach()
             for body in attachment.bodies:
-                body.attached.remove(attachment)
+                if attachment in body.attached:
+                    body.attached.remove(attachment)
         self._destroy()
 
     def _destroy(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterable, Sequence
 from statistics import fmean
@@ -26,9 +27,14 @@ class BodyJoints(EngineHandle):
         self.ball_index = {link.joint.name: self.index[link.name] for link in joints
                             if link.joint.type == "ball"}
         self._motors: dict[str, tuple[float, float]] = {}  # joint: rate and effort it is held with
+        self._feedback: dict[int, deque[JointWrench]] = {}  # of measured joints
+        self._loads_before: dict[int, JointWrench] = {}  # of those, when the body was unloaded
+        self._unloaded_at = 0  # in steps of the engine
 
     def _set_up_joints(self) -> None:
-        self._feedback: dict[int, deque[JointWrench]] = {}  # of measured joints
+        measured, self._feedback = list(self._feedback), {}
+        for index in measured:  # also those that are measured since they were read
+            self.enable_feedback(index)
         for index in self.ball_index.values():
             self.change(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
                         targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
@@ -68,13 +74,16 @@ class BodyJoints(EngineHandle):
         """A joint's motor effort in the last step, and its load as six numbers.
 
         In a world at rest, means over the steps before: contacts vibrate, and the last step's value
-        would be reported for the whole rest.
+        would be reported for the whole rest. Before the first step of a body that was unloaded and
+        loaded again, the load that it had before.
         """
+        if self._unloaded_at == self.client.auto_disable.steps and index in self._loads_before:
+            return self._loads_before[index]
         rows = self._feedback.get(index)
         if not rows or not self.client.auto_disable.disabled:
             return self._last_effort(index)
-        efforts, bore = zip(*rows, strict=True)
-        return fmean(efforts), tuple(map(fmean, zip(*bore, strict=True)))
+        efforts, loads = zip(*rows, strict=True)
+        return fmean(efforts), tuple(map(fmean, zip(*loads, strict=True)))
 
     def keep_feedback(self) -> None:
         """Record the last step's loads; as many steps as there are between two samples."""
@@ -82,6 +91,13 @@ class BodyJoints(EngineHandle):
             rows.append(self._last_effort(index))
             while len(rows) > self.client.auto_disable.sample_steps:
                 rows.popleft()
+
+    def _keep_loads(self) -> None:
+        """Before the body is unloaded: the loads to report until the next step."""
+        loads = {index: self.joint_effort(index) for index in self._feedback}
+        self._loads_before = {index: load for index, load in loads.items()
+                              if math.isfinite(load[0] + sum(load[1]))}
+        self._unloaded_at = self.client.auto_disable.steps
 
     def _last_effort(self, index: int) -> JointWrench:
         if index in self.ball_index.values():
@@ -111,7 +127,7 @@ class BodyJoints(EngineHandle):
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a rate with at most `effort` (N m or N), until the next command.
 
-        Below zero there is none, as in ODE.
+        Below zero there is none.
         """
         effort = min(max(effort, 0.0), STRONGEST)
         if self._motors.get(joint) == (velocity, effort):

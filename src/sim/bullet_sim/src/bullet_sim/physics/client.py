@@ -54,7 +54,7 @@ class PhysicsClient:
             numSubSteps=0,
             numSolverIterations=max(physics.iterations, FEWEST_ITERATIONS),
             solverResidualThreshold=EXACT,
-            # A pyramid, as Gazebo's ODE has it. The engine's cone lets light driven wheels creep:
+            # A pyramid, SDF's default <friction_model>. A cone lets light driven wheels creep:
             # a turn in place was 8 % slow.
             enableConeFriction=0,
             deterministicOverlappingPairs=1,

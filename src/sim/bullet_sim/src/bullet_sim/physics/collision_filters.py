@@ -1,7 +1,7 @@
-"""Which of a model's collisions meet: bit masks, and Gazebo's rules for links of one model.
+"""Which of a model's collisions meet: bit masks, and rules for links of one model.
 
 Links of one model collide only where both say so with `<self_collide>`, and never when a joint
-holds them together.
+holds them together (Gazebo's ODEPhysics::CollisionCallback).
 """
 
 import itertools
@@ -14,7 +14,8 @@ from bullet_sim.physics.quiet import pybullet
 ALL_BITS = 0xFFFF  # SDF's default of collide_bitmask
 SHIFT = 8  # of these bits in the engine's masks, whose lowest ones say what moves
 MOVING, STILL = 1, 2  # the engine's own groups
-Part = tuple[Body, int, str]  # body, engine's number of a link with collisions, described link
+# Body, engine's number of a link with collisions, described link.
+FilteredLink = tuple[Body, int, str]
 
 
 class CollisionFilters:
@@ -42,7 +43,7 @@ class CollisionFilters:
         for body, index, _ in parts:
             self._mask(body, index)
         for one, other in itertools.combinations(parts, 2) if not self._static else ():
-            if self._has_to_be_told(one, other):
+            if self._needs_filter(one, other):
                 pair = one[0].number, other[0].number, one[1], other[1]
                 self._client.change(pybullet.setCollisionFilterPair, *pair, 0)
                 self._pairs.append(pair)
@@ -63,7 +64,7 @@ class CollisionFilters:
         others = 0 if bits == 0 else group | MOVING | (0 if body.tree.fixed else STILL)
         self._client.change(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
 
-    def _has_to_be_told(self, one: Part, other: Part) -> bool:
+    def _needs_filter(self, one: FilteredLink, other: FilteredLink) -> bool:
         """Whether the engine would let them meet although they must not."""
         names = {one[2], other[2]}
         if one[0] is other[0] and not one[0].tree.self_collide:

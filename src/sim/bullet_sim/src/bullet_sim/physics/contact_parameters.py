@@ -7,7 +7,8 @@ from bullet_sim.pose import Pose, conjugate, multiply, rotate
 
 SOFTEST, HARDEST = 1.0, 1e5  # N/m between which kp is taken; harder ones are as below
 # Rigid contacts leave open which of four carries how much: robots on two wheels and two casters
-# stood with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm. Here a body's
+# stood with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm (ODE manual,
+# dWorldSetContactSurfaceLayer; the depth is SDF's contact_surface_layer). Here a body's
 # weight on three of them sinks in by 0.05 mm: deeper, and what the engine still holds of a wheel's
 # contacts behind its lowest point pushes a robot without motors on (0.3 m in 5 s at 0.5 mm).
 SINK, SHARING = 5e-5, 3  # m, contacts
@@ -28,9 +29,9 @@ def contact_values(collision: Collision, fixed: bool, com: Pose, mass: float
 
     `mass` (kg) is that of the whole body.
 
-    The engine multiplies two frictions where ODE takes the smaller one: what never moves counts
-    as 1 at most, so that the product is the moving part's own coefficient. Two restitutions are
-    multiplied too, hence the roots: two equal values give that value.
+    The engine multiplies two frictions where Gazebo's ODEPhysics::Collide takes the smaller one:
+    what never moves counts as 1 at most, so that the product is the moving part's own coefficient.
+    Two restitutions are multiplied too, hence the roots: two equal values give that value.
     """
     surface = collision.surface
     values: dict[str, object] = {

@@ -1,7 +1,7 @@
 """What touches what: the engine's contacts under the names of the description's collisions.
 
-Conventions are those of ODE, as Gazebo reports them: the normal points into body 1, the force is
-the one on body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
+Conventions are those of ODE's dContactGeom: the normal points into body 1, the force is the one on
+body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
 """
 
 from __future__ import annotations
@@ -90,7 +90,10 @@ def _gap(collision: Collision, point: Vector3) -> float:
 
 
 def signed_distance(geometry: Geometry, point: Vector3) -> float:
-    """From a shape's surface, m, negative inside; a mesh counts as the box around it."""
+    """From a shape's surface, m, negative inside; a mesh counts as the box around it.
+
+    FormatError of a mesh that cannot be read.
+    """
     x, y, z = point
     match geometry:
         case Sphere(radius):

@@ -1,8 +1,9 @@
 """Bounds the velocity at which overlapping bodies separate (ODE: contact_max_correcting_vel).
 
 A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as
-many launch files do, would leave it at 5 m/s. ODE bounds that speed, Bullet does not; so as long as
-something is so deep, all contacts of the world correct only a small part of their depth in a step.
+many launch files do, would leave it at 5 m/s. ODE bounds that speed (ODE manual,
+dWorldSetContactMaxCorrectingVel), Bullet does not; so as long as something is so deep, all contacts
+of the world correct only a small part of their depth in a step.
 """
 
 from collections.abc import Callable, Sequence

@@ -45,6 +45,6 @@ class EngineHandle:
             return True
         if what not in self._refused:
             self._refused.add(what)
-            log.warning("%s: a %s of %s is no number and is left out, here and from now on",
+            log.warning("%s: a %s of %s is not finite and is left out, here and from now on",
                         self.tree.links[-1].described, what, ", ".join(map(str, values)))
         return False

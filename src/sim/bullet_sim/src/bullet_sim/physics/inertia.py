@@ -2,7 +2,7 @@
 
 The engine stops a link from turning at all when its principal moments break the triangle rule
 (each at most the sum of the others), and lets it fall through the ground when they are far too
-small for its size: contacts then turn it round within a step. ODE takes both as they are.
+small for its size: contacts then turn it round within a step.
 """
 
 import logging
@@ -29,7 +29,7 @@ ROUNDING = 1e-6
 def check_inertial(inertial: Inertial) -> None:
     """A SimulationError where the numbers are none, or no tensor of inertia.
 
-    What breaks only the triangle rule passes, as in ODE: `sound_inertial` mends it.
+    What breaks only the triangle rule passes: `sound_inertial` mends it.
     """
     values = (inertial.mass, *inertial.inertia, *inertial.pose.position)
     if not all(map(math.isfinite, values)) or inertial.mass <= 0:

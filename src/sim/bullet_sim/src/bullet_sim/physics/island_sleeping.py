@@ -1,10 +1,10 @@
 """Disables groups of bodies in contact that move too slowly to get anywhere (Bullet's islands).
 
-Overlapping shapes push one another without end, too fast for `rest` and too slowly to get anywhere.
-As Gazebo does with ODE: models without joints that touch are disabled once all of them have kept
-below 0.1 m/s and 0.1 rad/s for a second; whatever changes one of them, or pushes it, ends that.
-Unlike there, the means over that second count, and a body that touches none of its kind goes on:
-a ball that rolls slowly rolls.
+Overlapping shapes push one another without end, too fast for `auto_disable` and too slowly to get
+anywhere. As in Gazebo's ODEPhysics::Load (physics/ode/ODEPhysics.cc): models without joints that
+touch are disabled once all of them have kept below 0.1 m/s and 0.1 rad/s for a second; whatever
+changes one of them, or pushes it, ends that. Unlike there, the means over that second count, and a
+body that touches none of its kind goes on: a ball that rolls slowly rolls.
 """
 
 import math
@@ -15,10 +15,10 @@ from operator import mul
 from bullet_sim.physics.auto_disable import SAMPLE_PERIOD, SimulatedBody
 from bullet_sim.physics.quiet import pybullet
 
-SPEED = 0.1  # m/s, of the mean over SAMPLES: Gazebo's threshold (ODEPhysics.cc)
+SPEED = 0.1  # m/s, of the mean over SAMPLES: ODEPhysics::Load's threshold
 RATE = 0.1  # rad/s
 TREMBLING = 3.0  # times as fast it may be between two samples
-SAMPLES = round(1.0 / SAMPLE_PERIOD)  # Gazebo's second
+SAMPLES = round(1.0 / SAMPLE_PERIOD)  # a second, as there
 # (m/s)^2 + (rad/s)^2 above which the engine wakes a body that is pushed
 SLEEP_THRESHOLD = 2 * 0.05 ** 2
 # The same while it falls asleep: the engine solves one more step, which pushes.

@@ -1,8 +1,9 @@
 """Lets casters be a little lower than the wheels, as ODE's surface layer does.
 
-ODE lets contacts be that are no deeper than the layer, so that casters which are up to 1 mm too
-low do not lift the wheels. The engine's contacts push from the first: casters before and behind the
-wheels would carry the robot, and these spin. Hence the casters' shapes are put up a little.
+ODE lets contacts be that are no deeper than the layer (ODE manual, dWorldSetContactSurfaceLayer),
+so that casters which are up to 1 mm too low do not lift the wheels. The engine's contacts push from
+the first: casters before and behind the wheels would carry the robot, and these spin. Hence the
+casters' shapes are put up a little.
 """
 
 from dataclasses import replace

@@ -38,7 +38,7 @@ class LoopConstraints:
         return bool(self._constraints)
 
     def attach(self) -> None:
-        """Put the constraints in."""
+        """Put the constraints in. KeyError of a joint whose link is in no body."""
         for body in self.bodies:
             for name in body.joint_index:
                 if name.endswith(TRAVEL):

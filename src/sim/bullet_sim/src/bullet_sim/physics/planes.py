@@ -56,6 +56,6 @@ def _place(collision: Collision, frame: Pose) -> Place:
     normal = rotate(pose.orientation, collision.geometry.normal)
     distance = sum(n * p for n, p in zip(normal, pose.position, strict=True))
     surface = collision.surface
-    # More than 1 counts as 1 on what never moves, see Body.
+    # More than 1 counts as 1 on what never moves, see contact_parameters._friction.
     alike = (min(surface.mu, 1.0), surface.restitution, collision.laser_retro)
     return tuple(round(value, 6) + 0.0 for value in (*normal, distance, *alike))

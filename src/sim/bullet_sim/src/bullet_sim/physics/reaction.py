@@ -1,9 +1,9 @@
-"""Force and torque in a joint, as Gazebo gives them to a force-torque sensor."""
+"""Force and torque in a joint, for a force-torque sensor."""
 
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.body import Body
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
-from bullet_sim.twist import cross
+from bullet_sim.twist import add, cross, negative
 
 
 def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
@@ -26,26 +26,18 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     if moves:
         along = tuple(effort * part for part in link.joint.axis)
         if link.joint.type == "prismatic":
-            force = _sum(force, along)
+            force = add(force, along)
         elif link.joint.type != "ball":
-            torque = _sum(torque, along)
+            torque = add(torque, along)
     anchor = (0.0, 0.0, 0.0) if moves or joint is None else joint.pose.position
     arm = tuple(c - a for c, a in zip(com.position, anchor, strict=True))
-    torque = _sum(torque, cross(arm, force))
+    torque = add(torque, cross(arm, force))
     if not link.turned:
         out = link.offset.orientation
-        return _negative(rotate(out, force)), _negative(rotate(out, torque))
+        return negative(rotate(out, force)), negative(rotate(out, torque))
     # The engine's child is the described parent: the wrench on the described child is its negative.
     parent = next(other for other in body.tree.links if other.name == link.parent)
     here, there = (body.engine_frame(body.index[name]) for name in (link.name, parent.name))
     turn = multiply(conjugate(there.orientation), here.orientation)
     out = multiply(parent.offset.orientation, turn)
     return rotate(out, force), rotate(out, torque)
-
-
-def _sum(a, b) -> Vector3:
-    return tuple(x + y for x, y in zip(a, b, strict=True))
-
-
-def _negative(vector) -> Vector3:
-    return tuple(-x for x in vector)

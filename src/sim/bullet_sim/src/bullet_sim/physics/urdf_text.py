@@ -7,20 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from bullet_sim.description import (
-    Box,
-    Collision,
-    Cylinder,
-    Generated,
-    Geometry,
-    Heightmap,
-    ImageExtrusion,
-    Inertial,
-    Mesh,
-    Plane,
-    Polyline,
-    Sphere,
-)
+from bullet_sim import description
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
@@ -29,7 +16,7 @@ from bullet_sim.pose import Pose
 
 log = logging.getLogger(__name__)
 
-Triangles = Mesh | Generated
+Triangles = description.Mesh | description.Generated
 MeshPath = Callable[[Triangles, bool], str]  # of a mesh, or of its hull, to a file
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 HULL_MARGIN = 1e-3  # m, by which the engine's hulls are larger than their corners (measured)
@@ -97,14 +84,14 @@ def _origin(pose: Pose) -> str:
     return f'<origin xyz="{_numbers(pose.position)}" rpy="{_numbers(pose.rpy())}"/>'
 
 
-def _inertial(inertial: Inertial) -> str:
+def _inertial(inertial: description.Inertial) -> str:
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     tensor = " ".join(f'{n}="{v!r}"' for n, v in zip(names, inertial.inertia, strict=True))
     return (f'<inertial>{_origin(inertial.pose)}<mass value="{inertial.mass!r}"/>'
             f"<inertia {tensor}/></inertial>")
 
 
-def _collision(collision: Collision, fixed: bool, mesh_path: MeshPath) -> str:
+def _collision(collision: description.Collision, fixed: bool, mesh_path: MeshPath) -> str:
     # Triangles as they are for what never moves; a convex hull otherwise (the engine has no more).
     concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Triangles) else ""
     try:
@@ -116,17 +103,17 @@ def _collision(collision: Collision, fixed: bool, mesh_path: MeshPath) -> str:
             f"<geometry>{geometry}</geometry></collision>")
 
 
-def _geometry(geometry: Geometry, mesh_path: MeshPath, hull: bool) -> str:
+def _geometry(geometry: description.Geometry, mesh_path: MeshPath, hull: bool) -> str:
     match geometry:
-        case Box(size):
+        case description.Box(size):
             return f'<box size="{_numbers(size)}"/>'
-        case Cylinder(radius, length):
+        case description.Cylinder(radius, length):
             return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
-        case Sphere(radius):
+        case description.Sphere(radius):
             return f'<sphere radius="{radius!r}"/>'
-        case Plane(normal, _):
+        case description.Plane(normal, _):
             return f'<plane normal="{_numbers(normal)}"/>'
-        case Mesh() | Heightmap() | Polyline() | ImageExtrusion():
+        case _ if isinstance(geometry, Triangles):
             return f'<mesh filename={quoteattr(mesh_path(geometry, hull))}/>'
     raise TypeError(f"no engine shape for {geometry!r}")
 

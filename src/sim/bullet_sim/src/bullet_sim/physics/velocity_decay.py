@@ -1,4 +1,4 @@
-"""`<velocity_decay>`: of its speed a link loses a part in every step, as ODE has it.
+"""`<velocity_decay>`: of its speed a link loses a part in every step (ODE manual, Damping).
 
 The engine's own damping is one for all links of a body and grows with the square of the speed.
 """
@@ -9,7 +9,7 @@ from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Vector3, conjugate, rotate
 
-SLOWEST = 0.01  # m/s and rad/s below which ODE lets things be
+SLOWEST = 0.01  # m/s and rad/s below which nothing is lost: ODE's default thresholds
 
 
 class VelocityDecay:

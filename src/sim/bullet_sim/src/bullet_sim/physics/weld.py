@@ -2,7 +2,7 @@
 
 from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.quiet import pybullet
-from bullet_sim.pose import IDENTITY, Pose
+from bullet_sim.pose import Pose
 
 WORLD_BODY = -1  # PyBullet's number of what is no body
 STRONGEST = 1e6  # N and N m: more than any load of a robot
@@ -18,11 +18,23 @@ class Weld:
     def __init__(self, body: Body, link: str, other: Body | None = None, other_link: str = ""):
         self._body, self._link = body, link
         self._other, self._other_link = other, other_link
-        self.bodies = [body] if other is None else [body, other]
-        holder = IDENTITY if other is None else other.engine_frame(other.index[other_link])
-        self._pose_holder_link = holder.inverse() * body.engine_frame(body.index[link])
+        self.bodies = [body] if other in (None, body) else [body, other]
+        self._pose_holder_link = self._present_pose()
         self._constraint: int | None = None
         fasten(self)
+
+    def _present_pose(self) -> Pose:
+        """Of the link's frame, seen from what holds it."""
+        pose = self._body.engine_frame(self._body.index[self._link])
+        if self._other is None:
+            return pose
+        return self._other.engine_frame(self._other.index[self._other_link]).inverse() * pose
+
+    def renew(self) -> None:
+        """Hold the link as it is now, after it or its holder was put elsewhere."""
+        self.detach()
+        self._pose_holder_link = self._present_pose()
+        self.attach()
 
     def attach(self) -> None:
         """Put the constraint in, if both bodies are there."""

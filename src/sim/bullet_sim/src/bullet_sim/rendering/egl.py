@@ -3,7 +3,7 @@
 Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
 once, faces that look away and links outside the picture not drawn, near things first, light per
 corner where that is enough; no MSAA, no anisotropic filtering, no shadows. Back faces are
-not drawn, as in Gazebo: a camera inside its own housing sees out.
+not drawn, so that a camera inside its own housing sees out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What there is to see: lights, and links with surfaces and poses, as data without a renderer."""
+"""The scene: lights, and links with surfaces and poses, as data without a renderer."""
 
 import itertools
 import logging
@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 
 LinkKey = tuple[str, str]  # model, link
 
-# What a surface without any material looks like: a whitish grey, as in Gazebo.
+# What a surface without any material looks like: a whitish grey.
 DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7, 1.0))
 
 
@@ -120,7 +120,9 @@ class Scene(SceneState):
         """
         if key in self.nodes:
             raise NameTaken(f"the scene already has a link {'::'.join(key)}")
-        wanted = tuple(visuals)
+        self._put(key, tuple(visuals), pose)
+
+    def _put(self, key: LinkKey, wanted: tuple[Visual, ...], pose: Pose) -> None:
         shape = self._shapes.get(wanted)
         if shape is None:
             shape = self._shapes[wanted] = link_shape(wanted)
@@ -130,8 +132,7 @@ class Scene(SceneState):
 
     def add_visual(self, key: LinkKey, visual: Visual) -> None:
         """Show one visual more on a link that is there."""
-        pose = self.nodes.pop(key).pose
-        self.add_link(key, (*self.visuals[key], visual), pose)
+        self._put(key, (*self.visuals[key], visual), self.nodes[key].pose)
 
     def remove_model(self, model: str) -> None:
         """All links of a model; a model without links in the scene is no error."""

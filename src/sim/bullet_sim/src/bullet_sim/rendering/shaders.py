@@ -1,8 +1,9 @@
 """GLSL of the scene: one source, with the light worked out per corner or per pixel.
 
-Gazebo's arithmetic: emissive + ambient * scene ambient + sum over lights of diffuse and specular,
-clamped to 1, times the texture. No gamma. A surface without highlight under directional lights only
-is lit per corner, which is the same on flat faces and leaves little to do for each pixel.
+The fixed pipeline's arithmetic (OpenGL 2.1, 2.14.1): emissive + ambient * scene ambient + sum over
+lights of diffuse and specular, clamped to 1, times the texture. No gamma. A surface without
+highlight under directional lights only is lit per corner, which is the same on flat faces and
+leaves little to do for each pixel.
 """
 
 from pathlib import Path

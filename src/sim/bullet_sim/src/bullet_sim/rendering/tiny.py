@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pybullet
+from pybullet_utils.bullet_client import BulletClient
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
@@ -38,7 +39,7 @@ class TinyRenderer:
 
     def __init__(self, profiler: Profiler | None = None) -> None:
         self._profiler = profiler or Profiler()
-        self._client = pybullet.connect(pybullet.DIRECT)
+        self._client = BulletClient(pybullet.DIRECT)
         self._version = -1
         self._bodies: dict[_Placed, list[int]] = {}
         self._poses: dict[_Placed, Pose] = {}
@@ -49,7 +50,7 @@ class TinyRenderer:
         """RGB, and depth if wanted."""
         with self._profiler.measure("draw"):
             self._mirror(scene)
-            width, height, pixels, raw, _ = pybullet.getCameraImage(
+            width, height, pixels, raw, _ = self._client.getCameraImage(
                 view.width,
                 view.height,
                 _columns(view_matrix(view.pose)),
@@ -57,7 +58,6 @@ class TinyRenderer:
                 shadow=0,
                 flags=pybullet.ER_NO_SEGMENTATION_MASK,
                 renderer=pybullet.ER_TINY_RENDERER,
-                physicsClientId=self._client,
                 **_light(scene),
             )
         with self._profiler.measure("convert"):
@@ -75,7 +75,7 @@ class TinyRenderer:
         """It keeps only the last picture's, and what there was to see in that."""
 
     def close(self) -> None:
-        pybullet.disconnect(self._client)
+        self._client.disconnect()
 
     def _mirror(self, scene: SceneState) -> None:
         """Bring the client's bodies in line with the scene."""
@@ -96,7 +96,7 @@ class TinyRenderer:
 
     def _remove(self, placed: _Placed) -> None:
         for body in self._bodies.pop(placed):
-            pybullet.removeBody(body, physicsClientId=self._client)
+            self._client.removeBody(body)
 
     def _place(self, placed: _Placed, pose: Pose) -> None:
         shape = placed[1]
@@ -105,9 +105,7 @@ class TinyRenderer:
             normal = shape.parts[0].normals[0].astype(float)
             pose = pose * Pose(tuple(-rank * _RECESS * normal))
         for body in self._bodies[placed]:
-            pybullet.resetBasePositionAndOrientation(
-                body, pose.position, pose.orientation, physicsClientId=self._client
-            )
+            self._client.resetBasePositionAndOrientation(body, pose.position, pose.orientation)
 
     def _body(self, part: MeshPart) -> int:
         material = part.material
@@ -118,15 +116,9 @@ class TinyRenderer:
         }
         if part.uv is not None:
             arrays["uvs"] = _scaled_uv(part.uv, material).tolist()
-        visual = pybullet.createVisualShape(
-            pybullet.GEOM_MESH,
-            rgbaColor=_colour(material),
-            physicsClientId=self._client,
-            **arrays,
-        )
-        body = pybullet.createMultiBody(
-            baseVisualShapeIndex=visual, physicsClientId=self._client
-        )
+        visual = self._client.createVisualShape(
+            pybullet.GEOM_MESH, rgbaColor=_colour(material), **arrays)
+        body = self._client.createMultiBody(baseVisualShapeIndex=visual)
         if material.texture is not None and part.uv is not None:
             self._paint(body, material.texture)
         return body
@@ -135,15 +127,13 @@ class TinyRenderer:
         if path not in self._textures:
             try:
                 check_image(path)
-                texture = pybullet.loadTexture(path, physicsClientId=self._client)
+                texture = self._client.loadTexture(path)
             except (pybullet.error, FormatError):
                 log.warning("texture %s is left out: TinyRenderer cannot read it", path)
                 texture = -1
             self._textures[path] = texture
         if self._textures[path] >= 0:
-            pybullet.changeVisualShape(
-                body, -1, textureUniqueId=self._textures[path], physicsClientId=self._client
-            )
+            self._client.changeVisualShape(body, -1, textureUniqueId=self._textures[path])
 
 
 def _pieces(part: MeshPart) -> Iterator[MeshPart]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bullet_sim.description import CameraDescription, SensorDescription
+from bullet_sim.description import WIDE_ANGLE, CameraDescription, SensorDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.link import Link
 from bullet_sim.rendering.frame import LARGEST_SQUARE_PX, CameraView, drawable_size
@@ -18,8 +18,6 @@ from bullet_sim.sensors.wide_lens import WideLens, mistake_in_lens
 from bullet_sim.world import World
 
 log = logging.getLogger(__name__)
-
-WIDE_ANGLE = "wideanglecamera"  # the type of sensors that look through their <lens>
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ class CameraReading:
 class Camera:
     """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
 
-    A `<distortion>` bends the colours, not the depth, which stays a pinhole's as in Gazebo.
+    A `<distortion>` bends the colours, not the depth, which stays a pinhole's.
     FormatError without a <camera>, and for a picture that cannot be drawn.
     """
 

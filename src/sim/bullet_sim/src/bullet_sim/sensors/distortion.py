@@ -20,7 +20,7 @@ class Distortion:
     def __init__(self, camera: CameraDescription, focal_length_px: float, crop: bool):
         """With `crop` a barrel picture (k1 < 0) is enlarged until its black border is gone.
 
-        Cropped, it no longer agrees with its coefficients, as in Gazebo.
+        Cropped, it no longer agrees with its coefficients (gazebo_ros_camera_utils.cpp, Init).
         """
         size = np.array([camera.width, camera.height], float)
         self._centre = np.array(camera.distortion_centre) * size - 0.5  # index of a pixel

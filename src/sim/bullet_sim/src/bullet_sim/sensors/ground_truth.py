@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from bullet_sim.link import Link
-from bullet_sim.pose import Pose, Vector3, conjugate, rotate
-from bullet_sim.twist import Twist, cross
+from bullet_sim.pose import Pose
+from bullet_sim.twist import Twist, shifted_twist, twist_difference, twist_in
 from bullet_sim.world import World
 
 
@@ -25,23 +25,11 @@ class GroundTruth:
 
     def sample(self) -> GroundTruthReading:
         """Where it is now, and how it moves."""
-        pose, twist = self._link.pose * self._offset, self._link.twist
-        linear = _at(twist, self._link.pose.position, pose.position)
+        pose = self._link.pose * self._offset
+        twist = shifted_twist(self._link.twist, self._link.pose.position, pose.position)
         if self._reference is None:
-            return GroundTruthReading(self._world.time, pose, Twist(linear, twist.angular))
-        seen_from, moving = self._reference.pose, self._reference.twist
-        carried = _at(moving, seen_from.position, pose.position)
-        back = conjugate(seen_from.orientation)
-        seen = Twist(rotate(back, _difference(linear, carried)),
-                     rotate(back, _difference(twist.angular, moving.angular)))
-        return GroundTruthReading(self._world.time, seen_from.inverse() * pose, seen)
-
-
-def _at(twist: Twist, origin: Vector3, point: Vector3) -> Vector3:
-    """Velocity, m/s, of a point that a rigid body with this twist at `origin` carries."""
-    spin = cross(twist.angular, _difference(point, origin))
-    return tuple(v + s for v, s in zip(twist.linear, spin, strict=True))
-
-
-def _difference(a: Vector3, b: Vector3) -> Vector3:
-    return tuple(x - y for x, y in zip(a, b, strict=True))
+            return GroundTruthReading(self._world.time, pose, twist)
+        seen_from = self._reference.pose
+        carried = shifted_twist(self._reference.twist, seen_from.position, pose.position)
+        return GroundTruthReading(self._world.time, seen_from.inverse() * pose,
+                                  twist_in(seen_from, twist_difference(twist, carried)))

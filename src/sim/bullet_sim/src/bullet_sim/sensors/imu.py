@@ -14,15 +14,12 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class ImuReading:
-    """Rate and acceleration are in the axes of the sensor; a LinkMotionReading's are the world's.
-
-    Of an ImuSensor `linear_acceleration` is the specific force: +g upwards at rest.
-    """
+    """In the axes of the sensor, with gravity and noise; unlike a LinkMotionReading."""
 
     time: float  # s, simulated
     orientation: Quaternion  # sensor in the reference frame, by default the world
     angular_velocity: Vector3  # rad/s
-    linear_acceleration: Vector3  # m/s^2
+    linear_acceleration: Vector3  # m/s^2, the specific force: at rest g upwards
 
 
 class ImuSensor:

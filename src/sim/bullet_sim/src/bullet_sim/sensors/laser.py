@@ -26,7 +26,10 @@ class LaserReading:
 
 
 class Laser:
-    """Gazebo's ray sensor; its noise does not turn a hit into a miss, nor a miss into a hit."""
+    """Gazebo's ray sensor; its noise does not turn a hit into a miss, nor a miss into a hit.
+
+    FormatError of rays that cannot be.
+    """
 
     def __init__(self, world: World, link: Link, description: SensorDescription):
         self.fan = RayFan(world, link, description)

@@ -20,7 +20,10 @@ class OdometryReading:
 
 
 def true_odometry(world: World, model: Model) -> OdometryReading:
-    """The model frame in the world; speeds turned by yaw alone, as Gazebo's drives do."""
+    """The model frame in the world; speeds turned by yaw alone.
+
+    gazebo_ros_diff_drive.cpp, publishOdometry.
+    """
     pose, twist = model.pose, model.twist
     heading = quaternion_from_rpy(0.0, 0.0, -pose.rpy()[2])
     forward, leftward, _ = rotate(heading, twist.linear)

@@ -17,7 +17,7 @@ MOST_RAYS = 100_000
 
 
 class RayFan:
-    """Rays against collision shapes, as Gazebo's ray sensor lays them out.
+    """Rays against collision shapes, laid out as in Gazebo's MultiRayShape::Init.
 
     A row has `samples` x `resolution` rays. A single ray looks straight ahead, whatever the angles.
     Rays begin at range_min, so the housing around the sensor is not seen. FormatError without a

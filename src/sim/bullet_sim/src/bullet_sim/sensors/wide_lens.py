@@ -16,7 +16,7 @@ from bullet_sim.rendering.frame import CameraView
 
 SMALLEST_PX = 8  # side of a cube's face
 _MARGIN_PX = 1  # around a face, so that neighbours meet without a seam
-_BEYOND = 0.2  # brightness beyond <cutoff_angle>, as Gazebo shows it
+_BEYOND = 0.2  # brightness beyond <cutoff_angle>
 _OUTSIDE = -2.0  # px; a place that shows nothing
 _FACES = [  # as the camera would have to be turned to look straight at them
     Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, pitch, yaw)) for pitch, yaw in (

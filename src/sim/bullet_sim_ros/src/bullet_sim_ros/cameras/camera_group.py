@@ -1,7 +1,5 @@
 """The cameras of a sensor, which take their pictures together, at a rate or on a trigger."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable, Sequence
@@ -11,18 +9,18 @@ from std_msgs.msg import Empty
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.cameras.settings import CameraSettings
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.reconfigure_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 log = logging.getLogger("bullet_sim.plugins")
 
 DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
-SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; upstream's imager_rate
+SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; imager_rate of cfg/GazeboRosCamera.cfg
 
 
 class CameraGroup:
-    """Who listens to images of one of the cameras has all drawn, as upstream counts subscribers.
+    """Who listens to images of one of the cameras has all drawn.
 
-    For camera_info alone nothing is drawn (upstream draws).
+    So gazebo_ros_camera_utils.cpp, ImageConnect, counts; but for camera_info alone it draws, too.
     """
 
     def __init__(self, context: PluginContext, cameras: Sequence[CameraPublisher]):
@@ -77,7 +75,8 @@ class CameraGroup:
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
     """The sensor's `<update_rate>`, thinned to the plugin's `<updateRate>`; 0: there is none.
 
-    As upstream has it, only whole pictures can be left out: 30 Hz thinned to 20 is 15.
+    Only whole pictures can be left out (gazebo_ros_camera.cpp, OnNewFrame): 30 Hz thinned to 20
+    is 15.
     """
     if sensor_hz > 0 and plugin_hz > 0:
         return sensor_hz / max(1, math.ceil(sensor_hz / plugin_hz - 1e-9))
@@ -88,19 +87,13 @@ def _offer_rate(context: PluginContext, settings: CameraSettings,
                 change: Callable[[float], None]) -> None:
     """dynamic_reconfigure's `imager_rate` (Hz); `change` is called in the loop's thread.
 
-    It begins as 2 whatever the sensor's rate is, and counts from the first change on, as upstream.
+    It begins as 2 whatever the sensor's rate is, and counts from the first change on
+    (gazebo_ros_camera_utils.cpp, configCallback).
     """
     if not settings.camera_name:
         log.warning("%s: without a <cameraName> there is no dynamic_reconfigure for %s",
                     context.describe(), settings.image_topic)
         return
-    begun: list[bool] = []
-
-    def changed(values: dict[str, float]) -> None:
-        """In a ROS thread; at once for the first time."""
-        if begun:
-            context.services.mailbox.post(lambda: change(values["imager_rate"]))
-        begun.append(True)
-
     rate = Value(FIRST_RATE, SLOWEST, FASTEST, "Rate of the sensor, Hz")
-    offer_values(context, settings.namespace, {"imager_rate": rate}, changed)
+    offer_changes(context, settings.namespace, {"imager_rate": rate},
+                  lambda values: change(values["imager_rate"]))

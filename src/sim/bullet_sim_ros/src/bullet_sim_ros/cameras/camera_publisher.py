@@ -1,7 +1,5 @@
 """One camera of a sensor: draws what somebody listens to and publishes it."""
 
-from __future__ import annotations
-
 import copy
 import time
 
@@ -23,6 +21,8 @@ class CameraPublisher:
     """Image, its compressed twin, CameraInfo and set_camera_info.
 
     What set_camera_info sets holds as long as the camera; it is not written to a file.
+
+    FormatError of a camera or a tag that cannot be.
     """
 
     def __init__(self, context: PluginContext, number: int = 0, suffix: str = "",

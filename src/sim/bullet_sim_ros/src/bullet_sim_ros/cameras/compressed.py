@@ -1,7 +1,5 @@
 """The `compressed` transport of images: what image_transport's plugin of that name sends."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 import rospy

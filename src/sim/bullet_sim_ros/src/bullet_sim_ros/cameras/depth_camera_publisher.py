@@ -1,7 +1,5 @@
 """A depth camera's topics: what a camera has, depth image, its CameraInfo, and points."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -19,8 +17,8 @@ FARTHEST = float(np.finfo(np.float32).max)  # m; beyond is nothing at all
 class DepthCameraPublisher(CameraPublisher):
     """Depth and points are made only for those who subscribe to them.
 
-    Points have the colours of what they are on, whatever the image's format (upstream swaps red and
-    blue of rgb8 images).
+    Points have the colours of what they are on, whatever the image's format; red and blue of rgb8
+    images are swapped by gazebo_ros_openni_kinect.cpp, FillPointCloudHelper.
     """
 
     def __init__(self, context: PluginContext, far: float):

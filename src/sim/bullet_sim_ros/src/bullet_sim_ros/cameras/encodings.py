@@ -1,7 +1,5 @@
 """Pixels as sensor_msgs/Image names them: from RGB, and back."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from sensor_msgs.msg import Image
@@ -13,7 +11,7 @@ ENCODINGS = {  # SDF <format>, and what image consumers call it
     "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
     "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
 }
-UNKNOWN_FORMAT = "bgr8"  # what upstream takes for a <format> it does not know
+UNKNOWN_FORMAT = "bgr8"  # gazebo_ros_camera_utils.cpp, Init, for a <format> it does not know
 _DEEPER = 257  # 8 to 16 bits: 255 becomes 65535
 _TO_RGB = {
     "rgb8": None, "8UC3": cv2.COLOR_BGR2RGB, "bgr8": cv2.COLOR_BGR2RGB,
@@ -51,7 +49,11 @@ def _mosaic(rgb: np.ndarray, pattern: str) -> np.ndarray:
 
 
 def decode(msg: Image) -> np.ndarray:
-    """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read."""
+    """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read.
+
+    Not by CvBridge: Debian 12's skews images with padded rows, refuses 8UC1, 8UC3 and 8UC4, and
+    checks no size.
+    """
     shallow = _DEEP.get(msg.encoding, msg.encoding)
     if shallow not in _TO_RGB:
         known = ", ".join([*_TO_RGB, *_DEEP])

@@ -1,7 +1,5 @@
 """The tags that all camera plugins know."""
 
-from __future__ import annotations
-
 import logging
 import math
 
@@ -23,7 +21,8 @@ class CameraSettings:
     """The tags of a `<plugin>` about one camera.
 
     `suffix` is a camera's own part of the namespace in a pair, `baseline` (m) its distance from the
-    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, as upstream.
+    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, nor has it in
+    gazebo_ros_camera_utils.cpp, Init.
     """
 
     def __init__(self, context: PluginContext, description: CameraDescription, suffix: str = "",
@@ -68,7 +67,7 @@ class CameraSettings:
         if written and abs(written - drawn) > _SAME_FOCAL_PX:
             log.warning(
                 "%s: <focalLength> is %g, but pictures of %d px with a <horizontal_fov> of %g rad "
-                "have %g; only camera_info tells the former: leave the tag out", self._context.
+                "have %g; only camera_info has the former: leave the tag out", self._context.
                 describe(), written, camera.width, camera.horizontal_fov, drawn)
         return written
 

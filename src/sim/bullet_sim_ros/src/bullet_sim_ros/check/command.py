@@ -1,7 +1,5 @@
 """The command line of check."""
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys

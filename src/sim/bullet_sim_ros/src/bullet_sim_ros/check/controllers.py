@@ -1,7 +1,5 @@
 """The joint controllers that a launch file configures: namespaces with a parameter `type`."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterator, Mapping
 

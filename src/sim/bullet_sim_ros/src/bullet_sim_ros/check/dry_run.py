@@ -1,7 +1,5 @@
 """Robots and worlds in a simulation without a master: what the plugins log when they are made."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager

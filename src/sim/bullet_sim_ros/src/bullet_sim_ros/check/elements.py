@@ -1,7 +1,5 @@
 """Looks up what a text uses in the table of what works: plugins with their tags, elements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 from xml.etree.ElementTree import Element
@@ -10,7 +8,7 @@ from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, WORKS, Entry, Row
 from bullet_sim_ros.plugin_host.registry import NOT_NEEDED
 
-MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or tells is missing",
+MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or publishes is missing",
            "world": "what it does to the world is missing", "visual": "only what is seen differs"}
 LIGHTS = ("point", "spot", "directional")
 

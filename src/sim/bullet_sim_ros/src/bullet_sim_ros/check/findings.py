@@ -1,7 +1,5 @@
 """The findings of a check, and the table made of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The model files that a text includes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree.ElementTree import Element

@@ -1,7 +1,5 @@
 """Reads a launch file as roslaunch does, without starting anything."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import re
@@ -119,7 +117,7 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         config = roslaunch.config.load_config_default(
             [(str(path), arguments)], None, verbose=False, assign_machines=False)
     except ERRORS as error:
-        sender.send(_said(error))
+        sender.send(_error_line(error))
         return
     sender.send(Launch(
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
@@ -132,7 +130,7 @@ def _data_size() -> int:
     return int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
 
 
-def _said(error: Exception) -> str:
+def _error_line(error: Exception) -> str:
     """roslaunch's words as one line, without the files on the way to the one that is wrong."""
     if isinstance(error, MemoryError):
         return TOO_MUCH
@@ -152,8 +150,8 @@ def _watch_includes(loader: type) -> None:
         files.append(filename)
         if files.count(filename) > REPEATED:
             way = f" by way of {files[-2]}" if files[-2] != filename else ""
-            raise SimulationError(f"{filename} includes itself{way} without end; take the "
-                                  "<include> out or give it an if")
+            raise SimulationError(f"{filename} includes itself{way} without end; remove "
+                                  "the <include> or give it an if")
         return parse_launch(self, filename, verbose)
 
     def include(*arguments, **named):

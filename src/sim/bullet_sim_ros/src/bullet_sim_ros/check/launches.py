@@ -1,7 +1,5 @@
 """Checks launch files without starting anything: their nodes, worlds and robots."""
 
-from __future__ import annotations
-
 import itertools
 import shlex
 from collections.abc import Iterator

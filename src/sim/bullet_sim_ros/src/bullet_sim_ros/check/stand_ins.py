@@ -3,8 +3,6 @@
 What rospy would carry between processes is kept in lists and dictionaries.
 """
 
-from __future__ import annotations
-
 import io
 from collections import defaultdict
 from collections.abc import Callable, Iterator
@@ -50,81 +48,103 @@ class Graph:
             raise KeyError(name)
         return tree
 
-
-def stand_ins(graph: Graph) -> dict[str, object]:
-    """What replaces rospy's own: they write into `graph`."""
-
-    class Publisher:
-        def __init__(self, name, data_class, **options):
-            self.name, self.resolved_name = name, rospy.resolve_name(name)
-            self.options = options
-            self._topic = graph.topics[self.resolved_name]
-            self._topic.kind = data_class
-            self._topic.publishers.append(self)
-
-        def publish(self, *args, **fields):
-            made = args and isinstance(args[0], self._topic.kind)
-            message = args[0] if made else self._topic.kind(*args, **fields)
-            message.serialize(io.BytesIO())  # what cannot be sent is an error here, too
-            if self in self._topic.publishers:
-                self._topic.messages.append(message)
-
-        def get_num_connections(self):
-            return self._topic.listeners
-
-        def unregister(self):
-            if self in self._topic.publishers:
-                self._topic.publishers.remove(self)
-
-    class Subscriber:
-        def __init__(self, name, data_class, callback=None, callback_args=None, **_options):
-            self.resolved_name = rospy.resolve_name(name)
-            self.callback, self.args = callback, callback_args
-            self._topic = graph.topics[self.resolved_name]
-            self._topic.kind = self._topic.kind or data_class
-            self._topic.subscribers.append(self)
-
-        def take(self, message):
-            if self.callback is not None:
-                self.callback(message, *([] if self.args is None else [self.args]))
-
-        def get_num_connections(self):
-            return 1
-
-        def unregister(self):
-            if self in self._topic.subscribers:
-                self._topic.subscribers.remove(self)
-
-    class Service:
-        def __init__(self, name, service_class, handler, **_options):
-            self.resolved_name = rospy.resolve_name(name)
-            if self.resolved_name in graph.services:
-                raise rospy.ServiceException(f"service [{self.resolved_name}] already registered")
-            graph.services[self.resolved_name] = (service_class, handler)
-
-        def shutdown(self, _reason=""):
-            graph.services.pop(self.resolved_name, None)
-
-    def get_param(name, *default):
+    def get_param(self, name: str, *default: object) -> object:
+        """As rospy's; KeyError without parameter and default."""
         try:
-            return graph.parameter(name)
+            return self.parameter(name)
         except KeyError:
             if default:
                 return default[0]
             raise
 
-    def has_param(name):
-        try:
-            graph.parameter(name)
-        except KeyError:
-            return False
-        return True
+    def has_param(self, name: str) -> bool:
+        """As rospy's."""
+        return self.get_param(name, self) is not self
 
-    def set_param(name, value):
-        graph.parameters[rospy.resolve_name(name)] = value
+    def set_param(self, name: str, value: object) -> None:
+        """As rospy's."""
+        self.parameters[rospy.resolve_name(name)] = value
 
-    return {"Publisher": Publisher, "Subscriber": Subscriber, "Service": Service,
-            "get_param": get_param, "has_param": has_param, "set_param": set_param}
+
+class Publisher:
+    """In place of rospy.Publisher."""
+
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, data_class: type, **options):
+        self.name, self.resolved_name = name, rospy.resolve_name(name)
+        self.options = options
+        self._topic = self.graph.topics[self.resolved_name]
+        self._topic.kind = data_class
+        self._topic.publishers.append(self)
+
+    def publish(self, *args, **fields) -> None:
+        """A message, or the fields of one."""
+        made = args and isinstance(args[0], self._topic.kind)
+        message = args[0] if made else self._topic.kind(*args, **fields)
+        message.serialize(io.BytesIO())  # what cannot be sent is an error here, too
+        if self in self._topic.publishers:
+            self._topic.messages.append(message)
+
+    def get_num_connections(self) -> int:
+        """How many others listen."""
+        return self._topic.listeners
+
+    def unregister(self) -> None:
+        """Not any more."""
+        if self in self._topic.publishers:
+            self._topic.publishers.remove(self)
+
+
+class Subscriber:
+    """In place of rospy.Subscriber."""
+
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, data_class: type, callback=None, callback_args=None,
+                 **_options):
+        self.resolved_name = rospy.resolve_name(name)
+        self.callback, self.args = callback, callback_args
+        self._topic = self.graph.topics[self.resolved_name]
+        self._topic.kind = self._topic.kind or data_class
+        self._topic.subscribers.append(self)
+
+    def take(self, message) -> None:
+        """Call the callback with it."""
+        if self.callback is not None:
+            self.callback(message, *([] if self.args is None else [self.args]))
+
+    def get_num_connections(self) -> int:
+        """One, as if somebody published."""
+        return 1
+
+    def unregister(self) -> None:
+        """Not any more."""
+        if self in self._topic.subscribers:
+            self._topic.subscribers.remove(self)
+
+
+class Service:
+    """In place of rospy.Service; rospy.ServiceException of a name that is taken."""
+
+    graph: Graph  # of a subclass
+
+    def __init__(self, name: str, service_class: type, handler: Callable, **_options):
+        self.resolved_name = rospy.resolve_name(name)
+        if self.resolved_name in self.graph.services:
+            raise rospy.ServiceException(f"service [{self.resolved_name}] already registered")
+        self.graph.services[self.resolved_name] = (service_class, handler)
+
+    def shutdown(self, _reason: str = "") -> None:
+        """Offer it no longer."""
+        self.graph.services.pop(self.resolved_name, None)
+
+
+def stand_ins(graph: Graph) -> dict[str, object]:
+    """What replaces rospy's own: they write into `graph`."""
+    return {**{kind.__name__: type(kind.__name__, (kind,), {"graph": graph})
+               for kind in (Publisher, Subscriber, Service)},
+            **{name: getattr(graph, name) for name in ("get_param", "has_param", "set_param")}}
 
 
 @contextmanager

@@ -1,7 +1,5 @@
 """Checks robot and world texts: reads and spawns them as the simulator would, and listens."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,8 +7,8 @@ from xml.etree.ElementTree import ParseError, fromstring
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
+from bullet_sim.formats.xacro.bounds import run_bounded
 from bullet_sim.formats.xacro.files import expand_file
-from bullet_sim.formats.xacro.limits import run_bounded
 from bullet_sim.formats.xml_text import read_bytes
 from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
@@ -62,10 +60,10 @@ class TextChecker:
 
             with listening():
                 code = run_bounded(expand_into_file, str(path))
-            said = result.read_text(encoding="utf-8") if result.exists() else "it failed"
+            output = result.read_text(encoding="utf-8") if result.exists() else "it failed"
         if code:
-            raise FormatError(said)
-        return said
+            raise FormatError(output)
+        return output
 
     def _find_package(self, name: str) -> str:
         return str(self._resources.package_folder(name))

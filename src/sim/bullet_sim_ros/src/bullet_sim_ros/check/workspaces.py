@@ -1,7 +1,5 @@
 """A workspace before it is built: which packages build, what they need, what is left out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from workspace_needs.verdicts import Verdict, judge

@@ -1,7 +1,5 @@
 """actionlib's server, with its status published by the loop instead of a timer's thread."""
 
-from __future__ import annotations
-
 import actionlib
 
 

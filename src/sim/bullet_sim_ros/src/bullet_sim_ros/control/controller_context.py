@@ -1,7 +1,5 @@
 """What a joint controller is given: its parameters, joints to claim, and topics closed together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import rospy
@@ -12,7 +10,7 @@ from bullet_sim.control.rate import Rate
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
 
@@ -71,7 +69,10 @@ class ControllerContext:
     # --- ROS
 
     def every(self, rate_hz: float, action: Callable[[], None]) -> None:
-        """Call `action` in the loop at a rate of simulated time, as long as it is loaded."""
+        """Call `action` in the loop at a rate of simulated time, as long as it is loaded.
+
+        SimulationError of a rate that is negative or not finite.
+        """
         self.tasks.append((Rate(rate_hz), action))
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:

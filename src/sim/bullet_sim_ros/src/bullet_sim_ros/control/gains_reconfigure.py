@@ -1,7 +1,5 @@
 """dynamic_reconfigure for the gains of a PID, with control_toolbox's names and ranges."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import asdict
 

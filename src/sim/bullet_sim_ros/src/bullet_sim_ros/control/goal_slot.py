@@ -1,7 +1,5 @@
 """The one goal of an action that is being pursued; used in the loop's thread alone."""
 
-from __future__ import annotations
-
 from actionlib import ServerGoalHandle
 
 

@@ -1,15 +1,13 @@
 """Limits and gains of joints that parameters set, beside those that the URDF has."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 
-from bullet_sim.control.limits import JointLimits
 from bullet_sim.control.pid import PidGains
+from bullet_sim.description import JointLimits
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.pid import read_gains
 
 GAINS = "gazebo_ros_control/pid_gains"

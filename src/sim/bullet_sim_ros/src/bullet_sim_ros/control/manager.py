@@ -1,27 +1,15 @@
 """Which controllers are loaded and which run: load, unload, switch, list, as controller_manager."""
 
-from __future__ import annotations
-
 import logging
 import threading
 import time as wall
 from collections.abc import Callable, Sequence
 
 from bullet_sim.control.rate import Rate
-from bullet_sim_ros.control import registry
+from bullet_sim_ros.control import switching
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.switching import (
-    ABORTED,
-    RUNNING,
-    STOPPED,
-    WAITING,
-    Gone,
-    Loaded,
-    ManagerError,
-    Switch,
-    plan,
-    there_are,
-)
+from bullet_sim_ros.control.loading import make_controller
+from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError, Switch
 from bullet_sim_ros.errors import format_error
 
 log = logging.getLogger("bullet_sim.control")
@@ -84,14 +72,14 @@ class ControllerManager:
         switch.done.set()
 
     def _start(self, loaded: Loaded, time: float) -> None:
-        loaded.state = RUNNING
+        loaded.state = switching.RUNNING
         try:
             loaded.controller.start(time)
         except Exception as error:
             self._abort(loaded, time, error)
 
     def _stop(self, loaded: Loaded, time: float) -> None:
-        loaded.state = STOPPED
+        loaded.state = switching.STOPPED
         try:
             loaded.controller.stop(time)
         except Exception as error:
@@ -101,7 +89,7 @@ class ControllerManager:
 
     def _abort(self, loaded: Loaded, time: float, error: Exception) -> None:
         log.error("Controller '%s' failed and is stopped: %s", loaded.name, format_error(error))
-        loaded.state = ABORTED
+        loaded.state = switching.ABORTED
         for handle in loaded.context.claims.values():
             handle.rest()
         self._note_running()
@@ -116,9 +104,9 @@ class ControllerManager:
         return list(self._loaded.values())
 
     def state_of(self, loaded: Loaded) -> str:
-        """As upstream names it; what a paused world has still to start is waiting."""
+        """As ControllerState.msg names it; what a paused world has still to start is waiting."""
         switch = self._switch
-        return WAITING if switch is not None and loaded in switch.start else loaded.state
+        return switching.WAITING if switch is not None and loaded in switch.start else loaded.state
 
     def load(self, name: str) -> None:
         """Make a controller, as the parameters below its name say; ManagerError if it cannot be."""
@@ -133,7 +121,7 @@ class ControllerManager:
                     f"Could not load controller '{name}': {format_error(error)}"
                 ) from error
             try:
-                loaded = self._make(name, context)
+                loaded = make_controller(name, context)
             except Exception:
                 context.close()
                 raise
@@ -141,42 +129,19 @@ class ControllerManager:
                 context.close()
                 raise ManagerError(f"The model of controller '{name}' was deleted")
             self._loaded = {**self._loaded, name: loaded}
-            self._note_duties()
-
-    def _make(self, name: str, context: ControllerContext) -> Loaded:
-        kind = context.parameters.value("type", None)
-        if kind is None:
-            raise ManagerError(
-                f"Could not load controller '{name}' because the type was not specified. Did you "
-                "load the controller configuration on the parameter server (namespace: "
-                f"'{context.namespace}')? Parameter {context.parameters.where('type')} is not set")
-        made = registry.find(str(kind))
-        if made is None:
-            close = registry.nearest(str(kind))
-            raise ManagerError(
-                f"Could not load controller '{name}' because controller type '{kind}' does not "
-                "exist." + (f" Did you mean '{close}'?" if close else "")
-                + " Use 'rosservice call controller_manager/list_controller_types' to get the "
-                "available types")
-        try:
-            return Loaded(name, str(kind), made(context), context)
-        except Exception as error:
-            raise ManagerError(
-                f"Initializing controller '{name}' failed: {format_error(error)}"
-            ) from error
+            self._collect_tasks()
 
     def unload(self, name: str) -> None:
         """Forget a controller; ManagerError if it runs, or is not there."""
         with self._one_at_a_time:
             loaded = self._loaded.get(name)
             if loaded is None:
-                raise ManagerError(f"Could not unload controller with name '{name}' because no "
-                                   f"controller with this name exists{there_are(self._loaded)}")
+                raise switching.absent("unload", name, self._loaded)
             if loaded.runs:
                 raise ManagerError(f"Could not unload controller with name '{name}' because it is "
                                    "still running")
             self._loaded = {key: other for key, other in self._loaded.items() if key != name}
-            self._note_duties()
+            self._collect_tasks()
             loaded.context.close()
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
@@ -186,7 +151,7 @@ class ControllerManager:
         ManagerError if that is refused or takes longer, Gone if the model is deleted meanwhile.
         """
         with self._one_at_a_time:
-            switch = plan(self._loaded, start, stop, strict)
+            switch = switching.plan(self._loaded, start, stop, strict)
             if not switch.start and not switch.stop:
                 return
             with self._handover:
@@ -194,7 +159,7 @@ class ControllerManager:
             self._wait(switch, timeout)
 
     def reload(self, force: bool) -> None:
-        """As upstream's reload of libraries: with `force` everything is stopped and unloaded.
+        """With `force` everything is stopped and unloaded (reloadControllerLibrariesSrv).
 
         ManagerError if something runs, without `force`.
         """
@@ -221,5 +186,5 @@ class ControllerManager:
                                    "paused?")
             raise Gone("Could not switch controllers: the simulation or the model is gone")
 
-    def _note_duties(self) -> None:
+    def _collect_tasks(self) -> None:
         self._tasks = [task for loaded in self._loaded.values() for task in loaded.context.tasks]

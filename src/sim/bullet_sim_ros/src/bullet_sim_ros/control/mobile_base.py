@@ -1,7 +1,5 @@
 """What the controllers of a robot's base share: cmd_vel in, odometry and tf out, parameters."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 
@@ -13,7 +11,7 @@ from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
 from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 
@@ -39,7 +37,7 @@ class MobileBaseController(Controller):
         self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
 
     def set_publish_rate(self, rate_hz: float) -> None:
-        """Of odometry and transform."""
+        """Of odometry and transform. SimulationError of a rate that is negative or not finite."""
         self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,

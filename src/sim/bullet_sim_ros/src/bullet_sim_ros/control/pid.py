@@ -1,15 +1,13 @@
 """A PID of a controller: gains from parameters, changeable at run time, its state on a topic."""
 
-from __future__ import annotations
-
 from control_msgs.msg import PidState
 from rospy import Duration
 
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.gains_reconfigure import offer_gains
-from bullet_sim_ros.control.parameters import ControllerParameters
 
 
 def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:

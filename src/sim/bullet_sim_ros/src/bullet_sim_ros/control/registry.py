@@ -15,8 +15,8 @@ _registry: dict[str, type[Controller]] = {}
 class Controller:
     """Made in a ROS thread when it is loaded; started, updated and stopped in the loop's thread.
 
-    `__init__` reads parameters, claims joints and opens topics, and raises an error whose message
-    says what is wrong. Time and period are in simulated seconds.
+    `__init__` reads parameters, claims joints and opens topics, and raises a SimulationError whose
+    message says what is wrong. Time and period are in simulated seconds.
     """
 
     def __init__(self, context: ControllerContext):

@@ -1,26 +1,10 @@
 """The six services of controller_manager."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 
+from controller_manager_msgs import srv
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
-from controller_manager_msgs.srv import (
-    ListControllers,
-    ListControllersResponse,
-    ListControllerTypes,
-    ListControllerTypesResponse,
-    LoadController,
-    LoadControllerResponse,
-    ReloadControllerLibraries,
-    ReloadControllerLibrariesResponse,
-    SwitchController,
-    SwitchControllerRequest,
-    SwitchControllerResponse,
-    UnloadController,
-    UnloadControllerResponse,
-)
 
 from bullet_sim_ros import names
 from bullet_sim_ros.control import registry
@@ -30,7 +14,7 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.control")
 
-STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
+STRICT, BEST_EFFORT = srv.SwitchControllerRequest.STRICT, srv.SwitchControllerRequest.BEST_EFFORT
 INTERFACE_NAMES = {"effort": "hardware_interface::EffortJointInterface",
                    "position": "hardware_interface::PositionJointInterface",
                    "velocity": "hardware_interface::VelocityJointInterface"}
@@ -39,7 +23,7 @@ READ_ONLY = "hardware_interface::JointStateInterface"
 
 def offer(context: PluginContext, manager: ControllerManager, namespace: str) -> None:
     """Advertise them below NAMESPACE/controller_manager."""
-    def switch(request: SwitchControllerRequest) -> None:
+    def switch(request: srv.SwitchControllerRequest) -> None:
         if request.strictness not in (STRICT, BEST_EFFORT):
             log.warning("Controller Manager: To switch controllers you need to specify a "
                         "strictness level of controller_manager_msgs::SwitchController::STRICT "
@@ -48,25 +32,25 @@ def offer(context: PluginContext, manager: ControllerManager, namespace: str) ->
         manager.switch(request.start_controllers, request.stop_controllers,
                        request.strictness == STRICT, request.timeout)
 
-    def list_controllers(_request) -> ListControllersResponse:
-        return ListControllersResponse([
+    def list_controllers(_request) -> srv.ListControllersResponse:
+        return srv.ListControllersResponse([
             state_of(loaded, manager.state_of(loaded)) for loaded in manager.list()])
 
-    def list_types(_request) -> ListControllerTypesResponse:
+    def list_types(_request) -> srv.ListControllerTypesResponse:
         types = registry.types()
-        return ListControllerTypesResponse(types, [registry.BASE_CLASS] * len(types))
+        return srv.ListControllerTypesResponse(types, [registry.BASE_CLASS] * len(types))
 
     handlers = {
-        "list_controllers": (ListControllers, list_controllers),
-        "list_controller_types": (ListControllerTypes, list_types),
-        "load_controller": (LoadController, _answer(
-            lambda request: manager.load(request.name), LoadControllerResponse)),
-        "unload_controller": (UnloadController, _answer(
-            lambda request: manager.unload(request.name), UnloadControllerResponse)),
-        "switch_controller": (SwitchController, _answer(switch, SwitchControllerResponse)),
-        "reload_controller_libraries": (ReloadControllerLibraries, _answer(
+        "list_controllers": (srv.ListControllers, list_controllers),
+        "list_controller_types": (srv.ListControllerTypes, list_types),
+        "load_controller": (srv.LoadController, _answer(
+            lambda request: manager.load(request.name), srv.LoadControllerResponse)),
+        "unload_controller": (srv.UnloadController, _answer(
+            lambda request: manager.unload(request.name), srv.UnloadControllerResponse)),
+        "switch_controller": (srv.SwitchController, _answer(switch, srv.SwitchControllerResponse)),
+        "reload_controller_libraries": (srv.ReloadControllerLibraries, _answer(
             lambda request: manager.reload(request.force_kill),
-            ReloadControllerLibrariesResponse)),
+            srv.ReloadControllerLibrariesResponse)),
     }
     for name, (kind, handler) in handlers.items():
         context.serve(names.join(namespace, f"controller_manager/{name}"), kind, handler)

@@ -1,7 +1,5 @@
 """What a switch of controllers would do, and why it is refused: controller_manager's rules."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +13,7 @@ WAITING = "waiting"  # to be started by the next update
 
 
 class ManagerError(SimulationError):
-    """A request that is refused, in upstream's words."""
+    """A request that is refused, in the words of controller_manager.cpp."""
 
 
 class Gone(ManagerError):
@@ -68,9 +66,10 @@ def plan(loaded: Mapping[str, Loaded], start: Sequence[str], stop: Sequence[str]
     return switch
 
 
-def there_are(loaded: Iterable[str]) -> str:
-    """The end of a message about a name that is not among these."""
-    return f"; there are: {', '.join(loaded) or 'none'}"
+def absent(what: str, name: str, loaded: Iterable[str]) -> ManagerError:
+    """The error of a request to do `what` to a controller that is not among those loaded."""
+    return ManagerError(f"Could not {what} controller with name '{name}' because no controller "
+                        f"with this name exists; there are: {', '.join(loaded) or 'none'}")
 
 
 def _known(loaded: Mapping[str, Loaded], names: Iterable[str], what: str,
@@ -80,8 +79,7 @@ def _known(loaded: Mapping[str, Loaded], names: Iterable[str], what: str,
         if name in loaded:
             found.append(loaded[name])
         elif strict:
-            raise ManagerError(f"Could not {what} controller with name '{name}' because no "
-                               f"controller with this name exists{there_are(loaded)}")
+            raise absent(what, name, loaded)
     return found
 
 

@@ -1,7 +1,5 @@
 """Between trajectory messages and the core's trajectories: pure functions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from control_msgs.msg import FollowJointTrajectoryGoal, JointTolerance
@@ -16,7 +14,7 @@ from bullet_sim.control.trajectory.request import (
 from bullet_sim.control.trajectory.segment import Waypoint
 from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.parameters import ControllerParameters
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 
 def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:
@@ -50,14 +48,14 @@ def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) ->
 
 
 def _replaced(default: dict[str, Tolerance],
-              wishes: Sequence[JointTolerance]) -> dict[str, Tolerance]:
+              requested: Sequence[JointTolerance]) -> dict[str, Tolerance]:
     result = dict(default)
-    for wish in wishes:
-        if wish.name not in result:
-            raise InvalidTrajectory(f"a tolerance is for joint {wish.name!r}; this controller has "
+    for each in requested:
+        if each.name not in result:
+            raise InvalidTrajectory(f"a tolerance is for joint {each.name!r}; this controller has "
                                     f"{', '.join(result)}")
-        result[wish.name] = result[wish.name].replaced(wish.position, wish.velocity,
-                                                       wish.acceleration)
+        result[each.name] = result[each.name].replaced(each.position, each.velocity,
+                                                       each.acceleration)
     return result
 
 

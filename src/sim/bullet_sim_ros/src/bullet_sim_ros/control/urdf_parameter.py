@@ -1,7 +1,5 @@
 """Waits for the parameter with a robot's URDF while the simulation goes on."""
 
-from __future__ import annotations
-
 import logging
 import threading
 from collections.abc import Callable
@@ -24,7 +22,8 @@ def with_urdf(
 
     The text is empty where the parameter holds none.
 
-    Upstream waits here and holds up the whole world; a spawn service would not answer meanwhile.
+    gazebo_ros_control_plugin.cpp, getURDF, waits in the loop and holds up the whole world; a spawn
+    service would not answer meanwhile.
     """
     closed = threading.Event()
     context.on_close(closed.set)

@@ -1,7 +1,5 @@
 """Topic wheel_joint_controller_state: what a base's wheels are to do, and do."""
 
-from __future__ import annotations
-
 import math
 
 from control_msgs.msg import JointTrajectoryControllerState

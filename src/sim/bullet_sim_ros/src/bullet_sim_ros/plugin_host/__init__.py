@@ -1,4 +1,4 @@
 """What plugins are written against: context, tags, registry, and output that several share.
 
-"Upstream" is gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h and the plugins that use it.
+It does for them what gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h does.
 """

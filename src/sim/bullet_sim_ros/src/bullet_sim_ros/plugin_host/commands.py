@@ -1,7 +1,5 @@
 """How a drive's commands come: geometry_msgs/Twist on a topic."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist

@@ -1,7 +1,5 @@
 """What a plugin is given: its tags and place, calls by the loop, and topics that end with it."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable
@@ -15,9 +13,9 @@ from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError, format_error
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.scope import PluginScope
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.scheduler import PeriodicTask, always
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -26,9 +24,9 @@ log = logging.getLogger("bullet_sim.plugins")
 class PluginContext(PluginScope):
     """One plugin's view of the simulation. Made and used in the loop's thread."""
 
-    def __init__(self, services: SimServices, model: Model | None, description: PluginDescription,
-                 sensor: SensorDescription | None = None, link: Link | None = None,
-                 visual: Visual | None = None):
+    def __init__(self, services: SharedByPlugins, model: Model | None,
+                 description: PluginDescription, sensor: SensorDescription | None = None,
+                 link: Link | None = None, visual: Visual | None = None):
         super().__init__(services.world, model, description, sensor, link, visual)
         self.services = services
         self.parameters = PluginParameters(model.name if model else "(world)", description)
@@ -55,8 +53,8 @@ class PluginContext(PluginScope):
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
         """Call `action` at a rate of simulated time, while `wanted` is true; 0: every step.
 
-        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). As
-        upstream has it, a rate below zero is none, too.
+        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). A
+        rate below zero is none, too (gazebo_ros_diff_drive.cpp, Load).
         """
         scheduler = self.services.scheduler
         self._task = task = scheduler.add(
@@ -72,8 +70,8 @@ class PluginContext(PluginScope):
                       wanted: Callable[[], bool] = always) -> None:
         """Call `action` at the sensor's own rate, thinned to `rate_hz`; 0: at each reading.
 
-        As upstream has it, a reading is left out until so much time has gone by since the last one
-        that was taken, so 100 Hz thinned to 30 Hz is 25 Hz.
+        A reading is left out until so much time has gone by since the last one that was taken, so
+        100 Hz thinned to 30 Hz is 25 Hz (gazebo_ros_imu_sensor.cpp, UpdateChild).
         """
         sensor_rate = self.sensor.update_rate
         if sensor_rate <= 0 or rate_hz <= 0:
@@ -175,7 +173,10 @@ class PluginContext(PluginScope):
         return True
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
-        """A service; a name that is taken is a warning, as upstream has it."""
+        """A service; a name that is taken is a warning.
+
+        PluginError of a name that ROS does not allow.
+        """
         try:
             service = rospy.Service(_legal(name), kind, handler)
         except rospy.ServiceException as error:

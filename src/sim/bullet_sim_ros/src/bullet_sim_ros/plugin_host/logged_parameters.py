@@ -1,11 +1,9 @@
-"""The tags of plugins that warn of each one that is missing, as upstream's helper class does."""
-
-from __future__ import annotations
+"""The tags of plugins that warn of each one that is missing (gazebo_ros_utils.h, getParameter)."""
 
 import logging
 from collections.abc import Sequence
 
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 log = logging.getLogger("bullet_sim.plugins")
 defaults = logging.getLogger("bullet_sim.plugins.defaults")

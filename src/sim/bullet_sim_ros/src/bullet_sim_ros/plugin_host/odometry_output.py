@@ -1,7 +1,5 @@
 """What drives publish about where they are: a topic and a transform."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from geometry_msgs.msg import TransformStamped
@@ -13,7 +11,7 @@ from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 
 class OdometryOutput:
@@ -76,7 +74,10 @@ def open_odometry(context: PluginContext, namespace: str, base_frame: str = "bas
 
 def wheel_transform(model: Model, joint: Joint, time: float, prefix: str,
                     frame: str) -> TransformStamped:
-    """The wheel seen from the model, with the joint's parent link as header frame, as upstream."""
+    """The wheel seen from the model, with the joint's parent link as header frame.
+
+    gazebo_ros_diff_drive.cpp, publishWheelTF.
+    """
     pose = model.pose.inverse() * model.links[joint.description.child].pose
     return convert.transform_to_msg(pose, time, names.frame(prefix, joint.description.parent),
                                     names.frame(prefix, frame))

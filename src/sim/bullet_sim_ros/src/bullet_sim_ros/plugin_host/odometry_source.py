@@ -1,7 +1,5 @@
 """Where a drive's odometry comes from, by its tag `<odometrySource>`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from bullet_sim.joint import Joint

@@ -1,7 +1,5 @@
 """From library file name to class, and the loading of all plugins of a model."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 from pathlib import PurePosixPath
@@ -10,7 +8,7 @@ from bullet_sim.model import Model
 from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.sensor_types import warn_of_sensor
-from bullet_sim_ros.plugin_host.services import SimServices
+from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
 from bullet_sim_ros.plugin_host.unread_tags import warn_of_unread_tags
 
@@ -33,7 +31,7 @@ def plugin(*filenames: str) -> Callable[[type], type]:
     return register
 
 
-def load_plugins(services: SimServices, model: Model) -> list[PluginContext]:
+def load_plugins(services: SharedByPlugins, model: Model) -> list[PluginContext]:
     """All plugins of a model, its sensors and visuals; one that fails is one error line."""
     contexts = [
         PluginContext(services, model, description) for description in model.description.plugins
@@ -50,7 +48,7 @@ def load_plugins(services: SimServices, model: Model) -> list[PluginContext]:
     return [context for context in contexts if _load(context)]
 
 
-def load_world_plugins(services: SimServices) -> list[PluginContext]:
+def load_world_plugins(services: SharedByPlugins) -> list[PluginContext]:
     """The plugins of the `<world>` itself."""
     contexts = [PluginContext(services, None, description)
                 for description in services.world.description.plugins]

@@ -1,12 +1,14 @@
 """Where a plugin is: in the world, a model, a sensor or a visual."""
 
-from __future__ import annotations
+from typing import TypeVar
 
 from bullet_sim.description import PluginDescription, SensorDescription, Visual
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.world import World
 from bullet_sim_ros.errors import PluginError
+
+Part = TypeVar("Part")  # a model, sensor, visual or link
 
 
 class PluginScope:
@@ -25,9 +27,7 @@ class PluginScope:
     @property
     def model(self) -> Model:
         """The model that the plugin is in; PluginError if it is in the world."""
-        if self._model is None:
-            raise PluginError("it belongs inside a <model>, not in the world")
-        return self._model
+        return _inside(self._model, "a <model>, not in the world")
 
     @property
     def in_world(self) -> bool:
@@ -47,23 +47,17 @@ class PluginScope:
     @property
     def visual(self) -> Visual:
         """The visual that the plugin is in; PluginError if it is in none."""
-        if self._visual is None:
-            raise PluginError("it belongs inside a <visual>")
-        return self._visual
+        return _inside(self._visual, "a <visual>")
 
     @property
     def sensor(self) -> SensorDescription:
         """The sensor that the plugin is in; PluginError if it is in none."""
-        if self._sensor is None:
-            raise PluginError("it belongs inside a <sensor>, not in the model")
-        return self._sensor
+        return _inside(self._sensor, "a <sensor>, not in the model")
 
     @property
     def link(self) -> Link:
         """The link that the sensor or visual is on; PluginError if the plugin is in none."""
-        if self._link is None:
-            raise PluginError("it belongs inside a <sensor>, not in the model")
-        return self._link
+        return _inside(self._link, "a <sensor>, not in the model")
 
     @property
     def sensor_name(self) -> str:
@@ -79,3 +73,9 @@ class PluginScope:
         place = f"model {self._model.name}:" if self._model else \
             f"world {self.world.description.name}:"
         return f"{place}{sensor} plugin {name} ({self.description.filename})"
+
+
+def _inside(part: Part | None, what: str) -> Part:
+    if part is None:
+        raise PluginError(f"it belongs inside {what}")
+    return part

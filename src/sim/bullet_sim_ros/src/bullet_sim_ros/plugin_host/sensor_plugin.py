@@ -1,7 +1,5 @@
 """What a sensor plugin is written against: it has parameters and a message, the rest is here."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 

@@ -1,11 +1,9 @@
 """The warning about a plugin that is not there: once, with what will be missing."""
 
-from __future__ import annotations
-
-import difflib
 import logging
 from collections.abc import Iterable
 
+from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins.unknown")
@@ -27,10 +25,10 @@ CONSEQUENCES = {
     "libKeysToJointsPlugin": "actuator: keys will not move the joints",
     "libFlashLightPlugin": "looks: the light will not blink",
     "libLedPlugin": "looks: the light will not blink",
-    "libCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libDepthCameraPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libRayPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
-    "libImuSensorPlugin": "no ROS topic is lost: it only speaks Gazebo's own transport",
+    "libCameraPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libDepthCameraPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libRayPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
+    "libImuSensorPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
 }
 
 
@@ -40,10 +38,8 @@ def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str])
     if (place, filename) in context.services.warned:
         return
     context.services.warned.add((place, filename))
-    close = difflib.get_close_matches(filename, known, 1, cutoff=0.85)
-    hint = f"; did you mean {close[0]}?" if close else ""
     log.warning("%s is not known here and left out; %s%s", context.describe(),
-                consequence(context, filename), hint)
+                consequence(context, filename), did_you_mean(filename, known, 0.85))
 
 
 def consequence(context: PluginContext, filename: str) -> str:

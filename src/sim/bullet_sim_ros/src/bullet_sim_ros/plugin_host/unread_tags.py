@@ -1,12 +1,10 @@
 """The warning about a plugin's tags that nothing reads, as flatland's EnsureAccessedAllKeys."""
 
-from __future__ import annotations
-
-import difflib
 import functools
 import logging
 from pathlib import PurePosixPath
 
+from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.interface import Row, read_interface, rows_by_name
 from bullet_sim_ros.plugin_host.context import PluginContext
 
@@ -29,11 +27,15 @@ def warn_of_unread_tags(context: PluginContext) -> None:
     known = set(row.tags) if row else set()
     for tag in unread:
         if tag not in known:
-            names = sorted(known | context.parameters.read)
-            close = difflib.get_close_matches(tag, names, 1, cutoff=0.75)
-            hint = f"; did you mean <{close[0]}>?" if close else ""
+            names = sorted(map(_inner, known | context.parameters.read))
             log.warning("%s: <%s> is ignored, as by Gazebo: the plugin has no such tag%s",
-                        context.describe(), tag, hint)
+                        context.describe(), _inner(tag),
+                        did_you_mean(_inner(tag), names, 0.75, "<{}>"))
+
+
+def _inner(path: str) -> str:
+    """`a><b` of `a/b`."""
+    return path.replace("/", "><")
 
 
 @functools.cache

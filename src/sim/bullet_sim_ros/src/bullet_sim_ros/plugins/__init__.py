@@ -1,7 +1,6 @@
 """Gazebo plugins by library file name. A file here with `@plugin(...)` is all it takes.
 
-"Upstream" is the file of the library's name in gazebo_plugins/src: that of
-libgazebo_ros_laser.so is gazebo_ros_laser.cpp.
+Files named here are those of gazebo_plugins/src, unless another package is said.
 """
 
 import importlib

@@ -1,7 +1,5 @@
 """libgazebo_ros_block_laser.so: the points that a fan of rays meets, as sensor_msgs/PointCloud."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Point32
 from sensor_msgs.msg import ChannelFloat32, PointCloud
@@ -16,8 +14,8 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 class BlockLaserPlugin(SensorPlugin):
     """Rays that meet nothing give points at range_max, without noise; the ray's own is not used.
 
-    Points lie where the rays went: upstream mirrors them top to bottom, turns them by half a ray
-    and makes NaN of a single row.
+    Points lie where the rays went: gazebo_ros_block_laser.cpp, PutLaserData, mirrors them top to
+    bottom, turns them by half a ray and makes NaN of a single row.
     """
 
     def __init__(self, context: PluginContext):
@@ -28,7 +26,7 @@ class BlockLaserPlugin(SensorPlugin):
         self.publish_readings()
 
     def measure(self) -> PointCloud:
-        """One sweep; upstream gives the channel no name."""
+        """One sweep; PutLaserData gives the channel no name."""
         distances, retro = self._fan.cast()
         points = self._fan.directions * distances[..., None]
         if self.noise:

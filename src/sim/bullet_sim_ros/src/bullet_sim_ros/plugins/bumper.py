@@ -1,7 +1,5 @@
 """libgazebo_ros_bumper.so: gazebo_msgs/ContactsState of a contact sensor."""
 
-from __future__ import annotations
-
 from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 
@@ -15,7 +13,8 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 class BumperPlugin(SensorPlugin):
     """In world axes, whatever `frameName` is; empty `states` while nothing touches.
 
-    The sensor's own collision always comes first (upstream's order is the engine's).
+    The sensor's own collision always comes first; in gazebo_ros_bumper.cpp, OnContact, the order
+    is the engine's.
     """
 
     def __init__(self, context: PluginContext):

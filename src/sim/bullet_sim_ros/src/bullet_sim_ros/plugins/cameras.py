@@ -1,7 +1,5 @@
 """The camera plugins: single, triggered, in pairs, streaming prosilica, and depth cameras."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim_ros import params
@@ -84,7 +82,7 @@ class OpenniKinectPlugin:
 class DepthCameraPlugin:
     """A Kinect without an upper limit for depth.
 
-    Sends both camera_info topics (upstream advertises them and never sends any).
+    Sends both camera_info topics; nothing in gazebo_ros_depth_camera.cpp calls PublishCameraInfo.
     """
 
     def __init__(self, context: PluginContext):
@@ -97,7 +95,7 @@ def _capture_at_rate(context: PluginContext, cameras: list[CameraPublisher]) -> 
 
 
 def _capture_depth(context: PluginContext, far: float) -> None:
-    """The plugin's rate counts only where the sensor has none (upstream: as fast as it can)."""
+    """The plugin's rate counts only where the sensor has none."""
     camera = DepthCameraPublisher(context, far)
     CameraGroup(context, [camera]).capture_at_rate(
         context.sensor.update_rate or camera.settings.rate_hz)

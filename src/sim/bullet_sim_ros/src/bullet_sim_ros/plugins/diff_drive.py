@@ -1,7 +1,5 @@
 """libgazebo_ros_diff_drive.so: cmd_vel in; odometry, tf and wheel joint states out."""
 
-from __future__ import annotations
-
 import logging
 
 from geometry_msgs.msg import Twist
@@ -24,7 +22,10 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_diff_drive.so")
 class DiffDrivePlugin:
-    """Publishes first, then moves the wheels, as upstream does; there is no command time-out."""
+    """Publishes first, then moves the wheels; there is no command time-out.
+
+    gazebo_ros_diff_drive.cpp, UpdateChild.
+    """
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -74,8 +75,8 @@ class DiffDrivePlugin:
                 geometry):
             return left, right
         log.warning("%s: <leftJoint> %s is the right wheel, seen where it drives to: taken as "
-                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; to turn as "
-                    "told by Melodic and Noetic say <legacyMode>false</legacyMode>",
+                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; for the "
+                    "behaviour of Melodic and Noetic write <legacyMode>false</legacyMode>",
                     label, left.name)
         return right, left
 
@@ -83,7 +84,7 @@ class DiffDrivePlugin:
         self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
-        """Upstream's publishTf switches the odometry topic as well as the transforms."""
+        """publishTf switches the odometry topic as well as the transforms, as in UpdateChild."""
         world = self._context.world
         if self._states:
             reading = sample_joints(world, self._joints)

@@ -1,14 +1,12 @@
 """libgazebo_ros_elevator.so: a lift that goes to the floor whose number comes on a topic."""
 
-from __future__ import annotations
-
 import logging
 import sys
 from collections.abc import Callable
 
 from std_msgs.msg import String
 
-from bullet_sim.drives.elevator import Elevator
+from bullet_sim.mechanisms.elevator import Elevator
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -18,7 +16,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_elevator.so")
 class ElevatorPlugin:
-    """A call while it is on its way is ignored, as upstream."""
+    """A call while it is on its way is ignored (Gazebo's ElevatorPlugin.cc, MoveToFloor)."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

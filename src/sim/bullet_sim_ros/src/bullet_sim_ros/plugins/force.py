@@ -1,12 +1,10 @@
 """libgazebo_ros_force.so: the last Wrench that came acts on a link at every step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from geometry_msgs.msg import Wrench
 
-from bullet_sim_ros import names
+from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 
@@ -32,8 +30,7 @@ class ForcePlugin:
         return lambda: self._set(msg)
 
     def _set(self, msg: Wrench) -> None:
-        self._force = (msg.force.x, msg.force.y, msg.force.z)
-        self._torque = (msg.torque.x, msg.torque.y, msg.torque.z)
+        self._force, self._torque = convert.triple(msg.force), convert.triple(msg.torque)
         self._push()
 
     def _push(self) -> None:

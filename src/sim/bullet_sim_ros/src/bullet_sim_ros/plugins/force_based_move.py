@@ -1,14 +1,12 @@
 """Bases moved by force: hector's force_based_move and the three libraries made of it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from geometry_msgs.msg import Twist
 
-from bullet_sim.drives.force import ForceDrive, ForceGains
+from bullet_sim.drives.force_based_move import ForceDrive, ForceGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext

@@ -1,7 +1,5 @@
 """libgazebo_ros_ft_sensor.so and libgazebo_ros_f3d.so: geometry_msgs/WrenchStamped."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 
@@ -33,7 +31,7 @@ class FtSensorPlugin(SensorPlugin):
 class F3dPlugin(SensorPlugin):
     """What moves a link, gravity and contacts included: m a, in world axes. `frameName` is a label.
 
-    The frame is `world` whatever is written, as upstream intends; the tf_prefix goes before it.
+    The frame is `world` whatever is written (gazebo_ros_f3d.cpp, Load); the tf_prefix goes before.
     """
 
     def __init__(self, context: PluginContext):

@@ -1,16 +1,12 @@
 """libgazebo_grasp_fix.so: what a gripper's fingers press from two sides is held by its palm."""
 
-from __future__ import annotations
-
 import logging
 import math
-from xml.etree.ElementTree import Element
 
-from bullet_sim.description import PluginDescription
-from bullet_sim.drives.grasp import Grasp, GraspParameters
+from bullet_sim.mechanisms.grasp import Grasp, GraspParameters
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.parameters import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -18,7 +14,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_grasp_fix.so", "libgazebo_grasp_plugin.so")
 class GraspFixPlugin:
-    """Updates by simulated time (upstream: the wall clock's)."""
+    """Updates by simulated time; GazeboGraspFix.cpp, OnUpdate, by the wall clock's."""
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -32,19 +28,16 @@ class GraspFixPlugin:
             log.warning("%s: <disable_collisions_on_attach> has no effect: what is held goes on "
                         "colliding", context.describe())
         # <arm> elements are the newer way of writing: several grippers in one plugin
-        element = context.description.element
-        grasps = [self._grasp(arm, parameters) for arm in element.findall("arm") or [element]]
+        grasps = [self._grasp(arm, parameters) for arm in p.groups("arm") or [p]]
         rate_hz = p.number("update_rate", 5.0)
         for grasp in grasps:
             context.every(rate_hz, grasp.update)
             context.on_reset(grasp.release)
             context.on_close(grasp.release)
 
-    def _grasp(self, arm: Element, parameters: GraspParameters) -> Grasp:
+    def _grasp(self, arm: PluginParameters, parameters: GraspParameters) -> Grasp:
         context = self._context
-        palm = PluginParameters(context.model.name, PluginDescription(
-            context.description.name, context.description.filename, arm)).required("palm_link")
-        named = [(link.text or "").strip() for link in arm.findall("gripper_link")]
+        palm, named = arm.required("palm_link"), arm.texts("gripper_link")
         if not named:
             raise PluginError("it needs a <gripper_link>")
         fingers = [context.model.links[name] for name in named if name in context.model.links]

@@ -1,13 +1,11 @@
 """libgazebo_ros_hand_of_god.so: a link follows a tf frame, and its pose is published."""
 
-from __future__ import annotations
-
 import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
-from bullet_sim.drives.spring_damper import SpringDamper
-from bullet_sim.pose import Pose, normalised
+from bullet_sim.mechanisms.spring_damper import SpringDamper
+from bullet_sim.pose import Pose
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
@@ -52,8 +50,8 @@ class HandOfGodPlugin:
             found = self._frames.lookup_transform_core(WORLD, self._desired, rospy.Time(0))
         except tf2_ros.TransformException:
             return None
-        p, q = found.transform.translation, found.transform.rotation
-        return Pose((p.x, p.y, p.z), normalised((q.x, q.y, q.z, q.w)))
+        return Pose(convert.triple(found.transform.translation),
+                    convert.quaternion_from_msg(found.transform.rotation))
 
     def _pull(self) -> None:
         wanted = self._wanted()

@@ -1,7 +1,5 @@
 """libgazebo_ros_harness.so: a model hangs on a winch until it is detached."""
 
-from __future__ import annotations
-
 import logging
 import math
 from collections.abc import Callable
@@ -9,11 +7,11 @@ from xml.etree.ElementTree import Element
 
 from std_msgs.msg import Bool, Float32
 
-from bullet_sim.drives.harness import Harness
+from bullet_sim.mechanisms.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.parameters import read_numbers
+from bullet_sim_ros.plugin_host.plugin_tags import read_numbers
 from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -29,7 +27,10 @@ class HarnessPlugin:
         joints = {joint.get("name", ""): joint for joint in element.findall("joint")}
         if not joints:
             raise PluginError("it needs a <joint>")
-        held, winch = (self._joint(joints, path) for path in ("detach", "winch/joint"))
+        p = context.parameters
+        winches = [winch.text("joint") for winch in p.groups("winch")]
+        held = self._joint(joints, "detach", p.text("detach"))
+        winch = self._joint(joints, "winch/joint", next(iter(winches), ""))
         link = context.model.link((held.findtext("child") or "").strip())
         self._harness = Harness(context.world, link, self._axis(winch))
         topics = names.join(f"/{context.model.name}", "harness")
@@ -38,9 +39,8 @@ class HarnessPlugin:
         context.each_step(self._harness.update)
         context.on_close(self._harness.detach)
 
-    def _joint(self, joints: dict[str, Element], path: str) -> Element:
+    def _joint(self, joints: dict[str, Element], path: str, name: str) -> Element:
         """The joint that a tag names, else the first one."""
-        name = (self._context.description.element.findtext(path) or "").strip()
         if name in joints:
             return joints[name]
         first = next(iter(joints))

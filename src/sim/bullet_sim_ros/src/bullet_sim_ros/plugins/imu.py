@@ -1,8 +1,8 @@
-"""libgazebo_ros_imu.so: sensor_msgs/Imu of a link, gravity left out as upstream does."""
+"""libgazebo_ros_imu.so: sensor_msgs/Imu of a link, without gravity.
 
-from __future__ import annotations
+The rules are those of gazebo_ros_imu.cpp, UpdateChild.
+"""
 
-import dataclasses
 
 import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
@@ -11,8 +11,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from bullet_sim.errors import UnknownName
 from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.sensors.imu import ImuReading
-from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
+from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -21,9 +20,9 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 
 @plugin("libgazebo_ros_imu.so")
 class ImuPlugin(SensorPlugin):
-    """Rates and accelerations are in the link's axes (upstream turns them the wrong way round).
+    """Rates and accelerations are in the link's axes; UpdateChild turns them the wrong way round.
 
-    `xyzOffset` moves nothing in upstream either. No tf_prefix.
+    `xyzOffset` moves nothing there either. No tf_prefix.
     """
 
     def __init__(self, context: PluginContext):
@@ -41,27 +40,17 @@ class ImuPlugin(SensorPlugin):
 
     def measure(self) -> ImuMsg:
         """What the link does now."""
-        reading = self._with_noise(self._in_link_axes(self._imu.sample()))
-        return convert.imu_to_msg(reading, self.noise ** 2)
-
-    def _in_link_axes(self, reading: LinkMotionReading) -> ImuReading:
+        reading = self._imu.sample()
         back = conjugate(reading.orientation)
-        return ImuReading(
-            reading.time,
-            multiply(self._offset, reading.orientation),
+        values = self.disturbed(np.concatenate([
             rotate(back, reading.world_angular_velocity),
-            rotate(back, reading.world_acceleration),
-        )
-
-    def _with_noise(self, reading: ImuReading) -> ImuReading:
-        values = self.disturbed(
-            np.concatenate([reading.angular_velocity, reading.linear_acceleration])).tolist()
-        return dataclasses.replace(reading, angular_velocity=tuple(values[:3]),
-                                   linear_acceleration=tuple(values[3:]))
+            rotate(back, reading.world_acceleration)])).tolist()
+        return convert.imu_to_msg(multiply(self._offset, reading.orientation), values[:3],
+                                  values[3:], self.noise ** 2)
 
 
 def _find_link(context: PluginContext, name: str) -> Link:
-    """A link of the model, else of any model in the world, as upstream looks it up."""
+    """A link of the model, else of any model in the world (gazebo_ros_imu.cpp, LoadThread)."""
     try:
         return context.model.link(name)
     except UnknownName as here:

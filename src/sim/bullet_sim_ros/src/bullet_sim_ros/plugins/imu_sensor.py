@@ -1,12 +1,10 @@
 """libgazebo_ros_imu_sensor.so: sensor_msgs/Imu of an IMU sensor, gravity included."""
 
-from __future__ import annotations
-
 import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg
 
 from bullet_sim.pose import multiply, quaternion_from_rpy
-from bullet_sim.sensors.imu import ImuReading, ImuSensor
+from bullet_sim.sensors.imu import ImuSensor
 from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
@@ -34,5 +32,4 @@ class ImuSensorPlugin(SensorPlugin):
         values = self.disturbed(np.concatenate([
             multiply(self._offset, reading.orientation), reading.angular_velocity,
             reading.linear_acceleration])).tolist()
-        return convert.imu_to_msg(
-            ImuReading(reading.time, values[:4], values[4:7], values[7:]), self.noise ** 2)
+        return convert.imu_to_msg(values[:4], values[4:7], values[7:], self.noise ** 2)

@@ -1,16 +1,14 @@
 """libgazebo_ros_joint_pose_trajectory.so: joints are moved along a JointTrajectory."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 
 from gazebo_msgs.srv import SetJointTrajectory, SetJointTrajectoryResponse
 from trajectory_msgs.msg import JointTrajectory
 
-from bullet_sim.drives.joint_poses import JointPose, JointPoses
 from bullet_sim.errors import SimulationError
 from bullet_sim.link import Link
+from bullet_sim.mechanisms.joint_poses import JointPose, JointPoses
 from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError, format_error
@@ -24,10 +22,10 @@ INERTIAL = ("world", "/map", "map")
 
 @plugin("libgazebo_ros_joint_pose_trajectory.so")
 class JointPoseTrajectoryPlugin:
-    """While it plays, only its own model is outside physics (upstream stops the world's).
+    """While it plays, only its own model is outside physics; SetTrajectory stops the world's.
 
-    As upstream has it, each point's time_from_start is how long it is shown. The service is there,
-    which upstream leaves out when it is built.
+    Each point's time_from_start is how long it is shown (gazebo_ros_joint_pose_trajectory.cpp,
+    UpdateStates). The service is there, which LoadThread has only if built with ENABLE_SERVICE.
     """
 
     def __init__(self, context: PluginContext):

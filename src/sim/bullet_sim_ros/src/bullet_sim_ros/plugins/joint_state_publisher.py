@@ -1,7 +1,5 @@
 """libgazebo_ros_joint_state_publisher.so: joint_states of a list of joints."""
 
-from __future__ import annotations
-
 import logging
 
 from sensor_msgs.msg import JointState
@@ -19,9 +17,9 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_joint_state_publisher.so")
 class JointStatePublisherPlugin(SensorPlugin):
-    """A name that is no joint is left out with an error line (upstream crashes on it).
+    """A name that is no joint is left out with an error line; in Gazebo it is a crash.
 
-    Without `jointName` the messages are empty, as upstream's are.
+    Without `jointName` the messages are empty (gazebo_ros_joint_state_publisher.cpp).
     """
 
     def __init__(self, context: PluginContext):

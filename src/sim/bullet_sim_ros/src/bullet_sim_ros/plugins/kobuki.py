@@ -1,7 +1,5 @@
 """libgazebo_ros_kobuki.so: TurtleBot2's base with wheels, gyroscope, bumpers and cliff sensors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from geometry_msgs.msg import Twist
@@ -21,7 +19,7 @@ from bullet_sim_ros.plugins.kobuki_core import CoreTopic
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
 
-RATE = 50.0  # Hz: what the real base does; upstream publishes at each step
+RATE = 50.0  # Hz: what the real base does; gazebo_ros_kobuki.cpp, OnUpdate, is at each step
 SIDES = ("left", "center", "right")
 
 

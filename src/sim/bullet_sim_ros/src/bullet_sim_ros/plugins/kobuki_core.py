@@ -1,7 +1,5 @@
 """What a Kobuki base reports of its sensors 50 times a second: one message with all of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Sequence
 

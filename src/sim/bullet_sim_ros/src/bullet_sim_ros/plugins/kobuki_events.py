@@ -1,16 +1,14 @@
 """A Kobuki base's events: a bumper is pressed, the floor ends, a wheel drops."""
 
-from __future__ import annotations
-
 import math
 
 from kobuki_msgs.msg import BumperEvent, CliffEvent, WheelDropEvent
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.drives.bumper import SECTORS, pressed_bumpers
 from bullet_sim.drives.kobuki import Kobuki
-from bullet_sim.drives.wheel_drop import WheelDrop
 from bullet_sim.link import Link
+from bullet_sim.mechanisms.kobuki_bumpers import SECTORS, pressed_bumpers
+from bullet_sim.mechanisms.wheel_drop import WheelDrop
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host.context import PluginContext
@@ -82,7 +80,10 @@ class WheelDropTopic(EventTopic):
 
 
 class CliffTopic(EventTopic):
-    """When the floor under one sensor goes away or comes back."""
+    """When the floor under one sensor goes away or comes back.
+
+    FormatError of rays that cannot be.
+    """
 
     def __init__(self, context: PluginContext, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):

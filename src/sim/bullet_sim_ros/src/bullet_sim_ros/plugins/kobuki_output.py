@@ -1,7 +1,5 @@
 """What a Kobuki base publishes all the time: joints, odometry, gyroscope."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import Imu, JointState
 
 from bullet_sim.drives.kobuki import Kobuki
@@ -43,6 +41,7 @@ class KobukiOutput:
             self._imu.publish(self._imu_msg(self._kobuki.imu_reading()))
 
     def _imu_msg(self, reading: ImuReading) -> Imu:
-        msg = convert.imu_to_msg(reading, 0.0)
+        msg = convert.imu_to_msg(reading.orientation, reading.angular_velocity,
+                                 reading.linear_acceleration)
         msg.orientation_covariance = msg.angular_velocity_covariance = GYRO_COVARIANCE
         return convert.stamped(msg, reading.time, self._base_link)

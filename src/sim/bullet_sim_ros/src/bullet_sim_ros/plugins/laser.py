@@ -1,7 +1,5 @@
 """libgazebo_ros_laser.so and its GPU twin: LaserScan while somebody listens."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import LaserScan
 
 from bullet_sim.sensors.laser import Laser
@@ -15,7 +13,7 @@ from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
 class LaserPlugin(SensorPlugin):
     """The rate is the sensor's `<update_rate>`; the plugin has none.
 
-    Both see collision shapes (upstream's GPU twin sees visuals).
+    Both see collision shapes; Gazebo's gpu_ray sensor sees visuals.
     """
 
     def __init__(self, context: PluginContext):

@@ -1,7 +1,5 @@
 """libgazebo_ros_link_attacher.so: a world plugin whose services tie links together."""
 
-from __future__ import annotations
-
 import logging
 
 from gazebo_ros_link_attacher.srv import Attach, AttachResponse
@@ -21,7 +19,11 @@ Ends = tuple[str, str, str, str]  # model, link, other model, its link
 
 @plugin("libgazebo_ros_link_attacher.so")
 class LinkAttacherPlugin:
-    """What is attached stays as it is to each other (upstream pulls the two origins together)."""
+    """What is attached stays as it is to each other.
+
+    gazebo_ros_link_attacher.cpp, attach, pulls the two origins together; it has no Reset, so that a
+    reset of the world releases nothing. Here, too; links then stay as they were spawned.
+    """
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -29,7 +31,6 @@ class LinkAttacherPlugin:
         for name, action in (("attach", self._attach), ("detach", self._detach)):
             context.serve(names.join(NAMESPACE, name), Attach, self._handler(name, action))
         context.on_close(self._release_all)
-        context.on_reset(self._release_all)
 
     def _handler(self, name: str, action):
         def serve(request) -> AttachResponse:
@@ -52,7 +53,7 @@ class LinkAttacherPlugin:
         return True
 
     def _detach(self, ends: Ends) -> bool:
-        """Upstream answers that it went well only if there is something to part."""
+        """It went well only if there is something to part, as in detach there."""
         weld = self._held.pop(ends, None)
         if weld is None:
             return False

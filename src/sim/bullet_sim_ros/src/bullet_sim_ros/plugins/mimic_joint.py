@@ -1,11 +1,9 @@
 """libroboticsgroup_gazebo_mimic_joint_plugin.so and its kin: a joint follows another one."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim.control.pid import Pid
-from bullet_sim.drives.mimic import MimicJoint, MimicParameters
+from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
 from bullet_sim_ros.plugin_host.context import PluginContext
@@ -18,7 +16,10 @@ log = logging.getLogger("bullet_sim.plugins")
         "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
         "libgazebo_mimic_joint_plugin.so")
 class MimicJointPlugin:
-    """Held by a strong motor, so that it can grip (upstream puts it in place, through things)."""
+    """Held by a strong motor, so that it can grip.
+
+    roboticsgroup's mimic_joint_plugin.cpp, UpdateChild, puts it in place, through things.
+    """
 
     def __init__(self, context: PluginContext):
         p = context.parameters

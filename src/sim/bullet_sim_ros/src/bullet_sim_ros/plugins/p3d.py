@@ -1,7 +1,5 @@
 """libgazebo_ros_p3d.so: nav_msgs/Odometry of a link as the world has it."""
 
-from __future__ import annotations
-
 from nav_msgs.msg import Odometry
 
 from bullet_sim.pose import Pose, quaternion_from_rpy
@@ -16,10 +14,11 @@ INERTIAL = ("world", "/world", "map", "/map")
 
 @plugin("libgazebo_ros_p3d.so")
 class P3dPlugin(SensorPlugin):
-    """Seen from another link, the twist is truly that (upstream turns it the wrong way round).
+    """Seen from another link, the twist is truly that.
 
-    The offsets are in the link's axes, so that a lumped link's are right in any pose (upstream adds
-    them in the world's).
+    The offsets are in the link's axes, so that a lumped link's are right in any pose.
+    gazebo_ros_p3d.cpp, UpdateChild, turns the former the wrong way, and adds the latter in the
+    world's axes.
     """
 
     def __init__(self, context: PluginContext):

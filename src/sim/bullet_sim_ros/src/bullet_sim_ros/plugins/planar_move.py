@@ -1,7 +1,5 @@
 """libgazebo_ros_planar_move.so: cmd_vel moves the model as a whole; odometry and tf out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
@@ -13,7 +11,10 @@ from bullet_sim_ros.plugin_host.registry import plugin
 
 @plugin("libgazebo_ros_planar_move.so")
 class PlanarMovePlugin:
-    """A reset of the simulation stops it (upstream drives on, and is silent until time is back)."""
+    """A reset of the simulation stops it.
+
+    gazebo_ros_planar_move.cpp has no Reset: it drives on, and is silent until time is back.
+    """
 
     def __init__(self, context: PluginContext):
         p = context.parameters
@@ -32,7 +33,7 @@ class PlanarMovePlugin:
         context.on_reset(self._restart)
 
     def _quantised(self, rate_hz: float) -> float:
-        """Upstream waits until more than the period has gone by, and counts anew from there."""
+        """UpdateChild waits until more than the period has gone by, and counts anew from there."""
         timestep = self._context.world.timestep
         steps = int(1.0 / (rate_hz * timestep) + 1e-6) + 1
         return 1.0 / (steps * timestep)

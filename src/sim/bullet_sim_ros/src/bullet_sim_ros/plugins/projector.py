@@ -1,7 +1,5 @@
 """libgazebo_ros_projector.so: its topics, without the light."""
 
-from __future__ import annotations
-
 import logging
 
 from std_msgs.msg import Int32, String

@@ -1,7 +1,5 @@
 """libgazebo_ros_range.so: sonar and infrared range finders, sensor_msgs/Range."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import Range
 
 from bullet_sim.sensors.ray_fan import RayFan

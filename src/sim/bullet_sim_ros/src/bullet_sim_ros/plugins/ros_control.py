@@ -1,7 +1,5 @@
 """libgazebo_ros_control.so: a model's joints behind ros_control, with a controller manager."""
 
-from __future__ import annotations
-
 import logging
 import math
 from xml.etree.ElementTree import Element, fromstring
@@ -111,7 +109,7 @@ class RosControlPlugin:
         return hardware, robot
 
     def _urdf(self, text: str) -> Element:
-        """The `<robot>`; of an SDF, or of nothing, one without joints, as upstream has it."""
+        """The `<robot>`; of an SDF, or of nothing, one without joints."""
         element = parse_xml(text, "the URDF parameter") if text.strip() else None
         if element is not None and element.tag == "robot":
             return element

@@ -1,7 +1,5 @@
 """libgazebo_ros_skid_steer_drive.so: cmd_vel in; four wheels, odometry and tf out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
@@ -15,7 +13,10 @@ from bullet_sim_ros.plugin_host.registry import plugin
 
 @plugin("libgazebo_ros_skid_steer_drive.so")
 class SkidSteerDrivePlugin:
-    """Without time-out, as upstream; a reset of the simulation stops it (upstream drives on)."""
+    """Without time-out; a reset of the simulation stops it.
+
+    gazebo_ros_skid_steer_drive.cpp has neither a time-out nor a Reset: it drives on.
+    """
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -1,7 +1,5 @@
 """libgazebo_ros_template.so: an example to copy from; it loads and does nothing."""
 
-from __future__ import annotations
-
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 

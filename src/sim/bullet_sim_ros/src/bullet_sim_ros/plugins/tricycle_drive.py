@@ -1,7 +1,5 @@
 """libgazebo_ros_tricycle_drive.so: speed and steering angle in; odometry, tf, joint states out."""
 
-from __future__ import annotations
-
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import JointState
 
@@ -20,9 +18,11 @@ from bullet_sim_ros.plugin_host.registry import plugin
 
 @plugin("libgazebo_ros_tricycle_drive.so")
 class TricycleDrivePlugin:
-    """Encoders turn left for left, and braking brakes (upstream has both the other way round).
+    """Encoders turn left for left, and braking brakes.
 
-    A reset of the simulation stops it and sets the encoders to zero (upstream drives on).
+    gazebo_ros_tricycle_drive.cpp, UpdateOdometryEncoder and motorController, have both the other
+    way round. A reset of the simulation stops it and sets the encoders to zero; there is no Reset
+    there, so it drives on.
     """
 
     def __init__(self, context: PluginContext):
@@ -64,7 +64,7 @@ class TricycleDrivePlugin:
     def _update(self) -> None:
         world = self._context.world
         if self._output.wanted():
-            # Upstream calls the wheels' frames by the joints' names.
+            # publishWheelTF calls the wheels' frames by the joints' names.
             wheels = self._joints if self._wheel_tf else ()
             self._output.publish(self._odometry_source.sample(), [
                 wheel_transform(self._context.model, joint, world.time, self._prefix, joint.name)
@@ -76,7 +76,8 @@ class TricycleDrivePlugin:
 
     def _publish_states(self) -> None:
         msg = convert.joints_to_msg(sample_joints(self._context.world, self._joints))
-        msg.effort = [self._torque, self._torque, 0.0, 0.0]  # the motors' limits, as upstream
+        # The motors' limits, as in publishWheelJointState.
+        msg.effort = [self._torque, self._torque, 0.0, 0.0]
         self._states.publish(msg)
 
     def _restart(self) -> None:

@@ -1,11 +1,9 @@
 """libgazebo_ros_vacuum_gripper.so: services on and off; what is near the link is held by it."""
 
-from __future__ import annotations
-
 from std_msgs.msg import Bool
 from std_srvs.srv import Empty, EmptyResponse
 
-from bullet_sim.drives.vacuum import Vacuum, VacuumParameters
+from bullet_sim.mechanisms.vacuum import Vacuum, VacuumParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin

@@ -1,7 +1,5 @@
 """libgazebo_ros_velodyne_laser.so and its GPU twin: a 3D lidar's sensor_msgs/PointCloud2."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -24,7 +22,7 @@ FIELDS = [PointField(name, POINT.fields[name][1], TYPES[POINT.fields[name][0].st
 class VelodynePlugin(SensorPlugin):
     """Points go column by column, the lowest ring first. A namespace other than / is the tf_prefix.
 
-    Both see collision shapes (upstream's GPU twin sees visuals).
+    Both see collision shapes; Gazebo's gpu_ray sensor sees visuals.
     """
 
     def __init__(self, context: PluginContext):

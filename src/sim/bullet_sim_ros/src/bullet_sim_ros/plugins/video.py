@@ -1,7 +1,5 @@
 """libgazebo_ros_video.so: shows the images of a topic on a visual."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 import rospy

@@ -1,7 +1,5 @@
 """libgazebo_ros_wheel_slip.so: read and checked; wheels keep the grip of their friction."""
 
-from __future__ import annotations
-
 import logging
 
 from bullet_sim_ros.errors import PluginError

@@ -1,34 +1,24 @@
 """The services of /gazebo: each handler runs in the loop, and turns an exception into a status.
 
-"Upstream" is gazebo_ros/src/gazebo_ros_api_plugin.cpp, in the function of the service's name.
+They follow gazebo_ros/src/gazebo_ros_api_plugin.cpp; functions named here are that file's, and of
+set_link_state it is setLinkState.
 """
-
-from __future__ import annotations
 
 import rospy
 
 from bullet_sim.formats import Resources
-from bullet_sim_ros.services.forces import offer_force_services
-from bullet_sim_ros.services.joints import offer_joint_services
-from bullet_sim_ros.services.lights import offer_light_services
-from bullet_sim_ros.services.links import offer_link_services
+from bullet_sim_ros.services import forces, joints, lights, links, physics, states, worlds
 from bullet_sim_ros.services.models import offer_model_services
-from bullet_sim_ros.services.physics import offer_physics_services
 from bullet_sim_ros.services.physics_reconfigure import PhysicsReconfigure
-from bullet_sim_ros.services.states import offer_state_services
-from bullet_sim_ros.services.worlds import offer_world_services
+from bullet_sim_ros.services.registry import offer_registered
 from bullet_sim_ros.simulation import Simulation
+
+__all__ = ["forces", "joints", "lights", "links", "offer_services", "physics", "states", "worlds"]
 
 
 def offer_services(simulation: Simulation, resources: Resources) -> None:
     """All of them."""
     offer_model_services(simulation, resources)
-    offer_state_services(simulation)
-    offer_link_services(simulation)
-    offer_joint_services(simulation)
-    offer_light_services(simulation)
-    offer_world_services(simulation)
-    offer_force_services(simulation)
-    offer_physics_services(simulation)
+    offer_registered(simulation)
     PhysicsReconfigure(simulation)
     rospy.loginfo("Finished loading Gazebo ROS API Plugin.")

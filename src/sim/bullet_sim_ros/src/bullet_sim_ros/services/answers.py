@@ -1,7 +1,5 @@
 """How a service call reaches the loop and how its failure comes back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -45,4 +43,4 @@ def done(response, message: str) -> None:
 
 
 class ServiceError(SimulationError):
-    """A request that cannot be met, in upstream's words."""
+    """A request that cannot be met, in the words of gazebo_ros_api_plugin.cpp."""

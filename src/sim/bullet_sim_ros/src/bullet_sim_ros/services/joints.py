@@ -1,45 +1,41 @@
 """Where a joint is; its stops, damping and motor."""
 
-from __future__ import annotations
-
 from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import GetJointProperties, SetJointProperties
 
 from bullet_sim.joint import Joint
-from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.answers import ServiceError, done
 from bullet_sim_ros.services.lookup import find_joint
+from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 USED = ("damping", "hiStop", "loStop", "fmax", "vel")  # of gazebo_msgs/ODEJointProperties
 NOT_NEGATIVE = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax")
 
 
-def offer_joint_services(simulation: Simulation) -> None:
-    """get_joint_properties, set_joint_properties."""
-    world, mailbox = simulation.world, simulation.mailbox
-    offer(mailbox, names.GET_JOINT_PROPERTIES, GetJointProperties,
-          lambda request, response: get_joint_properties(world, request.joint_name, response))
-    offer(mailbox, names.SET_JOINT_PROPERTIES, SetJointProperties,
-          lambda request, response: set_joint_properties(world, request, response))
+@service(names.GET_JOINT_PROPERTIES, GetJointProperties)
+def get_joint_properties(simulation: Simulation, request, response) -> None:
+    """Position and rate; as in getJointProperties the type is REVOLUTE, and damping left out.
 
-
-def get_joint_properties(world: World, name: str, response) -> None:
-    """Position and rate; the type is always REVOLUTE and damping is left out, as upstream."""
-    _, _, joint = find_joint(world, name, "GetJointProperties: joint not found")
+    ServiceError without such a joint.
+    """
+    _, _, joint = find_joint(simulation.world, request.joint_name,
+                             "GetJointProperties: joint not found")
     response.type = response.REVOLUTE
     response.position = [joint.position if joint else 0.0]
     response.rate = [joint.velocity if joint else 0.0]
     done(response, "GetJointProperties: got properties")
 
 
-def set_joint_properties(world: World, request, response) -> None:
+@service(names.SET_JOINT_PROPERTIES, SetJointProperties)
+def set_joint_properties(simulation: Simulation, request, response) -> None:
     """Empty arrays leave what is; of the others the first number counts, joints have one axis.
 
     ServiceError if there is no such joint, or a number is impossible.
     """
-    _, _, joint = find_joint(world, request.joint_name, "SetJointProperties: joint not found")
+    _, _, joint = find_joint(simulation.world, request.joint_name,
+                             "SetJointProperties: joint not found")
     config = request.ode_joint_config
     _check(config)
     values = {field: getattr(config, field)[0] for field in USED if getattr(config, field)}

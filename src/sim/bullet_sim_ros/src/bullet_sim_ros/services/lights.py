@@ -1,7 +1,5 @@
 """Lights: what they are like, changing them, taking them away."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from gazebo_msgs.srv import DeleteLight, GetLightProperties, SetLightProperties
@@ -10,58 +8,51 @@ from std_msgs.msg import ColorRGBA
 from bullet_sim.description import LightDescription
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.answers import ServiceError, done
+from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 ATTENUATION = ("constant", "linear", "quadratic")
 
 
-def offer_light_services(simulation: Simulation) -> None:
-    """get_light_properties, set_light_properties, delete_light."""
-    world, mailbox = simulation.world, simulation.mailbox
-    offer(mailbox, names.GET_LIGHT_PROPERTIES, GetLightProperties,
-          lambda request, response: get_light_properties(world, request.light_name, response))
-    offer(mailbox, names.SET_LIGHT_PROPERTIES, SetLightProperties,
-          lambda request, response: set_light_properties(world, request, response))
-    offer(mailbox, names.DELETE_LIGHT, DeleteLight,
-          lambda request, response: delete_light(world, request.light_name, response))
-
-
-def get_light_properties(world: World, name: str, response) -> None:
+@service(names.GET_LIGHT_PROPERTIES, GetLightProperties)
+def get_light_properties(simulation: Simulation, request, response) -> None:
     """Diffuse colour and attenuation, all that the message has; ServiceError if it is unknown."""
-    light = _light(world, name, "getLightProperties")
+    light = _light(simulation.world, request.light_name, "getLightProperties")
     response.diffuse = ColorRGBA(*light.diffuse)
     for term in ATTENUATION:
         setattr(response, f"attenuation_{term}", getattr(light, term))
     done(response, "")
 
 
-def set_light_properties(world: World, request, response) -> None:
-    """Writes every field, as upstream: what a request leaves out becomes 0.
+@service(names.SET_LIGHT_PROPERTIES, SetLightProperties)
+def set_light_properties(simulation: Simulation, request, response) -> None:
+    """Writes every field (setLightProperties): what a request leaves out becomes 0.
 
     ServiceError if there is no such light, or a number is impossible.
     """
-    light = _light(world, request.light_name, "setLightProperties")
+    light = _light(simulation.world, request.light_name, "setLightProperties")
     terms = {term: getattr(request, f"attenuation_{term}") for term in ATTENUATION}
     if not (convert.is_sane(request.pose, request.direction, request.diffuse, request.specular)
             and all(0 <= value <= convert.LARGEST for value in terms.values())):
         raise ServiceError("setLightProperties: all numbers must be finite and not beyond "
                            f"{convert.LARGEST:g}, those of the attenuation not below 0")
-    direction = request.direction
-    world.change_light(replace(
+    simulation.world.change_light(replace(
         light,
         cast_shadows=request.cast_shadows,
         diffuse=_colour(request.diffuse),
         specular=_colour(request.specular),
-        direction=(direction.x, direction.y, direction.z),
+        direction=convert.triple(request.direction),
         pose=convert.pose_from_msg(request.pose),
         **terms,
     ))
     done(response, "")
 
 
-def delete_light(world: World, name: str, response) -> None:
-    """ServiceError if there is no such light: upstream's words for it name a time-out."""
+@service(names.DELETE_LIGHT, DeleteLight)
+def delete_light(simulation: Simulation, request, response) -> None:
+    """ServiceError if there is no such light: the words of deleteLight name a time-out."""
+    world, name = simulation.world, request.light_name
     if name not in world.lights:
         raise ServiceError(f'DeleteLight: Timeout reached while removing light "{name}"')
     world.remove_light(name)

@@ -1,8 +1,9 @@
 """Entities by the names that requests use."""
 
-from __future__ import annotations
+from typing import Any
 
-from collections.abc import Iterator
+from geometry_msgs.msg import Pose as PoseMsg
+from geometry_msgs.msg import Twist as TwistMsg
 
 from bullet_sim.description import JointDescription
 from bullet_sim.errors import UnknownName
@@ -11,8 +12,9 @@ from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.nested import NestedModel, find_nested_model
 from bullet_sim.pose import Pose
-from bullet_sim.twist import Twist
+from bullet_sim.twist import Twist, twist_difference, twist_in
 from bullet_sim.world import World
+from bullet_sim_ros import convert
 from bullet_sim_ros.services.answers import ServiceError
 
 LINK_UNKNOWN = "link not found, did you forget to scope the link by model name?"
@@ -21,7 +23,7 @@ LINK_UNKNOWN = "link not found, did you forget to scope the link by model name?"
 def find_model(world: World, name: str, missing: str) -> Model:
     """The model of that name; ServiceError(`missing`) if there is none. Nested ones are not meant.
 
-    As upstream, only the services that read take nested models: see `find_part`.
+    Only the services that read take nested models: see `find_part`.
     """
     part = find_part(world, name, missing)
     if part.name:
@@ -40,7 +42,7 @@ def find_part(world: World, name: str, missing: str) -> NestedModel:
 def find_link(world: World, name: str, missing: str) -> Link:
     """A link by `model::link`, or by a name that is unique; ServiceError(`missing`) if none is.
 
-    A link that lumping of fixed joints took away is none, as in Gazebo.
+    A link that lumping of fixed joints took away is none.
     """
     try:
         link = world.link(name)
@@ -59,19 +61,28 @@ def find_frame(world: World, name: str, missing: str) -> tuple[Pose, Twist]:
         raise ServiceError(missing) from None
 
 
+def seen_from(world: World, name: str, pose: Pose, twist: Twist,
+              missing: str) -> tuple[PoseMsg, TwistMsg]:
+    """A pose and a twist in the axes of a reference frame; ServiceError(`missing`) without it."""
+    frame, frame_twist = find_frame(world, name, missing)
+    return (convert.pose_to_msg(frame.inverse() * pose),
+            convert.twist_to_msg(twist_in(frame, twist_difference(twist, frame_twist))))
+
+
+def check_sane(what: str, *values: Any) -> None:
+    """ServiceError if a number of these messages, sequences or numbers is not finite, or huge."""
+    if not convert.is_sane(*values):
+        raise ServiceError(f"{what} must be finite and not beyond {convert.LARGEST:g}")
+
+
 def find_joint(world: World, name: str, missing: str) -> tuple[Model, JointDescription,
                                                                 Joint | None]:
     """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed.
 
     ServiceError(`missing`) if there is none.
     """
-    for model, description in _joints(world):
-        if name in (description.name, f"{model.name}::{description.name}"):
-            return model, description, model.joints.get(description.name)
-    raise ServiceError(missing)
-
-
-def _joints(world: World) -> Iterator[tuple[Model, JointDescription]]:
     for model in world.models.values():
         for description in model.description.joints:
-            yield model, description
+            if name in (description.name, f"{model.name}::{description.name}"):
+                return model, description, model.joints.get(description.name)
+    raise ServiceError(missing)

@@ -1,7 +1,5 @@
 """Spawning and deleting models."""
 
-from __future__ import annotations
-
 import copy
 import dataclasses
 import re

@@ -1,13 +1,12 @@
 """Step, update rate and gravity; the numbers of ODE that Bullet has no use for are only kept."""
 
-from __future__ import annotations
-
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import prefixed
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done, offer
+from bullet_sim_ros.services.answers import ServiceError, done
+from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 # Fields of gazebo_msgs/ODEPhysics and of our PhysicsDescription.
@@ -24,16 +23,9 @@ ODE = {
 }
 
 
-def offer_physics_services(simulation: Simulation) -> None:
-    """get_physics_properties and set_physics_properties."""
-    offer(simulation.mailbox, names.GET_PHYSICS_PROPERTIES, GetPhysicsProperties,
-          lambda _request, response: get_physics_properties(simulation, response))
-    offer(simulation.mailbox, names.SET_PHYSICS_PROPERTIES, SetPhysicsProperties,
-          lambda request, response: set_physics_properties(simulation, request, response))
-
-
-def get_physics_properties(simulation: Simulation, response) -> None:
-    """As the world is now; `sor_pgs_rms_error_tol` stays 0, as upstream's."""
+@service(names.GET_PHYSICS_PROPERTIES, GetPhysicsProperties)
+def get_physics_properties(simulation: Simulation, _request, response) -> None:
+    """As the world is now; `sor_pgs_rms_error_tol` is 0, which getPhysicsProperties leaves out."""
     description = simulation.world.description
     physics = description.physics
     response.time_step = physics.max_step_size
@@ -45,16 +37,14 @@ def get_physics_properties(simulation: Simulation, response) -> None:
     done(response, "GetPhysicsProperties: got properties")
 
 
+@service(names.SET_PHYSICS_PROPERTIES, SetPhysicsProperties)
 def set_physics_properties(simulation: Simulation, request, response) -> None:
-    """Writes every field, as upstream: get first, then set. ServiceError if one is impossible."""
+    """Writes every field, so get first, then set. ServiceError if one is impossible."""
     if not convert.is_sane(request.gravity):
         raise ServiceError("SetPhysicsProperties: gravity is not finite")
-    gravity = (request.gravity.x, request.gravity.y, request.gravity.z)
     ode = {ours: getattr(request.ode_config, field) for field, ours in ODE.items()}
-    try:
+    with prefixed("SetPhysicsProperties:", ServiceError):
         simulation.configure_physics(
             max_step_size=request.time_step, real_time_update_rate=request.max_update_rate,
-            gravity=gravity, **ode)
-    except SimulationError as error:
-        raise ServiceError(f"SetPhysicsProperties: {error}") from None
+            gravity=convert.triple(request.gravity), **ode)
     done(response, "physics engine updated")

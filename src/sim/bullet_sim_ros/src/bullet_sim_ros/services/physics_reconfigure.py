@@ -1,6 +1,4 @@
-"""dynamic_reconfigure of /gazebo: physics, with the names and ranges of upstream's Physics.cfg."""
-
-from __future__ import annotations
+"""dynamic_reconfigure of /gazebo: physics, as gazebo_ros/cfg/Physics.cfg names and bounds it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -36,7 +34,7 @@ UNUSED = -1.0  # of what the world has no number for
 class PhysicsReconfigure:
     """Writes only what was changed, so that what set_physics_properties set meanwhile stays.
 
-    Upstream writes all of its numbers, those that are out of date among them.
+    physicsReconfigureCallback writes all of its numbers, those that are out of date among them.
     """
 
     def __init__(self, simulation: Simulation):

@@ -1,51 +1,48 @@
 """The world as a whole: what is in it, pause, reset."""
 
-from __future__ import annotations
+from collections.abc import Callable
+from functools import partial
 
 from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
-from bullet_sim.world import World
 from bullet_sim_ros import names
-from bullet_sim_ros.services.answers import done, offer
+from bullet_sim_ros.services.answers import done
 from bullet_sim_ros.services.lookup import find_part
+from bullet_sim_ros.services.registry import service
+from bullet_sim_ros.simulation import Simulation
 
 
-def offer_world_services(simulation) -> None:
-    """What is in the world, pausing and resetting it."""
-    world = simulation.world
-
-    def pause(_request, _response):
-        world.paused = True
-
-    def unpause(_request, _response):
-        world.paused = False
-
-    offer(simulation.mailbox, names.GET_WORLD_PROPERTIES, GetWorldProperties,
-          lambda _request, response: get_world_properties(world, response))
-    offer(simulation.mailbox, names.GET_MODEL_PROPERTIES, GetModelProperties,
-          lambda request, response: get_model_properties(world, request.model_name, response))
-    offer(simulation.mailbox, names.PAUSE_PHYSICS, Empty, pause)
-    offer(simulation.mailbox, names.UNPAUSE_PHYSICS, Empty, unpause)
-    offer(simulation.mailbox, names.STEP_PHYSICS, Empty,
-          lambda _request, _response: simulation.step())
-    offer(simulation.mailbox, names.RESET_WORLD, Empty,
-          lambda _request, _response: world.reset_models())
-    offer(simulation.mailbox, names.RESET_SIMULATION, Empty,
-          lambda _request, _response: simulation.reset())
+def _register(name: str, act: Callable[[Simulation], None]) -> None:
+    """A service without fields."""
+    service(name, Empty)(lambda simulation, _request, _response: act(simulation))
 
 
-def get_world_properties(world: World, response) -> None:
+def _set_paused(simulation: Simulation, paused: bool) -> None:
+    simulation.world.paused = paused
+
+
+_register(names.PAUSE_PHYSICS, partial(_set_paused, paused=True))
+_register(names.UNPAUSE_PHYSICS, partial(_set_paused, paused=False))
+_register(names.STEP_PHYSICS, Simulation.step)
+_register(names.RESET_WORLD, lambda simulation: simulation.world.reset_models())
+_register(names.RESET_SIMULATION, Simulation.reset)
+
+
+@service(names.GET_WORLD_PROPERTIES, GetWorldProperties)
+def get_world_properties(simulation: Simulation, _request, response) -> None:
     """Time and the models' names, in the order they came."""
-    response.sim_time = world.time
-    response.model_names = list(world.models)
+    response.sim_time = simulation.world.time
+    response.model_names = list(simulation.world.models)
     response.rendering_enabled = True
     done(response, "GetWorldProperties: got properties")
 
 
-def get_model_properties(world: World, name: str, response) -> None:
-    """Names of what a model consists of, unscoped."""
-    part = find_part(world, name, "GetModelProperties: model does not exist")
+@service(names.GET_MODEL_PROPERTIES, GetModelProperties)
+def get_model_properties(simulation: Simulation, request, response) -> None:
+    """Names of what a model consists of, unscoped. ServiceError without such a model."""
+    part = find_part(simulation.world, request.model_name,
+                     "GetModelProperties: model does not exist")
     response.parent_model_name = part.parent_name
     response.body_names = [part.unscoped(link.name) for link in part.links()]
     response.geom_names = [collision.name for link in part.links()

@@ -281,4 +281,4 @@ def test_what_is_wrong_is_said_and_what_can_go_on_goes_on(bench, robot, caplog):
 def test_a_tag_that_is_no_number_is_said(bench, robot, caplog, text):
     # conforms: libgazebo_ros_diff_drive.so/wheelTorque
     bench.spawn(robot(wheelTorque=text))
-    assert f"is not loaded: <wheelTorque> is '{text}', which is no number" in caplog.text
+    assert f"is not loaded: <wheelTorque> is '{text}', which is not a number" in caplog.text

@@ -330,6 +330,10 @@ def test_links_are_tied_together_and_parted(make_bench, robots):
     bench.run(0.5)
     assert cube.pose.position == pytest.approx((0.5, 0, 2.0), abs=2e-3)
     assert anchor.pose.position == pytest.approx((0, 0, 2.0))
+    for reset in ("reset_world", "reset_simulation"):  # neither parts them
+        bench.call(f"/gazebo/{reset}")
+        bench.run(0.5)
+        assert cube.pose.position == pytest.approx((0.5, 0, 2.0), abs=2e-3)
     assert bench.call("/link_attacher_node/detach", **ends).ok
     assert not bench.call("/link_attacher_node/detach", **ends).ok
     bench.run(0.5)

@@ -4,7 +4,7 @@ Two legs, each with the waffle driving: without a camera subscriber for MEMORY_S
 and with lesson 05 in lockstep at 640x480 for a quarter of that. Growth is from the second tenth of
 a leg to its last; the first tenth, in which caches fill, is not counted. At the end of the first
 leg the world is paused: /clock must then be less than one of its periods behind the world's ticks,
-and every time it ever said a whole number of periods.
+and every time that it published a whole number of periods.
 """
 
 from __future__ import annotations
@@ -92,12 +92,12 @@ def _with_camera(run: RosRun, length: float, settings: Settings) -> Samples:
 def _sample(run: RosRun, length: float, settings: Settings) -> Samples:
     """The simulator's memory at even steps of simulated time, until so much has passed."""
     begin = simulator.simulated_time()
-    samples, told = [], time.monotonic()
+    samples, reported_at = [], time.monotonic()
     while (passed := simulator.simulated_time() - begin) < length:
         if passed >= len(samples) * length / LOOKS:
             samples.append((passed, memory(SIMULATOR)))
-        if time.monotonic() - told > SAY_PERIOD:
-            told = time.monotonic()
+        if time.monotonic() - reported_at > SAY_PERIOD:
+            reported_at = time.monotonic()
             settings.say(f"  {passed:.0f} of {length:.0f} simulated s")
         run.pause(0.1)
     return samples

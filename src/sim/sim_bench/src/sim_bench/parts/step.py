@@ -1,7 +1,7 @@
 """Our full physics step beside PyBullet's bare one, in the same world and on the same client.
 
 The course with its waffle, standing still and driving a circle. Blocks of bare `stepSimulation` and
-of `World.step` take turns; wheel motors keep what they were last told, so that the engine has the
+of `World.step` take turns; wheel motors keep their last command, so that the engine has the
 same to do in both. A world in which nothing moves for a while leaves the engine out: that is no
 full step, and is measured apart, as `resting`, without a ratio. A force of nothing before each
 block keeps the standing waffle's world awake, and a ratio that only a step without the engine could

@@ -18,7 +18,7 @@ WRITE_PERIOD = 1.0  # s, wall
 
 
 class ClockStatistics:
-    """What /clock has said so far."""
+    """What /clock has published so far."""
 
     def __init__(self, period_ns: int):
         self._period_ns = period_ns

@@ -22,15 +22,15 @@ from sensor_msgs.msg import LaserScan
 def main() -> None:
     """Stays until it is ended: the robots go on having subscribers."""
     rospy.init_node("fleet", anonymous=True, disable_rostime=True)
-    heard: set[str] = set()
+    received: set[str] = set()
     lock = threading.Lock()  # each topic calls back on a thread of its own
     with Path(sys.argv[1]).open("w", encoding="ascii", buffering=1) as file:
 
         def first(topic: str) -> Callable[[object], None]:
             def note(_message: object) -> None:
                 with lock:
-                    if topic not in heard:
-                        heard.add(topic)
+                    if topic not in received:
+                        received.add(topic)
                         file.write(f"{time.monotonic():.6f}\n")
 
             return note

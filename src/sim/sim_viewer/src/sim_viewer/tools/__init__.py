@@ -1,1 +1,1 @@
-"""What rqt's tools do: one file, one tab of the page."""
+"""What rqt's tools do: a module for each tab and for the simulation's bar, and what they share."""

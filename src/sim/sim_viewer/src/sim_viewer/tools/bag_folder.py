@@ -1,7 +1,5 @@
 """The folder of bags: which names are safe, what is there, what is in a bag."""
 
-from __future__ import annotations
-
 import re
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Recording and playing bags: what `rosbag record` and `rosbag play` start, as child processes."""
 
-from __future__ import annotations
-
 import shutil
 import signal
 import subprocess
@@ -16,7 +14,7 @@ from roslib.packages import find_node
 
 from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools.bag_folder import bag_folder, contents, existing_bag, listing, new_bag
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 
 LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
 TIMEOUT = 10.0  # s for a bag to be closed
@@ -36,10 +34,10 @@ class Child:
             raise Refused(f"package rosbag has no {program} here; type: apt install rosbag")
         self.path = path
         self.started = time.monotonic()
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
         self._process = subprocess.Popen(
             ["setpriv", "--pdeathsig", "INT", found[0], *arguments], stdin=subprocess.DEVNULL,
-            stdout=self._said, stderr=subprocess.STDOUT, start_new_session=True)
+            stdout=self._output, stderr=subprocess.STDOUT, start_new_session=True)
 
     @property
     def running(self) -> bool:
@@ -50,8 +48,8 @@ class Child:
         """Its last words if it ended by itself and badly, else nothing."""
         if self._process.poll() in (None, 0, -signal.SIGINT):
             return ""
-        self._said.seek(0)
-        lines = self._said.read().decode(errors="replace").strip().splitlines()
+        self._output.seek(0)
+        lines = self._output.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else f"rosbag ended with {self._process.returncode}"
 
     def interrupt(self) -> None:
@@ -170,15 +168,14 @@ class BagState(Paced):
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
         self._bags: Bags = context.node.shared(Bags)
-        self._changes = Changes()
 
     def collect(self) -> Any:
-        return self._changes.of(self._bags.state())
+        return self.changed(self._bags.state())
 
 
 @operation("bag_info")
 async def bag_info(context: Any, name: str) -> dict[str, Any]:
-    """What is in a bag."""
+    """What is in a bag. Refused of a file that is no bag here."""
     path = existing_bag(context.node.shared(Bags).folder, name)
     return await context.run_in_thread(contents, path)
 

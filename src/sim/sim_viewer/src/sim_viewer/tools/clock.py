@@ -1,49 +1,30 @@
 """The time that nodes go by: simulated while somebody publishes /clock, else the wall's."""
 
-from __future__ import annotations
-
-import threading
 import time
 from collections import deque
-from typing import Any
 
 import rospy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
-from sim_viewer.subscription import Subscription
+from sim_viewer.subscription import SharedSubscription, Subscription
 from sim_viewer.tools import names
 
 FACTOR_WINDOW = 2.0  # s of wall time that the real-time factor is measured over
 
 
-class SharedClock:
-    """One subscription to /clock, shared by all users and closed with the last. Thread safe.
+class SharedClock(SharedSubscription):
+    """What /clock says.
 
     rospy's own time would not do: it decides between the two when its node starts, and the page
     may be older than the simulator.
     """
 
-    def __init__(self, node: Any = None):
-        self._lock = threading.Lock()
-        self._holders = 0
-        self._subscriber: Subscription | None = None
-        self._stamp: rospy.Time | None = None
+    _stamp: rospy.Time | None = None
 
-    def hold(self) -> None:
-        """Subscribe if nobody has yet."""
-        with self._lock:
-            self._holders += 1
-            if self._holders == 1:
-                self._stamp = None
-                self._subscriber = Subscription(names.CLOCK, ClockMessage, self._take)
-
-    def release(self) -> None:
-        """The last one out unsubscribes."""
-        with self._lock:
-            self._holders -= 1
-            if self._holders == 0 and self._subscriber:
-                self._subscriber.unregister()
-                self._subscriber = None
+    def subscribe(self) -> Subscription:
+        """Begin anew, without a time."""
+        self._stamp = None
+        return Subscription(names.CLOCK, ClockMessage, self._take)
 
     @property
     def simulated(self) -> float | None:

@@ -1,16 +1,13 @@
 """The log of all nodes, as rqt_console shows it."""
 
-from __future__ import annotations
-
 import itertools
-import threading
 from collections import deque
 from typing import Any
 
 from rosgraph_msgs.msg import Log
 
 from sim_viewer.registry import Refused, argument, watchable
-from sim_viewer.subscription import Subscription
+from sim_viewer.subscription import SharedSubscription, Subscription
 from sim_viewer.tools import names
 from sim_viewer.tools.paced import Paced
 
@@ -22,30 +19,17 @@ MOST_LETTERS = 2_000  # of one line
 MOST_SENT = 200  # lines each time; more could not be read
 
 
-class SharedLog:
-    """The last lines, gathered while somebody looks. Thread safe."""
+class SharedLog(SharedSubscription):
+    """The last lines, gathered while somebody looks; they stay for who comes back."""
 
     def __init__(self, node: Any = None):
-        self._lock = threading.Lock()
+        super().__init__(node)
         self._lines: deque[tuple[int, dict[str, Any]]] = deque(maxlen=MOST_REMEMBERED)
         self._numbers = itertools.count(1)
-        self._holders = 0
-        self._subscriber: Subscription | None = None
 
-    def hold(self) -> None:
-        """Subscribe if nobody has yet."""
-        with self._lock:
-            self._holders += 1
-            if self._holders == 1:
-                self._subscriber = Subscription(names.ROSOUT, Log, self._take)
-
-    def release(self) -> None:
-        """The last one out unsubscribes; lines stay for who comes back."""
-        with self._lock:
-            self._holders -= 1
-            if self._holders == 0 and self._subscriber:
-                self._subscriber.unregister()
-                self._subscriber = None
+    def subscribe(self) -> Subscription:
+        """Begin anew; lines are numbered on."""
+        return Subscription(names.ROSOUT, Log, self._take)
 
     def after(self, number: int) -> list[tuple[int, dict[str, Any]]]:
         """Lines with a higher number than this, oldest first."""
@@ -86,16 +70,10 @@ class Console(Paced):
         if self._level not in LEVELS:
             raise Refused(f"level is {self._level!r:.40}; there are {', '.join(LEVELS)}")
         self._log: SharedLog = context.node.shared(SharedLog)
-        self._holds = False
         self._number = 0
 
     def open(self) -> None:
-        self._log.hold()
-        self._holds = True
-
-    def close(self) -> None:
-        if self._holds:
-            self._log.release()
+        self.closing.enter_context(self._log.held())
 
     def collect(self) -> Any:
         fresh = self._log.after(self._number)

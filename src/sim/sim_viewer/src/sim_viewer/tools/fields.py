@@ -4,8 +4,6 @@ An element of an array is `/scan/ranges[10]` or `/scan/ranges/10`; `/turtle1/pos
 and a path that ends at a message is all numbers directly in it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 
@@ -60,9 +58,10 @@ def expand(path: str, message_class: type) -> list[str]:
         if is_number(kind):
             found.append(single)
             continue
-        numbers = [f"{single}/{slot}".lstrip("/") for slot, of in _slots(kind) if is_number(of)]
+        numbers = [f"{single}/{slot}".lstrip("/") for slot, of in slots(class_of(kind)).items()
+                   if is_number(of)]
         if not numbers:
-            raise Refused(f"{kind} is no number; it has: {_choices(kind)}")
+            raise Refused(f"{kind} is not a number; it has: {_choices(kind)}")
         found.extend(numbers)
     return found
 
@@ -77,10 +76,10 @@ def field_type(message_class: type, steps: list[Step]) -> str:
                 raise Refused(f"{kind} has no elements, so [{step}] does not fit")
             kind = kind[:kind.rindex("[")]
             continue
-        slots = dict(_slots(kind))
-        if step not in slots:
+        known = slots(class_of(kind))
+        if step not in known:
             raise Refused(f"{kind} has no field '{step}'; it has: {_choices(kind)}")
-        kind = slots[step]
+        kind = known[step]
     return kind
 
 
@@ -116,20 +115,21 @@ def _collect(kind: str, path: str, found: list[str]) -> None:
         for index in range(listed):
             _collect(element, f"{path}[{index}]", found)
     else:
-        for slot, of in _slots(kind):
+        for slot, of in slots(class_of(kind)).items():
             _collect(of, f"{path}/{slot}".lstrip("/"), found)
 
 
-def _slots(kind: str) -> list[tuple[str, str]]:
-    """Names and types of a message's fields; none where `kind` is no message built here."""
-    is_message = "/" in kind and not kind.endswith("]")
-    message_class = get_message_class(kind) if is_message else None
-    if message_class is None:
-        return []
-    return list(zip(message_class.__slots__, message_class._slot_types))
+def class_of(kind: str) -> type | None:
+    """The class of a field's type; None where it is no message, or none that is built here."""
+    return get_message_class(kind) if "/" in kind and not kind.endswith("]") else None
+
+
+def slots(message_class: type | None) -> dict[str, str]:
+    """Names and types of a message's fields; none of None."""
+    return dict(zip(message_class.__slots__, message_class._slot_types)) if message_class else {}
 
 
 def _choices(kind: str) -> str:
     if kind.endswith("]"):
         return "an index as [0]"
-    return ", ".join(slot for slot, _ in _slots(kind)) or "no fields"
+    return ", ".join(slots(class_of(kind))) or "no fields"

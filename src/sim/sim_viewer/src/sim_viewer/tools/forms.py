@@ -1,7 +1,5 @@
 """Requests of services as YAML text: a template to fill in, and what was filled in as a message."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import genpy
@@ -10,6 +8,7 @@ import yaml
 from roslib.message import get_message_class
 
 from sim_viewer.registry import Refused
+from sim_viewer.tools.fields import class_of, slots
 
 LONGEST = 20_000  # letters of a filled-in form
 DEFAULTS = {"string": '""', "bool": "false", "time": "{secs: 0, nsecs: 0}",
@@ -49,15 +48,15 @@ def template(message_class: type) -> str:
 
 def _template_lines(message_class: type) -> list[str]:
     lines = []
-    for name, kind in zip(message_class.__slots__, message_class._slot_types):
-        inner = get_message_class(kind) if "/" in kind and not kind.endswith("]") else None
+    for name, kind in slots(message_class).items():
+        inner = class_of(kind)
         if kind.endswith("]"):
             lines.append(f"{name}: []  # {kind}")
         elif inner and not _is_flat(inner):
             lines += [f"{name}:", *("  " + line for line in _template_lines(inner))]
         elif inner:
             fields = ", ".join(f"{slot}: {DEFAULTS.get(of, '0')}"
-                               for slot, of in zip(inner.__slots__, inner._slot_types))
+                               for slot, of in slots(inner).items())
             lines.append(f"{name}: {{{fields}}}")
         else:
             lines.append(f"{name}: {DEFAULTS.get(kind, '0')}  # {kind}")
@@ -89,7 +88,7 @@ def fill(message_class: type, text: str) -> Any:
 
 def _check(message_class: type, values: dict, path: str) -> None:
     """Checks that genpy leaves to serialisation or reports unclearly: fields, types, bounds."""
-    kinds = dict(zip(message_class.__slots__, message_class._slot_types))
+    kinds = slots(message_class)
     for name, value in values.items():
         if name not in kinds:
             raise Refused(f"there is no field '{path}{name}'; {_fields(message_class)}")

@@ -1,7 +1,5 @@
 """Nodes, topics and what flows between them, laid out as rqt_graph draws it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import rospy
@@ -10,7 +8,7 @@ from sim_viewer.drive import GUARD
 from sim_viewer.registry import Refused, argument, watchable
 from sim_viewer.tools.graph_layout import LayoutError, layout
 from sim_viewer.tools.master import SystemState
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 
 VIEWS = ("nodes", "active", "all")  # rqt_graph's Nodes only, Nodes/Topics (active), (all)
 QUIET_TOPICS = frozenset(["/rosout", "/rosout_agg", "/clock", "/statistics"])
@@ -34,10 +32,9 @@ class Graph(Paced):
         self._text = argument(args, "text", str, "")
         if self._view not in VIEWS:
             raise Refused(f"view is {self._view!r}; there are {', '.join(VIEWS)}")
-        self._state = Changes()
 
     def collect(self) -> Any:
-        state = self._state.of(self.master.state())
+        state = self.changed(self.master.state())
         if state is None:
             return None
         return draw(state, self._view, self._quiet, self._text, rospy.get_name())

@@ -1,7 +1,5 @@
 """Places for a directed graph's nodes and curves for its edges, by Graphviz."""
 
-from __future__ import annotations
-
 import shlex
 import subprocess
 from collections.abc import Iterable
@@ -58,6 +56,8 @@ def layout(names: dict[str, str], edges: Iterable[Edge]) -> Layout:
 
 
 def _quoted(text: str) -> str:
+    # A line of dot's output for each node: what ends a line, or a string of C's, is a space.
+    text = "".join(each if each.isprintable() else " " for each in text)
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 

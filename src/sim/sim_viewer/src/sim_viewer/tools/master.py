@@ -1,7 +1,5 @@
 """The ROS master's state, read at most once a second however many pages show it."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable
@@ -34,13 +32,13 @@ class MasterView:
         self._known: dict[str, tuple[float, Any]] = {}
 
     def state(self) -> SystemState:
-        """All publishers, subscribers and services."""
+        """All publishers, subscribers and services. Refused where the master is gone."""
         return self._recent("state", lambda: SystemState(
             *({name: sorted(nodes) for name, nodes in part}
               for part in connect().getSystemState())))
 
     def types(self) -> dict[str, str]:
-        """Each topic's type."""
+        """Each topic's type. Refused where the master is gone."""
         return self._recent("types", lambda: dict(connect().getTopicTypes()))
 
     def message_class(self, topic: str) -> type:

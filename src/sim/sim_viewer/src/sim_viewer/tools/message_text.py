@@ -1,7 +1,5 @@
 """Messages as YAML text, short enough to read: long arrays and strings are cut, with a mark."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import genpy

@@ -1,9 +1,8 @@
 """Base class of the tools' watchables: polls at a period and sends what has changed."""
 
-from __future__ import annotations
-
 import abc
 import asyncio
+import contextlib
 import threading
 from typing import Any
 
@@ -14,8 +13,8 @@ from sim_viewer.tools.master import MasterView
 
 
 class Paced(abc.ABC):
-    """Subclasses give `open`, `collect` and `close`; all three run in worker threads, may block and
-    may raise Refused. What `collect` cannot do is sent as `{"error": line}`."""
+    """Subclasses give `open` and `collect`; both run in worker threads, may block and may raise
+    Refused. What `collect` cannot do is sent as `{"error": line}`; `closing` undoes `open`."""
 
     PERIOD = 0.2  # s between two looks
     KEEP = False  # whether each event counts, not only the newest
@@ -29,6 +28,8 @@ class Paced(abc.ABC):
         self._lock = threading.Lock()  # a browser may go while its watch is being opened
         self._ended = False
         self._last_error = ""
+        self._last: Any = None
+        self.closing = contextlib.ExitStack()  # what to undo, also where `open` failed half way
 
     def open(self) -> None:  # noqa: B027 (not every tool subscribes)
         """Subscribe to what `collect` needs."""
@@ -37,8 +38,12 @@ class Paced(abc.ABC):
     def collect(self) -> Any:
         """What is new, or None."""
 
-    def close(self) -> None:  # noqa: B027 (likewise)
-        """Unsubscribe; called even where `open` failed half way."""
+    def changed(self, data: Any) -> Any:
+        """`data`, or None where it is the same as at the last call."""
+        if data == self._last:
+            return None
+        self._last = data
+        return data
 
     async def start(self) -> None:
         await self.context.run_in_thread(self._open)
@@ -58,7 +63,7 @@ class Paced(abc.ABC):
         with self._lock:
             if not self._ended:
                 self._ended = True
-                self.close()
+                self.closing.close()
 
     async def _run(self) -> None:
         while True:
@@ -83,17 +88,3 @@ class Paced(abc.ABC):
             return None
         self._last_error = line
         return {"error": line}
-
-
-class Changes:
-    """Lets through what differs from the last time."""
-
-    def __init__(self) -> None:
-        self._last: Any = None
-
-    def of(self, data: Any) -> Any:
-        """`data`, or None where it is the same as before."""
-        if data == self._last:
-            return None
-        self._last = data
-        return data

@@ -1,7 +1,5 @@
 """The parameter server: all parameters, and setting or deleting one."""
 
-from __future__ import annotations
-
 import xmlrpc.client
 from collections.abc import Callable
 from typing import Any
@@ -26,7 +24,10 @@ async def parameters(context: Any) -> list[dict[str, Any]]:
 
 @operation("parameter")
 async def parameter(context: Any, name: str) -> dict[str, Any]:
-    """One parameter in full."""
+    """One parameter in full.
+
+    Refused of a name or value that cannot be, and where the master is gone.
+    """
     check_name(name)
     value = await context.run_in_thread(master_call, lambda m: m.getParam(name))
     return row(name, value, MOST_OPENED)
@@ -34,7 +35,10 @@ async def parameter(context: Any, name: str) -> dict[str, Any]:
 
 @operation("set_parameter", control=True)
 async def set_parameter(context: Any, name: str, value: str) -> dict[str, Any]:
-    """Set one from YAML text, and answer with its row as the server has it now."""
+    """Set one from YAML text, and answer with its row as the server has it now.
+
+    Refused of a name or value that cannot be, and where the master is gone.
+    """
     check_name(name)
     parsed = await context.run_in_thread(read_value, value)
     await context.run_in_thread(master_call, lambda m: m.setParam(name, parsed))
@@ -43,7 +47,10 @@ async def set_parameter(context: Any, name: str, value: str) -> dict[str, Any]:
 
 @operation("delete_parameter", control=True)
 async def delete_parameter(context: Any, name: str) -> None:
-    """With everything below it."""
+    """With everything below it.
+
+    Refused of a name or value that cannot be, and where the master is gone.
+    """
     check_name(name)
     await context.run_in_thread(master_call, lambda m: m.deleteParam(name))
 

@@ -1,7 +1,5 @@
 """Numbers of any topic over time."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable
@@ -53,9 +51,7 @@ class Plot(Paced):
         if not 0 < len(paths) <= MOST_LINES or not all(isinstance(path, str) for path in paths):
             raise Refused(f"paths are 1 to {MOST_LINES} texts such as /odom/pose/pose/position/x")
         self._waiting = {path: deque(maxlen=MOST_WAITING) for path in paths}
-        self._subscribers: list[Subscription] = []
         self._clock: SharedClock = context.node.shared(SharedClock)
-        self._holds_clock = False
 
     def open(self) -> None:
         by_topic: dict[str, list[tuple[str, list]]] = {}
@@ -63,18 +59,10 @@ class Plot(Paced):
             (line,) = lines_of(self.master, path)[:1]
             topic, rest = split_topic(line, self.master.types())
             by_topic.setdefault(topic, []).append((path, parse_steps(rest)))
-        self._clock.hold()
-        self._holds_clock = True
+        self.closing.enter_context(self._clock.held())
         for topic, lines in by_topic.items():
             kind = self.master.message_class(topic)
-            self._subscribers.append(
-                Subscription(topic, kind, self._taker(lines)))
-
-    def close(self) -> None:
-        for subscriber in self._subscribers:
-            subscriber.unregister()
-        if self._holds_clock:
-            self._clock.release()
+            self.closing.callback(Subscription(topic, kind, self._taker(lines)).unregister)
 
     def collect(self) -> Any:
         news = {}

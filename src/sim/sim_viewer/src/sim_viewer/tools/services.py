@@ -1,7 +1,5 @@
 """Services: the list, a form for a request, and the call."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 from typing import Any

@@ -3,8 +3,6 @@
 Its node goes by `name`, which is /gazebo but in another namespace.
 """
 
-from __future__ import annotations
-
 import threading
 import time
 from typing import Any
@@ -17,7 +15,7 @@ from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools import names
 from sim_viewer.tools.clock import FactorMeter, SharedClock
 from sim_viewer.tools.master import MasterView
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 from sim_viewer.tools.simulator_name import simulator_name
 
 PAUSE_ASKED = 1.0  # s between two questions whether it is paused
@@ -30,7 +28,7 @@ RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
 async def pause(context: Any, paused: bool = True) -> None:
     """Stop simulated time, or let it go on."""
     name = await _find_simulator(context)
-    await context.run_in_thread(call_empty, name + (names.PAUSE if paused else names.UNPAUSE))
+    await context.run_in_thread(call, name + (names.PAUSE if paused else names.UNPAUSE))
     context.node.shared(SharedPause).forget()
 
 
@@ -39,7 +37,7 @@ async def reset(context: Any, what: str = "world") -> None:
     """`world`: models back to where they began; `simulation`: time to 0 as well; Refused else."""
     if what not in RESETS:
         raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
-    await context.run_in_thread(call_empty, await _find_simulator(context) + RESETS[what])
+    await context.run_in_thread(call, await _find_simulator(context) + RESETS[what])
 
 
 @operation("step", control=True)
@@ -73,7 +71,7 @@ def _step_exactly(name: str, steps: int) -> dict[str, float]:
     world = rospy.ServiceProxy(name + names.WORLD, GetWorldProperties)
     limit = time.monotonic() + STEP_LIMIT
     try:
-        call_empty(name + names.PAUSE)
+        call(name + names.PAUSE)
         begin = world().sim_time
         for _ in range(steps):
             one()
@@ -87,13 +85,12 @@ def _step_exactly(name: str, steps: int) -> dict[str, float]:
 
 
 def _step_by_clock(name: str, clock: SharedClock, steps: int) -> dict[str, float]:
-    duration = steps * physics(name).time_step
-    clock.hold()
-    try:
-        call_empty(name + names.PAUSE)
+    duration = steps * call(name + names.PHYSICS, GetPhysicsProperties).time_step
+    with clock.held():
+        call(name + names.PAUSE)
         begin = clock.simulated
         limit = time.monotonic() + STEP_LIMIT
-        call_empty(name + names.UNPAUSE)
+        call(name + names.UNPAUSE)
         while time.monotonic() < limit:
             now = clock.simulated
             if begin is None:
@@ -101,27 +98,17 @@ def _step_by_clock(name: str, clock: SharedClock, steps: int) -> dict[str, float
             elif now is not None and now >= begin + duration and now > begin:
                 break
             time.sleep(0.001)
-        call_empty(name + names.PAUSE)
+        call(name + names.PAUSE)
         time.sleep(0.02)
         return {"from": begin, "to": clock.simulated}
-    finally:
-        clock.release()
 
 
-def call_empty(name: str) -> None:
-    """Call a service without fields; Refused where there is no simulator."""
+def call(name: str, kind: type = Empty) -> Any:
+    """A service's answer to a request without fields; Refused where there is no simulator."""
     try:
-        rospy.ServiceProxy(name, Empty)()
+        return rospy.ServiceProxy(name, kind)()
     except (rospy.ServiceException, rospy.ROSException) as error:
         raise Refused(f"{name}: {error}; is a simulator running?") from None
-
-
-def physics(name: str) -> Any:
-    """The simulator's physics properties; Refused where there is no simulator."""
-    try:
-        return rospy.ServiceProxy(name + names.PHYSICS, GetPhysicsProperties)()
-    except (rospy.ServiceException, rospy.ROSException) as error:
-        raise Refused(f"{name + names.PHYSICS}: {error}; is a simulator running?") from None
 
 
 class SharedPause:
@@ -137,7 +124,7 @@ class SharedPause:
         with self._lock:
             if time.monotonic() - self._asked >= PAUSE_ASKED:
                 try:
-                    self._paused = physics(name).pause
+                    self._paused = call(name + names.PHYSICS, GetPhysicsProperties).pause
                 except Refused:
                     self._paused = None
                 self._asked = time.monotonic()
@@ -159,17 +146,10 @@ class Status(Paced):
         super().__init__(context, args, send)
         self._clock: SharedClock = context.node.shared(SharedClock)
         self._pause: SharedPause = context.node.shared(SharedPause)
-        self._holds_clock = False
         self._meter = FactorMeter()
-        self._changes = Changes()
 
     def open(self) -> None:
-        self._clock.hold()
-        self._holds_clock = True
-
-    def close(self) -> None:
-        if self._holds_clock:
-            self._clock.release()
+        self.closing.enter_context(self._clock.held())
 
     def collect(self) -> Any:
         simulated = self._clock.simulated
@@ -177,6 +157,6 @@ class Status(Paced):
         state = self.master.state()
         name = simulator_name(state)
         paused = self._pause.read(name) if name + names.PAUSE in state.services else None
-        return self._changes.of({
+        return self.changed({
             "time": simulated, "factor": None if factor is None else round(factor, 3),
             "paused": bool(paused), "simulator": paused is not None})

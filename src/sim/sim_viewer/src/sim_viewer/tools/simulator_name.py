@@ -1,7 +1,5 @@
 """Which node is the simulator: /gazebo, or one in another namespace."""
 
-from __future__ import annotations
-
 from sim_viewer.tools import names
 from sim_viewer.tools.master import SystemState
 

@@ -1,7 +1,5 @@
 """The tree of frames, as view_frames draws it: who publishes each, how often, how old."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time
@@ -16,7 +14,7 @@ from sim_viewer.registry import watchable
 from sim_viewer.subscription import Subscription
 from sim_viewer.tools import names
 from sim_viewer.tools.clock import SharedClock
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 
 RATE_WINDOW = 5.0  # s of wall time
 MOST_FRAMES = 1_000
@@ -127,25 +125,16 @@ class Tf(Paced):
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
         super().__init__(context, args, send)
         self._tree = FrameTree()
-        self._subscribers: list[Subscription] = []
         self._clock: SharedClock = context.node.shared(SharedClock)
-        self._holds_clock = False
-        self._changes = Changes()
 
     def open(self) -> None:
-        self._clock.hold()
-        self._holds_clock = True
+        self.closing.enter_context(self._clock.held())
         for topic, static in ((names.TF, False), (names.TF_STATIC, True)):
-            self._subscribers.append(Subscription(topic, TFMessage, self._take, static))
-
-    def close(self) -> None:
-        for subscriber in self._subscribers:
-            subscriber.unregister()
-        if self._holds_clock:
-            self._clock.release()
+            subscription = Subscription(topic, TFMessage, self._take, static)
+            self.closing.callback(subscription.unregister)
 
     def collect(self) -> Any:
-        return self._changes.of(self._tree.rows(time.monotonic(), self._clock.now()))
+        return self.changed(self._tree.rows(time.monotonic(), self._clock.now()))
 
     def _take(self, message: TFMessage, static: bool) -> None:
         publisher = (message._connection_header or {}).get("callerid", "")

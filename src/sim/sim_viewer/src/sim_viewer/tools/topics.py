@@ -1,7 +1,5 @@
 """The list of topics, what they carry as text, and how often they come."""
 
-from __future__ import annotations
-
 import abc
 import time
 from collections import deque
@@ -14,7 +12,7 @@ from sim_viewer.registry import argument, watchable
 from sim_viewer.subscription import decode
 from sim_viewer.tools.master import SystemState
 from sim_viewer.tools.message_text import MOST_ELEMENTS, to_text
-from sim_viewer.tools.paced import Changes, Paced
+from sim_viewer.tools.paced import Paced
 
 RATE_WINDOW = 5.0  # s of wall time that a rate is measured over
 MOST_ELEMENTS_ASKED = 5_000
@@ -26,12 +24,8 @@ class Topics(Paced):
 
     PERIOD = 2.0
 
-    def __init__(self, context: Any, args: dict[str, Any], send: Any):
-        super().__init__(context, args, send)
-        self._changes = Changes()
-
     def collect(self) -> Any:
-        return self._changes.of(rows(self.master.state(), self.master.types()))
+        return self.changed(rows(self.master.state(), self.master.types()))
 
 
 def rows(state: SystemState, types: dict[str, str]) -> list[dict[str, Any]]:
@@ -49,7 +43,6 @@ class OneTopic(Paced):
         super().__init__(context, args, send)
         self.topic = argument(args, "topic", str)
         self.kind: type | None = None
-        self.subscriber: rospy.Subscriber | None = None
 
     @abc.abstractmethod
     def take(self, message: Any) -> None:
@@ -58,10 +51,7 @@ class OneTopic(Paced):
     def open(self) -> None:
         self.kind = self.master.message_class(self.topic)
         self.subscriber = rospy.Subscriber(self.topic, rospy.AnyMsg, self.take, tcp_nodelay=True)
-
-    def close(self) -> None:
-        if self.subscriber:
-            self.subscriber.unregister()
+        self.closing.callback(self.subscriber.unregister)
 
 
 @watchable("echo")

@@ -16,7 +16,7 @@ class BaseOptions:
     turning_limits: SpeedLimits = UNLIMITED  # rad/s; of a steering angle rad
     command_timeout: float = 0.5  # s; then the base brakes
     velocity_window: int = 10  # control periods that the published speeds are a mean of
-    open_loop: bool = False  # odometry believes the commands instead of the wheels
+    open_loop: bool = False  # odometry follows the commands instead of the wheels
 
 
 class MobileBase(ABC):

@@ -24,7 +24,7 @@ class Tolerance:
         return None
 
     def replaced(self, position: float, velocity: float, acceleration: float) -> Tolerance:
-        """With a goal's wishes, see `chosen`."""
+        """With those of a goal, see `chosen`."""
         return Tolerance(chosen(position, self.position), chosen(velocity, self.velocity),
                          chosen(acceleration, self.acceleration))
 

@@ -1,20 +1,12 @@
 """Reads `<actor>`: a figure that walks a trajectory, whatever is in its way.
 
-As in Gazebo it is a model that has no collisions but those of links of its own: cameras see it,
+It is a model that has no collisions but those of links of its own: cameras see it,
 ray sensors do not. Skin and animation files are not read; a plain figure stands for the person.
 """
 
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import (
-    Cylinder,
-    LinkDescription,
-    Material,
-    ModelDescription,
-    Sphere,
-    Trajectory,
-    Visual,
-)
+from bullet_sim import description
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import all_that_can
 from bullet_sim.formats.sdf.frames import Frames, add_model_frames
@@ -25,11 +17,11 @@ from bullet_sim.formats.xml_values import amount, flag, number, pose
 from bullet_sim.pose import Pose
 
 BODY_RADIUS, BODY_HEIGHT, HEAD_RADIUS = 0.2, 1.45, 0.13  # m, of an adult
-CLOTHES = Material(ambient=(0.2, 0.3, 0.45, 1.0), diffuse=(0.2, 0.3, 0.45, 1.0))
-SKIN = Material(ambient=(0.8, 0.6, 0.5, 1.0), diffuse=(0.8, 0.6, 0.5, 1.0))
+CLOTHES = description.Material(ambient=(0.2, 0.3, 0.45, 1.0), diffuse=(0.2, 0.3, 0.45, 1.0))
+SKIN = description.Material(ambient=(0.8, 0.6, 0.5, 1.0), diffuse=(0.8, 0.6, 0.5, 1.0))
 
 
-def read_actor(element: Element, source: Source) -> ModelDescription:
+def read_actor(element: Element, source: Source) -> description.ModelDescription:
     """An actor as a model that is moved, at the pose where its script begins.
 
     FormatError without a name.
@@ -45,7 +37,7 @@ def read_actor(element: Element, source: Source) -> ModelDescription:
         scale = amount(element, "skin/scale", 1.0, f"{where} <skin>")
         links.insert(0, _figure(f"{name}_pose", scale or 1.0))
     trajectory = _trajectory(element.find("script"), where)
-    return ModelDescription(
+    return description.ModelDescription(
         name=name,
         pose=trajectory.waypoints[0][1] if trajectory else pose(element, where),
         static=True,
@@ -55,18 +47,18 @@ def read_actor(element: Element, source: Source) -> ModelDescription:
     )
 
 
-def _figure(link: str, scale: float) -> LinkDescription:
+def _figure(link: str, scale: float) -> description.LinkDescription:
     """A standing figure, its feet at z = 0."""
-    body = Cylinder(BODY_RADIUS * scale, BODY_HEIGHT * scale)
-    head = Sphere(HEAD_RADIUS * scale)
+    body = description.Cylinder(BODY_RADIUS * scale, BODY_HEIGHT * scale)
+    head = description.Sphere(HEAD_RADIUS * scale)
     top = (BODY_HEIGHT + HEAD_RADIUS) * scale
-    return LinkDescription(link, visuals=(
-        Visual("body", body, Pose((0.0, 0.0, BODY_HEIGHT * scale / 2)), CLOTHES),
-        Visual("head", head, Pose((0.0, 0.0, top)), SKIN),
+    return description.LinkDescription(link, visuals=(
+        description.Visual("body", body, Pose((0.0, 0.0, BODY_HEIGHT * scale / 2)), CLOTHES),
+        description.Visual("head", head, Pose((0.0, 0.0, top)), SKIN),
     ))
 
 
-def _trajectory(script: Element | None, where: str) -> Trajectory | None:
+def _trajectory(script: Element | None, where: str) -> description.Trajectory | None:
     """All trajectories of a script, one after the other by their ids."""
     if script is None:
         return None
@@ -81,7 +73,7 @@ def _trajectory(script: Element | None, where: str) -> Trajectory | None:
         begin = waypoints[-1][0] if waypoints else 0.0
     if not waypoints:
         return None
-    return Trajectory(
+    return description.Trajectory(
         waypoints=tuple(waypoints),
         loop=flag(script, "loop", True),
         delay_start=number(script, "delay_start", 0.0, where),

@@ -3,29 +3,14 @@
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import (
-    Heightmap,
-    ImageExtrusion,
-    Material,
-    Polyline,
-    Rgba,
-    TerrainLayer,
-)
+import bullet_sim.formats.xml_values as xml
+from bullet_sim import description
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import (
-    amount,
-    bounded,
-    child_text,
-    integer,
-    length,
-    numbers,
-    vector,
-)
 
 IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
 # Colours for textures of Gazebo's media folder, by a word in the file name: we ship no textures.
-GROUNDS: dict[str, Rgba] = {
+GROUNDS: dict[str, description.Rgba] = {
     "dirt": (0.42, 0.33, 0.24, 1.0),
     "grass": (0.25, 0.42, 0.16, 1.0),
     "fungus": (0.36, 0.38, 0.2, 1.0),
@@ -35,22 +20,22 @@ GROUNDS: dict[str, Rgba] = {
     "asphalt": (0.25, 0.25, 0.26, 1.0),
     "snow": (0.92, 0.93, 0.95, 1.0),
 }
-SOIL: Rgba = (0.45, 0.4, 0.3, 1.0)
+SOIL: description.Rgba = (0.45, 0.4, 0.3, 1.0)
 
 
-def read_heightmap(element: Element, source: Source, where: str) -> Heightmap:
+def read_heightmap(element: Element, source: Source, where: str) -> description.Heightmap:
     """Ground; flat, with a warning, where its image cannot be had."""
     where = f"{where} <heightmap>"
     path = _image(element, source, where, "flat ground of its size is taken")
-    return Heightmap(
+    return description.Heightmap(
         path=path,
-        size=vector(element, "size", Heightmap(None).size, where),
-        position=vector(element, "pos", Heightmap(None).position, where),
+        size=xml.vector(element, "size", description.Heightmap(None).size, where),
+        position=xml.vector(element, "pos", description.Heightmap(None).position, where),
         layers=_layers(element, source, where),
     )
 
 
-def read_polylines(geometry: Element, source: Source, where: str) -> Polyline:
+def read_polylines(geometry: Element, source: Source, where: str) -> description.Polyline:
     """All `<polyline>` of a `<geometry>` as one solid; the height is that of the first.
 
     FormatError for an outline of fewer than three points.
@@ -58,32 +43,35 @@ def read_polylines(geometry: Element, source: Source, where: str) -> Polyline:
     where = f"{where} <polyline>"
     elements = geometry.findall("polyline")
     outlines = tuple(
-        tuple(bounded(numbers(point.text or "", 2, f"{where} <point>"), f"{where} <point>")
+        tuple(xml.bounded(xml.numbers(point.text or "", 2, f"{where} <point>"), f"{where} <point>")
               for point in element.findall("point"))
         for element in elements
     )
     if any(len(outline) < 3 for outline in outlines):
         raise FormatError(f"{where}: an outline needs three <point>s or more")
-    return Polyline(outlines, length(elements[0], "height", 1.0, where))
+    return description.Polyline(outlines, xml.length(elements[0], "height", 1.0, where))
 
 
-def read_image(element: Element, source: Source, where: str) -> ImageExtrusion | None:
-    """A floor plan; None, with a warning, where the picture cannot be had."""
+def read_image(element: Element, source: Source, where: str) -> description.ImageExtrusion | None:
+    """A floor plan; None, with a warning, where the picture cannot be had.
+
+    FormatError of a number that cannot be.
+    """
     where = f"{where} <image>"
     path = _image(element, source, where, "left out")
     if path is None:
         return None
-    return ImageExtrusion(
+    return description.ImageExtrusion(
         path=path,
-        scale=length(element, "scale", 1.0, where),
-        threshold=integer(element, "threshold", 200, where),
-        height=length(element, "height", 1.0, where),
+        scale=xml.length(element, "scale", 1.0, where),
+        threshold=xml.integer(element, "threshold", 200, where),
+        height=xml.length(element, "height", 1.0, where),
     )
 
 
 def _image(element: Element, source: Source, where: str, otherwise: str) -> str | None:
     """Path of the image that `<uri>` names."""
-    uri = child_text(element, "uri") or child_text(element, "filename")
+    uri = xml.child_text(element, "uri") or xml.child_text(element, "filename")
     try:
         path = source.resources.resolve(uri, source.folder)
         if not path.is_file():
@@ -97,31 +85,31 @@ def _image(element: Element, source: Source, where: str, otherwise: str) -> str 
     return str(path)
 
 
-def _layers(element: Element, source: Source, where: str) -> tuple[TerrainLayer, ...]:
+def _layers(element: Element, source: Source, where: str) -> tuple[description.TerrainLayer, ...]:
     """Textures with the heights from which they show; where they fade into each other is an edge.
     """
-    lowest = [0.0] + [amount(blend, "min_height", 0.0, f"{where} <blend>")
+    lowest = [0.0] + [xml.amount(blend, "min_height", 0.0, f"{where} <blend>")
                       for blend in element.findall("blend")]
     layers = []
     for number, texture in enumerate(element.findall("texture")):
-        tile = amount(texture, "size", 10.0, f"{where} <texture>")
-        layers.append(TerrainLayer(
-            material=_ground(child_text(texture, "diffuse"), source),
+        tile = xml.amount(texture, "size", 10.0, f"{where} <texture>")
+        layers.append(description.TerrainLayer(
+            material=_ground(xml.child_text(texture, "diffuse"), source),
             tile=tile or 10.0,
             lowest=lowest[min(number, len(lowest) - 1)],
         ))
     return tuple(layers)
 
 
-def _ground(uri: str, source: Source) -> Material:
+def _ground(uri: str, source: Source) -> description.Material:
     try:
         path = source.resources.resolve(uri, source.folder)
         if path.is_file():
-            return Material(texture=str(path))
+            return description.Material(texture=str(path))
     except ResourceNotFound:
         pass  # Gazebo's own textures are not here: their colour is
     name = Path(uri).name.lower()
     colour = next((rgba for word, rgba in GROUNDS.items() if word in name), None)
     if colour is None:
         source.warn_once(f"heightmap texture {uri!r} not found; brown ground is drawn")
-    return Material(ambient=colour or SOIL, diffuse=colour or SOIL)
+    return description.Material(ambient=colour or SOIL, diffuse=colour or SOIL)

@@ -4,22 +4,12 @@ import math
 from functools import partial
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import JointDescription, SecondAxis
+import bullet_sim.formats.xml_values as xml
+from bullet_sim.description import JointAxis, JointDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.frames import MODEL, Frames, end_of
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import (
-    amount,
-    child_text,
-    fields,
-    flag,
-    number,
-    numbers,
-    or_default,
-    shown,
-    vector,
-)
 from bullet_sim.pose import Vector3, conjugate, multiply, rotate
 
 TYPES = (
@@ -59,21 +49,21 @@ def read_joint(
         child=child,
         pose=frames.in_model(child).inverse() * frames.joint_in_model(name),
         axis=_direction(axis, name, source, frames, f"{where} <axis>"),
-        provide_feedback=flag(element, "physics/provide_feedback", False)
-        or flag(element, "physics/ode/provide_feedback", False),
+        provide_feedback=xml.flag(element, "physics/provide_feedback", False)
+        or xml.flag(element, "physics/ode/provide_feedback", False),
         **_axis_numbers(axis, f"{where} <axis>"),
-        axis2=SecondAxis(
-            _direction(axis2, name, source, frames, f"{where} <axis2>"),
+        axis2=JointAxis(
+            axis=_direction(axis2, name, source, frames, f"{where} <axis2>"),
             **_axis_numbers(axis2, f"{where} <axis2>"),
         ),
         thread_pitch=_not_zero(element, "thread_pitch", where),
         gearbox_ratio=_not_zero(element, "gearbox_ratio", where),
-        gearbox_reference_body=child_text(element, "gearbox_reference_body"),
+        gearbox_reference_body=xml.child_text(element, "gearbox_reference_body"),
     )
 
 
 def _not_zero(element: Element, tag: str, where: str) -> float:
-    value = number(element, tag, 1.0, where)
+    value = xml.number(element, tag, 1.0, where)
     if value == 0.0:
         instead(FormatError(f"{where} <{tag}>: 0 is not possible"), "1")
         return 1.0
@@ -90,27 +80,31 @@ def _end(element: Element, role: str, known: set[str], where: str) -> str:
 
 def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
     limits = {
-        key: or_default(partial(read_limit, text, key, f"{where} <limit/{key}>"),
-                        getattr(UNLIMITED, key))
-        for key in LIMITS if (text := child_text(axis, f"limit/{key}"))
+        key: xml.or_default(partial(read_limit, text, key, f"{where} <limit/{key}>"),
+                            getattr(UNLIMITED, key))
+        for key in LIMITS if (text := xml.child_text(axis, f"limit/{key}"))
     }
-    dynamics = "dynamics/"
-    return (limits | fields(amount, axis, "damping friction", UNLIMITED, where, dynamics)
-            | fields(number, axis, "spring_reference spring_stiffness", UNLIMITED, where, dynamics))
+    losses = xml.fields(xml.amount, axis, "damping friction", UNLIMITED, where, "dynamics/")
+    springs = xml.fields(xml.number, axis, "spring_reference spring_stiffness", UNLIMITED, where,
+                         "dynamics/")
+    return limits | losses | springs
 
 
 def read_limit(text: str, key: str, where: str) -> float:
-    """One number of a joint's limits; infinity is allowed here and means none."""
+    """One number of a joint's limits; infinity is allowed here and means none.
+
+    FormatError of what is not a number.
+    """
     if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
         return getattr(UNLIMITED, key)
-    return numbers(text, 1, where)[0]
+    return xml.numbers(text, 1, where)[0]
 
 
 def _direction(
     axis: Element, joint: str, source: Source, frames: Frames, where: str
 ) -> Vector3:
     """Unit axis in the joint frame."""
-    unit = unit_axis(vector(axis, "xyz", UPWARD, where), UPWARD, f"{where} <xyz>")
+    unit = unit_axis(xml.vector(axis, "xyz", UPWARD, where), UPWARD, f"{where} <xyz>")
     given_in = _axis_frame(axis, source)
     if not given_in:
         return unit
@@ -123,7 +117,8 @@ def unit_axis(written: Vector3, usual: Vector3, where: str) -> Vector3:
     """An axis of length 1; `usual`, with an error line, for one without a direction."""
     length = math.hypot(*written)
     if length == 0.0:
-        instead(FormatError(f"{where}: the axis {shown(written)} has no direction"), shown(usual))
+        instead(FormatError(f"{where}: the axis {xml.shown(written)} has no direction"),
+                xml.shown(usual))
         return usual
     return tuple(part / length for part in written)
 
@@ -134,4 +129,4 @@ def _axis_frame(axis: Element, source: Source) -> str:
     if expressed_in is not None and expressed_in.get("expressed_in"):
         return expressed_in.get("expressed_in", "")
     old = source.version < AXES_IN_JOINT_FRAME
-    return MODEL if flag(axis, "use_parent_model_frame", old) else ""
+    return MODEL if xml.flag(axis, "use_parent_model_frame", old) else ""

@@ -31,17 +31,17 @@ def read_link(
     if not name:
         raise FormatError(f"{model}: a <link> has no name")
     if name == WORLD:
-        raise FormatError(f"{model}: no link can be named 'world', joints have that name for what "
-                          "stands still; choose another")
+        raise FormatError(f"{model}: no link can be named 'world', joints use that name for the "
+                          "fixed world; choose another")
     where = f"{model}, link {name!r}"
     if frames is None:
         frames = Frames(source, model)
         frames.add(name, "", IDENTITY)
     place = _PartPlaces(name, frames, source, where)
-    said = len(source.said)
+    warned = len(source.warned)
     collisions = [place(collision, part) for part in element.findall("collision")
                   for collision in read_parts(read_collision, part, source, where, name)]
-    if not collisions and len(source.said) == said:
+    if not collisions and len(source.warned) == warned:
         _warn_of_lost_collisions(element, source, where)
     visuals = [place(visual, part) for part in element.findall("visual")
                for visual in read_parts(read_visual, part, source, where, name)]

@@ -7,8 +7,8 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.files import check_file
-from bullet_sim.formats import ogre
 from bullet_sim.formats.gazebo_materials import named_materials
+from bullet_sim.formats.ogre import ScriptMaterial, parse_script, to_material
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import child_text, colour, flag, number
 
@@ -88,7 +88,7 @@ def _folders_and_scripts(uris: list[str], source: Source) -> tuple[list[Path], l
 
 
 def _in_scripts(name: str, places: list[Path], source: Source) -> Material | None:
-    parsed: dict[str, ogre.ScriptMaterial] = {}
+    parsed: dict[str, ScriptMaterial] = {}
     home: dict[str, Path] = {}  # material -> folder of its script
     scripts = _scripts_in(places)
     for script in scripts:
@@ -103,7 +103,7 @@ def _in_scripts(name: str, places: list[Path], source: Source) -> Material | Non
     folders = [*(place for place in places if place.is_dir()), home[name],
                home[name].parent / "textures"]
     try:
-        return ogre.to_material(
+        return to_material(
             name, parsed, lambda file: _texture(file, folders, name, source), named_materials())
     except FormatError as error:
         source.warn_once(f"{home[name]}: {error}")
@@ -123,12 +123,12 @@ def _imports(script: Path, source: Source) -> list[Path]:
     return [script.parent / name for name in sorted(names) if (script.parent / name).is_file()]
 
 
-def _parsed(script: Path, source: Source) -> dict[str, ogre.ScriptMaterial]:
+def _parsed(script: Path, source: Source) -> dict[str, ScriptMaterial]:
     if script not in source.scripts:
         try:
             check_file(script, LARGEST_SCRIPT)
             text = script.read_text(encoding="utf-8", errors="replace")
-            source.scripts[script] = ogre.parse_script(text)
+            source.scripts[script] = parse_script(text)
         except (FormatError, OSError) as error:
             source.warn_once(f"material script {script}: {error}")
             source.scripts[script] = {}

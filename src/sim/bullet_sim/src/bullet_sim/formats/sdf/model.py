@@ -19,7 +19,7 @@ NOT_SUPPORTED = ("gripper", "urdf")
 
 
 def read_model(element: Element, source: Source, inside: str = "") -> ModelDescription:
-    """A `<model>`; links of nested models are named `nested::link`, as Gazebo scopes them.
+    """A `<model>`; links of nested models are named `nested::link`, as by Base::ComputeScopedName.
 
     FormatError without a name or a link.
     """

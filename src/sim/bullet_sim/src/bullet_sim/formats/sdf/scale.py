@@ -2,55 +2,45 @@
 
 from dataclasses import replace
 
-from bullet_sim.description import (
-    Box,
-    Collision,
-    Cylinder,
-    Geometry,
-    Heightmap,
-    Mesh,
-    ModelDescription,
-    Polyline,
-    Sphere,
-    Visual,
-)
+from bullet_sim import description
 from bullet_sim.pose import Vector3
 
 
-def scaled_model(model: ModelDescription, factors: Vector3) -> ModelDescription:
-    """Shapes grow about their own middles, as Gazebo has it; no pose and no mass changes."""
+def scaled_model(model: description.ModelDescription,
+                 factors: Vector3) -> description.ModelDescription:
+    """Shapes grow about their own middles; no pose, no mass changes (Gazebo's Link::SetScale)."""
     if factors == (1.0, 1.0, 1.0):
         return model
     return replace(model, links=tuple(
         replace(
             link,
-            visuals=tuple(_scaled_part(visual, factors) for visual in link.visuals),
-            collisions=tuple(_scaled_part(collision, factors) for collision in link.collisions),
+            visuals=_scaled_parts(link.visuals, factors),
+            collisions=_scaled_parts(link.collisions, factors),
         )
         for link in model.links
     ))
 
 
-def _scaled_part(part: Visual | Collision, factors: Vector3) -> Visual | Collision:
-    return replace(part, geometry=scaled(part.geometry, factors))
+def _scaled_parts(parts: tuple, factors: Vector3) -> tuple:
+    return tuple(replace(part, geometry=scaled(part.geometry, factors)) for part in parts)
 
 
-def scaled(shape: Geometry, factors: Vector3) -> Geometry:
+def scaled(shape: description.Geometry, factors: Vector3) -> description.Geometry:
     """A shape along its own axes; round ones stay round, by their greatest factor."""
     x, y, z = factors
     match shape:
-        case Box(size):
-            return Box(_product(size, factors))
-        case Cylinder(radius, length):
-            return Cylinder(radius * max(x, y), length * z)
-        case Sphere(radius):
-            return Sphere(radius * max(factors))
-        case Mesh(scale=scale):
+        case description.Box(size):
+            return description.Box(_product(size, factors))
+        case description.Cylinder(radius, length):
+            return description.Cylinder(radius * max(x, y), length * z)
+        case description.Sphere(radius):
+            return description.Sphere(radius * max(factors))
+        case description.Mesh(scale=scale):
             return replace(shape, scale=_product(scale, factors))
-        case Heightmap(size=size):
+        case description.Heightmap(size=size):
             return replace(shape, size=_product(size, factors))
-        case Polyline(outlines, height):
-            return Polyline(
+        case description.Polyline(outlines, height):
+            return description.Polyline(
                 tuple(tuple((px * x, py * y) for px, py in outline) for outline in outlines),
                 height * z)
     return shape

@@ -3,9 +3,7 @@
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import Fog, SceneDescription
-from bullet_sim.errors import FormatError
-from bullet_sim.formats.mistakes import instead
-from bullet_sim.formats.xml_values import child_text, colour, fields, flag, number, shown
+from bullet_sim.formats.xml_values import child_text, colour, fields, flag, number, one_of
 
 FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
         "constant": "exp", "quadratic": "exp2"}  # the last two are how SDF's own text calls them
@@ -30,12 +28,8 @@ def _fog(element: Element | None, where: str) -> Fog:
     if element is None:
         return usual
     kind = child_text(element, "type", usual.type)
-    if kind not in FOGS:
-        instead(FormatError(f"{where} <type>: no fog named {kind!r}; there are: "
-                            f"{', '.join(FOGS)}"), shown(usual.type))
-        kind = usual.type
     return Fog(
-        type=FOGS[kind],
+        type=FOGS[one_of(FOGS, "fog", kind, usual.type, f"{where} <type>")],
         colour=colour(element, "color", usual.colour, where),
         **fields(number, element, "start end density", usual, where),
     )

@@ -1,11 +1,11 @@
 """Reports unknown elements of an SDF text: most often they are misspelt."""
 
-import difflib
 import tomllib
 from collections.abc import Iterator
 from functools import cache
 from xml.etree.ElementTree import Element
 
+from bullet_sim.errors import did_you_mean
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.formats.source import Source
 
@@ -16,8 +16,7 @@ ALIKE = 0.75  # of a misspelt tag to the one that was meant, 0..1
 @cache
 def known_children() -> dict[str, frozenset[str]]:
     """The elements allowed in an element, by its tag or by `parent/tag`."""
-    with (DATA_FOLDER / "sdf_elements.toml").open("rb") as file:
-        table = tomllib.load(file)
+    table = tomllib.loads((DATA_FOLDER / "sdf_elements.toml").read_text(encoding="utf-8"))
     return {parent: frozenset(names.split()) for parent, names in table.items()}
 
 
@@ -33,8 +32,7 @@ def warn_of_unknown_elements(root: Element, source: Source, file: str = "") -> N
     for (parent, tag), place in list(first.items())[:MOST_WARNINGS]:
         known = known_children()
         siblings = sorted(known.get(parent) or known[parent.rpartition("/")[2]])
-        meant = difflib.get_close_matches(tag, siblings, n=1, cutoff=ALIKE)
-        hint = f"; did you mean <{meant[0]}>?" if meant else ""
+        hint = did_you_mean(tag, siblings, ALIKE, "<{}>")
         source.warn_once(f"{prefix}{place}: <{tag}> is not known, left out{hint}")
 
 

@@ -2,14 +2,16 @@
 
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import PluginDescription, RayDescription, SensorDescription
+from bullet_sim.description import (
+    CAMERA_TYPES,
+    RAY_TYPES,
+    PluginDescription,
+    RayDescription,
+    SensorDescription,
+)
 from bullet_sim.formats.sdf.camera import read_camera
 from bullet_sim.formats.sdf.noise import read_imu, read_noise
 from bullet_sim.formats.xml_values import fields, flag, integer, number, pose
-
-# Sensors that need a `<camera>` or `<ray>`: sdformat makes a missing one of defaults.
-CAMERAS = ("camera", "wideanglecamera", "multicamera", "depth", "depth_camera", "rgbd_camera")
-RAYS = ("ray", "lidar", "gpu_ray", "gpu_lidar")
 
 
 def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
@@ -24,8 +26,10 @@ def read_sensor(element: Element, link: str) -> SensorDescription:
     """A sensor of a link, with the cameras or rays it has."""
     name, kind = element.get("name", ""), element.get("type", "")
     where = f"{link}, sensor {name!r}"
-    cameras = element.findall("camera") or [Element("camera")] * (kind in CAMERAS)
-    rays = [*element.findall("ray"), *element.findall("lidar")] or [Element("ray")] * (kind in RAYS)
+    # A missing <camera> or <ray> is made of defaults.
+    cameras = element.findall("camera") or [Element("camera")] * (kind in CAMERA_TYPES)
+    rays = [*element.findall("ray"), *element.findall("lidar")]
+    rays = rays or [Element("ray")] * (kind in RAY_TYPES)
     return SensorDescription(
         name=name,
         type=kind,

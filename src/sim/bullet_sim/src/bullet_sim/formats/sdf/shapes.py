@@ -2,38 +2,14 @@
 
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description import (
-    Box,
-    Collision,
-    Cylinder,
-    Geometry,
-    ImageExtrusion,
-    Mesh,
-    Plane,
-    Polyline,
-    Sphere,
-    Surface,
-    Visual,
-)
+import bullet_sim.formats.xml_values as xml
+from bullet_sim import description
 from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats.mistakes import or_without
 from bullet_sim.formats.sdf.generated_shapes import read_heightmap, read_image, read_polylines
 from bullet_sim.formats.sdf.material import read_material
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import Source
-from bullet_sim.formats.xml_values import (
-    amount,
-    child_text,
-    fields,
-    flag,
-    integer,
-    length,
-    not_negative,
-    number,
-    or_default,
-    pose,
-    vector,
-)
 
 ONES = (1.0, 1.0, 1.0)
 SIDES = (1.0, 1.0)  # m, of a plane
@@ -41,7 +17,7 @@ UNLIMITED_FRICTION = 1e6
 NEVER_BOUNCES, FASTEST_BOUNCE = 1e5, 1e3  # m/s; the first is SDF's default
 
 
-def read_visual(element: Element, source: Source, link: str) -> Visual | None:
+def read_visual(element: Element, source: Source, link: str) -> description.Visual | None:
     """A visual; None, with one line given, where its shape cannot be had."""
     name = element.get("name", "")
     where = _part(link, element)
@@ -49,18 +25,18 @@ def read_visual(element: Element, source: Source, link: str) -> Visual | None:
     if shape is None:
         return None
     material = element.find("material")
-    return Visual(
+    return description.Visual(
         name=name,
         geometry=shape,
-        pose=pose(element, where),
+        pose=xml.pose(element, where),
         material=None if material is None else read_material(material, source, where),
-        transparency=number(element, "transparency", 0.0, where),
-        cast_shadows=flag(element, "cast_shadows", True),
+        transparency=xml.number(element, "transparency", 0.0, where),
+        cast_shadows=xml.flag(element, "cast_shadows", True),
         plugins=read_plugins(element),
     )
 
 
-def read_collision(element: Element, source: Source, link: str) -> Collision | None:
+def read_collision(element: Element, source: Source, link: str) -> description.Collision | None:
     """A collision; None, with one line given, where its shape cannot be had."""
     name = element.get("name", "")
     where = _part(link, element)
@@ -71,24 +47,24 @@ def read_collision(element: Element, source: Source, link: str) -> Collision | N
         source.warn_once(f"{where}: a length of 0 leaves the {type(shape).__name__.lower()} no "
                          "volume to collide with, left out; make it larger than 0")
         return None
-    return Collision(
+    return description.Collision(
         name=name,
         geometry=shape,
-        pose=pose(element, where),
+        pose=xml.pose(element, where),
         surface=read_surface(element.find("surface"), where),
-        laser_retro=number(element, "laser_retro", 0.0, where),
+        laser_retro=xml.number(element, "laser_retro", 0.0, where),
     )
 
 
-def _is_flat(shape: Geometry) -> bool:
+def _is_flat(shape: description.Geometry) -> bool:
     match shape:
-        case Box(lengths) | Mesh(scale=lengths):
+        case description.Box(lengths) | description.Mesh(scale=lengths):
             return 0.0 in lengths
-        case Cylinder(radius, length):
+        case description.Cylinder(radius, length):
             return 0.0 in (radius, length)
-        case Sphere(radius):
+        case description.Sphere(radius):
             return radius == 0.0
-        case Polyline(height=height) | ImageExtrusion(height=height):
+        case description.Polyline(height=height) | description.ImageExtrusion(height=height):
             return height == 0.0
     return False
 
@@ -99,33 +75,37 @@ def _part(link: str, element: Element) -> str:
     return f"{link}, {element.tag} {name!r}" if name else f"{link}, <{element.tag}>"
 
 
-def read_surface(element: Element | None, where: str) -> Surface:
+def read_surface(element: Element | None, where: str) -> description.Surface:
     """Contact parameters; only ODE's, Gazebo's default engine."""
-    usual = Surface()
+    usual = description.Surface()
     if element is None:
         return usual
     friction = "friction/ode/"
-    return Surface(
-        mu=_friction(number(element, friction + "mu", usual.mu, where)),
-        mu2=_friction(number(element, friction + "mu2", usual.mu2, where)),
-        fdir1=vector(element, friction + "fdir1", usual.fdir1, where),
-        **fields(number, element, "kp kd min_depth max_vel", usual, where, "contact/ode/"),
+    return description.Surface(
+        mu=_friction(xml.number(element, friction + "mu", usual.mu, where)),
+        mu2=_friction(xml.number(element, friction + "mu2", usual.mu2, where)),
+        fdir1=xml.vector(element, friction + "fdir1", usual.fdir1, where),
+        **xml.fields(xml.number, element, "kp kd min_depth max_vel", usual, where, "contact/ode/"),
         restitution=_restitution(element, where),
-        collide_bitmask=integer(
+        collide_bitmask=xml.integer(
             element, "contact/collide_bitmask", usual.collide_bitmask, where),
-        collides=not flag(element, "contact/collide_without_contact", False),
+        collides=not xml.flag(element, "contact/collide_without_contact", False),
     )
 
 
 def _restitution(element: Element, where: str) -> float:
     """At most 1; 0 where the speed from which on things bounce is out of reach, as by default."""
-    threshold = number(element, "bounce/threshold", NEVER_BOUNCES, where)
-    bounce = amount(element, "bounce/restitution_coefficient", 0.0, where)
+    threshold = xml.number(element, "bounce/threshold", NEVER_BOUNCES, where)
+    bounce = xml.amount(element, "bounce/restitution_coefficient", 0.0, where)
     return min(bounce, 1.0) if threshold < FASTEST_BOUNCE else 0.0
 
 
-def read_geometry(element: Element | None, source: Source, where: str) -> Geometry | None:
-    """The first shape we know; None for `<empty>`, or with a warning."""
+def read_geometry(element: Element | None, source: Source,
+                  where: str) -> description.Geometry | None:
+    """The first shape we know; None for `<empty>`, or with a warning.
+
+    FormatError of numbers that no shape has.
+    """
     for shape in () if element is None else element:
         if shape.tag == "polyline":
             return read_polylines(element, source, where)
@@ -142,31 +122,33 @@ def read_geometry(element: Element | None, source: Source, where: str) -> Geomet
     return None
 
 
-def _box(element: Element, source: Source, where: str) -> Box:
+def _box(element: Element, source: Source, where: str) -> description.Box:
     where = f"{where} <box>"
-    return Box(not_negative(vector(element, "size", ONES, where), f"{where} <size>"))
+    size = xml.vector(element, "size", ONES, where)
+    return description.Box(xml.not_negative(size, f"{where} <size>"))
 
 
-def _cylinder(element: Element, source: Source, where: str) -> Cylinder:
+def _cylinder(element: Element, source: Source, where: str) -> description.Cylinder:
     where = f"{where} <cylinder>"
-    return Cylinder(length(element, "radius", 1.0, where), length(element, "length", 1.0, where))
+    return description.Cylinder(xml.length(element, "radius", 1.0, where),
+                                xml.length(element, "length", 1.0, where))
 
 
-def _sphere(element: Element, source: Source, where: str) -> Sphere:
-    return Sphere(length(element, "radius", 1.0, f"{where} <sphere>"))
+def _sphere(element: Element, source: Source, where: str) -> description.Sphere:
+    return description.Sphere(xml.length(element, "radius", 1.0, f"{where} <sphere>"))
 
 
-def _plane(element: Element, source: Source, where: str) -> Plane:
+def _plane(element: Element, source: Source, where: str) -> description.Plane:
     where = f"{where} <plane>"
-    size = vector(element, "size", SIDES, where)
-    return Plane(
-        vector(element, "normal", (0.0, 0.0, 1.0), where),
-        or_default(lambda: not_negative(size, f"{where} <size>"), SIDES),
+    size = xml.vector(element, "size", SIDES, where)
+    return description.Plane(
+        xml.vector(element, "normal", (0.0, 0.0, 1.0), where),
+        xml.or_default(lambda: xml.not_negative(size, f"{where} <size>"), SIDES),
     )
 
 
-def _mesh(element: Element, source: Source, where: str) -> Mesh | None:
-    uri = child_text(element, "uri") or child_text(element, "filename")
+def _mesh(element: Element, source: Source, where: str) -> description.Mesh | None:
+    uri = xml.child_text(element, "uri") or xml.child_text(element, "filename")
     try:
         path = source.resources.resolve(uri, source.folder)
         if not path.is_file():
@@ -174,11 +156,11 @@ def _mesh(element: Element, source: Source, where: str) -> Mesh | None:
     except ResourceNotFound as error:
         source.warn_once(f"{where}: mesh {error}; left out, the rest is loaded", about=uri)
         return None
-    return Mesh(
+    return description.Mesh(
         path=str(path),
-        scale=vector(element, "scale", ONES, f"{where} <mesh>"),
-        submesh=child_text(element, "submesh/name") or None,
-        centre_submesh=flag(element, "submesh/center", False),
+        scale=xml.vector(element, "scale", ONES, f"{where} <mesh>"),
+        submesh=xml.child_text(element, "submesh/name") or None,
+        centre_submesh=xml.flag(element, "submesh/center", False),
     )
 
 
@@ -189,5 +171,5 @@ READERS = {
 
 
 def _friction(coefficient: float) -> float:
-    """Below zero means without limit, as ODE has it."""
+    """Below zero means without limit (Gazebo's FrictionPyramid::SetMu)."""
     return coefficient if coefficient >= 0 else UNLIMITED_FRICTION

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import (
     JointDescription,
     LightDescription,
@@ -14,15 +15,6 @@ from bullet_sim.description import (
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
 from bullet_sim.formats.sdf.scale import scaled_model
-from bullet_sim.formats.xml_values import (
-    child_text,
-    not_negative,
-    numbers,
-    or_default,
-    pose,
-    shown,
-    vector,
-)
 from bullet_sim.pose import IDENTITY, Pose
 
 UNSCALED = (1.0, 1.0, 1.0)
@@ -57,33 +49,33 @@ def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
 
 def _sim_time(state: Element, default: float) -> float:
     """Seconds and nanoseconds, as two words."""
-    text = child_text(state, "sim_time")
+    text = xml.child_text(state, "sim_time")
     if not text:
         return default
     where = "<state> <sim_time>"
     count = 1 if len(text.split()) == 1 else 2
 
     def read() -> float:
-        seconds, nanoseconds = (*not_negative(numbers(text, count, where), where), 0.0)[:2]
+        seconds, nanoseconds = (*xml.not_negative(xml.numbers(text, count, where), where), 0.0)[:2]
         time = seconds + nanoseconds * 1e-9
         if time > LATEST:
             raise FormatError(f"{where}: {time:g} s is more than ROS can count; "
                               f"at most {LATEST:g}")
         return time
 
-    return or_default(read, default)
+    return xml.or_default(read, default)
 
 
 def _moved_light(light: LightDescription, state: Element) -> LightDescription:
-    return replace(light, pose=pose(state, f"<state> of light {light.name!r}", light.pose))
+    return replace(light, pose=xml.pose(state, f"<state> of light {light.name!r}", light.pose))
 
 
 def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
     where = f"<state> of model {model.name!r}"
-    model = replace(model, pose=pose(state, where, model.pose))
-    scale = vector(state, "scale", UNSCALED, where)
+    model = replace(model, pose=xml.pose(state, where, model.pose))
+    scale = xml.vector(state, "scale", UNSCALED, where)
     if min(scale) <= 0.0:
-        instead(FormatError(f"{where} <scale>: {min(scale):g} leaves nothing"), shown(UNSCALED))
+        instead(FormatError(f"{where} <scale>: {min(scale):g} leaves nothing"), xml.shown(UNSCALED))
         scale = UNSCALED
     model = scaled_model(model, scale)
     saved = dict(_link_poses(state, "", where))
@@ -101,8 +93,9 @@ def _moved_model(model: ModelDescription, state: Element) -> ModelDescription:
 
 def _link_poses(state: Element, scope: str, where: str) -> Iterator[tuple[str, Pose]]:
     for link in state.findall("link"):
-        if child_text(link, "pose"):
-            yield scope + link.get("name", ""), pose(link, f"{where}, link {link.get('name')!r}")
+        if xml.child_text(link, "pose"):
+            name = link.get("name", "")
+            yield scope + name, xml.pose(link, f"{where}, link {name!r}")
     for nested in state.findall("model"):
         yield from _link_poses(nested, f"{scope}{nested.get('name', '')}::", where)
 
@@ -113,7 +106,7 @@ def _with_saved_joints(model: ModelDescription, saved: Mapping[str, Pose]) -> Mo
     The links' own poses stay as they were written: with these every joint is at zero.
     """
     written = {link.name: model.pose * link.pose for link in model.links}
-    now = {**written, **{name: pose for name, pose in saved.items() if name in written}}
+    now = {name: saved.get(name, pose) for name, pose in written.items()}
     return replace(model, joints=tuple(
         replace(joint, start=_position(joint, written, now)) for joint in model.joints))
 

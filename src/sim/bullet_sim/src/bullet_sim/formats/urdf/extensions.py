@@ -58,7 +58,7 @@ def is_true(text: str) -> bool:
 def extend_link(link: Element, tags: list[Element], lumped: bool) -> None:
     """Writes a link's extensions into its SDF element.
 
-    After lumping Gazebo knows a child's shapes only by name: those whose own URDF name lacks the
+    After lumping a child's shapes are known only by name: those whose own URDF name lacks the
     link's name get nothing.
     """
     name = link.get("name", "")

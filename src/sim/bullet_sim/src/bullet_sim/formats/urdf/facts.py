@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
-from bullet_sim.control.limits import JointLimits, SoftLimits
+from bullet_sim.description import JointLimits, SoftLimits
 from bullet_sim.errors import FormatError, UnknownName
 from bullet_sim.formats.urdf.tree import UrdfJoint, UrdfTree, read_tree
 from bullet_sim.formats.xml_values import not_negative, numbers
@@ -11,7 +11,10 @@ from bullet_sim.pose import IDENTITY, Pose
 
 
 class RobotFacts:
-    """The joints and links of a `<robot>` as written; nothing is lumped, moved or left out."""
+    """The joints and links of a `<robot>` as written; nothing is lumped, moved or left out.
+
+    FormatError of a robot whose links and joints are no tree.
+    """
 
     def __init__(self, robot: Element):
         self._tree: UrdfTree = read_tree(robot)
@@ -30,7 +33,10 @@ class RobotFacts:
         return self._joint(name).child
 
     def joints_on(self, name: str) -> list[str]:
-        """The joints whose parent is that joint's child: those of a wheel's rollers."""
+        """The joints whose parent is that joint's child: those of a wheel's rollers.
+
+        UnknownName without such a joint.
+        """
         return [joint.name for joint in self._joints.values() if joint.parent == self.child(name)]
 
     def pose(self, name: str) -> Pose:
@@ -54,7 +60,7 @@ class RobotFacts:
     def wheel_radius(self, name: str) -> float:
         """Radius, m, of the first collision of the joint's child: a cylinder or a sphere.
 
-        FormatError without one.
+        FormatError without one, UnknownName without such a joint.
         """
         link = self.child(name)
         for tag in ("cylinder", "sphere"):

@@ -3,17 +3,11 @@
 from functools import partial
 from xml.etree.ElementTree import Element, SubElement
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import Inertial
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import mistake
 from bullet_sim.formats.urdf.tree import read_origin
-from bullet_sim.formats.xml_values import (
-    bounded,
-    not_negative,
-    numbers,
-    or_default,
-    vector_text,
-)
 from bullet_sim.pose import Pose
 
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "mesh": ()}
@@ -25,8 +19,9 @@ DIAGONAL = ("ixx", "iyy", "izz")  # the products of inertia may be negative
 def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError | None]:
     """An SDF `<link>` as of `link_as_sdf`, what `read_urdf_inertial` finds, and what was wrong.
 
-    As with urdfdom, what cannot be read is an error line, and neither it nor what comes after it
-    in the link is there; inertial, visuals and collisions are read in this order.
+    As in urdfdom's link.cpp, parseLink, what cannot be read is an error line, and neither it nor
+    what comes after it in the link is there; inertial, visuals and collisions are read in this
+    order.
     """
     shapes, inertial, wrong = _named_link(link), None, None
     try:
@@ -76,20 +71,20 @@ def read_urdf_inertial(link: Element) -> Inertial | None:
         mass=_possible(mass, f"{where} <mass value>"),
         pose=read_origin(element, where),
         inertia=tuple(
-            _possible(value, f"{where} <inertia {key}>") if key in DIAGONAL
-            else or_default(partial(bounded, (value,), f"{where} <inertia {key}>"), (0.0,))[0]
+            _possible(value, f"{where} <inertia {key}>", key in DIAGONAL)
             for key, value in zip(TENSOR, values, strict=True)))
 
 
-def _possible(value: float, where: str) -> float:
-    """A mass or moment of inertia; SDF's default of 1, with an error line, for one below zero."""
-    return or_default(partial(not_negative, (value,), where), (1.0,))[0]
+def _possible(value: float, where: str, positive: bool = True) -> float:
+    """A mass or moment of inertia; SDF's default, with an error line, for one that cannot be."""
+    check = xml.not_negative if positive else xml.bounded
+    return xml.or_default(partial(check, (value,), where), (float(positive),))[0]
 
 
 def _attribute(element: Element | None, key: str, where: str) -> float:
     if element is None or element.get(key) is None:
         raise FormatError(f"{where} is missing")
-    return numbers(element.get(key, ""), 1, where)[0]
+    return xml.numbers(element.get(key, ""), 1, where)[0]
 
 
 def _part_as_sdf(part: Element, where: str) -> list[Element]:
@@ -100,7 +95,7 @@ def _part_as_sdf(part: Element, where: str) -> list[Element]:
     for shape, offset in shapes:
         sdf = Element(part.tag, {"name": part.get("name", "")})
         pose = place * Pose((0.0, 0.0, offset))
-        SubElement(sdf, "pose").text = vector_text((*pose.position, *pose.rpy()))
+        SubElement(sdf, "pose").text = xml.vector_text((*pose.position, *pose.rpy()))
         sdf.append(_geometry_as_sdf(shape, where))
         result.append(sdf)
     return result
@@ -115,7 +110,7 @@ def _plain_shapes(
         return [(shape, 0.0)]
     where = f"{where} <capsule"
     length, radius = (
-        not_negative([_attribute(shape, key, f"{where} {key}>")], f"{where} {key}>")[0]
+        xml.not_negative([_attribute(shape, key, f"{where} {key}>")], f"{where} {key}>")[0]
         for key in ("length", "radius")
     )
     tube = Element("cylinder", {"radius": repr(radius), "length": repr(length)})
@@ -135,7 +130,7 @@ def _geometry_as_sdf(shape: Element | None, where: str) -> Element:
         text = shape.get(key)
         if text is None:
             raise FormatError(f"{where} {key}> is missing")
-        numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
+        xml.numbers(text, 3 if key == "size" else 1, f"{where} {key}>")
         SubElement(target, key).text = text
     if shape.tag == "mesh":
         _mesh_as_sdf(shape, target, where)
@@ -146,5 +141,5 @@ def _mesh_as_sdf(shape: Element, target: Element, where: str) -> None:
     if not shape.get("filename"):
         raise FormatError(f"{where} filename> is missing")
     SubElement(target, "uri").text = shape.get("filename")
-    scale = numbers(shape.get("scale", "1 1 1"), 3, f"{where} scale>")
-    SubElement(target, "scale").text = vector_text(scale)
+    scale = xml.numbers(shape.get("scale", "1 1 1"), 3, f"{where} scale>")
+    SubElement(target, "scale").text = xml.vector_text(scale)

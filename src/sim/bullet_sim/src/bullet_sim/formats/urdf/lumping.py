@@ -1,4 +1,7 @@
-"""Fixed-joint lumping as in Gazebo: a child's mass, shapes and sensors become its parent's."""
+"""Fixed-joint lumping: a child's mass, shapes and sensors become its parent's.
+
+As in sdformat's parser_urdf.cc, ReduceFixedJoints.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Reads a URDF robot by Gazebo's rules: `<gazebo>` tags, lumping, links without mass dropped."""
+"""Reads a URDF robot by the rules of sdformat's parser_urdf.cc.
+
+That is `<gazebo>` tags, lumping, and links without mass dropped.
+"""
 
 import copy
 from xml.etree.ElementTree import Element
@@ -23,7 +26,7 @@ KEEP_FIXED_JOINT = ("preserveFixedJoint", "disableFixedJointLumping")
 
 
 def read_robot(robot: Element, source: Source) -> ModelDescription:
-    """A `<robot>` as Gazebo would simulate it. FormatError as of `read_tree`."""
+    """A `<robot>` as the SDF that it is converted to. FormatError as of `read_tree`."""
     tree = read_tree(robot)
     extensions = Extensions(robot)
     _warn_of_unknown_references(tree, extensions, source)
@@ -52,7 +55,7 @@ def read_robot(robot: Element, source: Source) -> ModelDescription:
     joints = [
         read_urdf_joint(joint, survivor.get(joint.parent, (WORLD,))[0], extensions)
         for name in kept if (joint := tree.inward.get(name)) is not None
-        and joint.type not in ("floating", "planar")  # Gazebo leaves such a child free
+        and joint.type not in ("floating", "planar")  # CreateJoint makes none of these
     ]
     return _with_robot_level(robot, tree, extensions, links, joints, lumped, source)
 

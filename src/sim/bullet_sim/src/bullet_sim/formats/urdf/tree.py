@@ -1,4 +1,4 @@
-"""The bones of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
+"""The link tree of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -61,7 +61,7 @@ def read_tree(robot: Element) -> UrdfTree:
         raise FormatError(f"robot {name!r} has no links")
     joints = _named(robot, "joint", f"robot {name!r}")
     tree = UrdfTree(name, "", links)
-    for joint_name in sorted(joints):  # urdfdom keeps them in a sorted map
+    for joint_name in sorted(joints):  # the std::map of urdfdom's ModelInterface
         joint = _read_joint(joints[joint_name], links)
         other = tree.inward.setdefault(joint.child, joint)
         if other is not joint:
@@ -73,7 +73,7 @@ def read_tree(robot: Element) -> UrdfTree:
 
 
 def read_origin(element: Element, where: str) -> Pose:
-    """The `<origin>` of an element; identity when absent."""
+    """The `<origin>` of an element; identity when absent. FormatError of numbers that cannot be."""
     origin = element.find("origin")
     if origin is None:
         return Pose()

@@ -1,6 +1,6 @@
 """What a URDF robot looks like, by URDF's own rules: every link stays, and colours are the URDF's.
 
-A simulator drops links without mass and lumps others (`urdf.py`); who draws a robot by its
+A simulator drops links without mass and lumps others (`urdf/lumping.py`); who draws a robot by its
 transforms, as rviz does, needs each link.
 """
 

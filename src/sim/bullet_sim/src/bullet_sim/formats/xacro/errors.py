@@ -72,7 +72,7 @@ def includes_itself(files: list[str]) -> str:
     other = os.path.normpath(files[-2])
     if other == os.path.normpath(files[-1]):
         return "the file includes itself without end; put the <xacro:include> into an <xacro:if>"
-    return f"this file and {other} include each other without end; take one include out"
+    return f"this file and {other} include each other without end; remove one include"
 
 
 def _variable_hint(text: str) -> str:

@@ -15,17 +15,11 @@ import xacro
 from xacro import substitution_args
 
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.xacro import substitutions
+from bullet_sim.formats.xacro.bounds import Budget, TooLarge, noted_eval
 from bullet_sim.formats.xacro.errors import located, one_line, place, root_of
-from bullet_sim.formats.xacro.limits import Budget, TooLarge, noted_eval
 from bullet_sim.formats.xacro.nodes import Siblings, safe_eval
 from bullet_sim.formats.xacro.opening import load_yaml, parse
-from bullet_sim.formats.xacro.substitutions import (
-    LEXER,
-    Arguments,
-    directory,
-    guarded_eval,
-    resolver,
-)
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
 
@@ -121,7 +115,7 @@ def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
     replacements = {**replacements, "grab_macro": noted_grab}
     with _private_state(replacements, messages, run.find_package):
         try:
-            document = xacro.process_file(run.path, mappings=Arguments(run.mappings))
+            document = xacro.process_file(run.path, mappings=substitutions.Arguments(run.mappings))
             _only_text(document)
         except Exception as error:  # expressions in the file may raise anything
             beyond = isinstance(root_of(error), TooLarge | RecursionError | MemoryError)
@@ -150,12 +144,13 @@ def _private_state(
         "error": messages.at(logging.ERROR),
         "print_location": lambda: None, "verbosity": 1, "all_includes": [],  # each line has a place
         "filestack": None, "macrostack": None, "substitution_args_context": {"filename": ""},
-        "parse": parse, "LEXER": LEXER, "replace_node": budget.replace_node,
+        "parse": parse, "LEXER": substitutions.LEXER, "replace_node": budget.replace_node,
         "safe_eval": noted_eval(safe_eval), "eval_text": budget.eval_text,
         "load_yaml": load_yaml, **replacements,
     }
-    commands = {"_eval_find": _finder(find_package), "_eval_dirname": directory,
-                "resolve_args": resolver(substitution_args.resolve_args), "eval": guarded_eval}
+    commands = {"_eval_find": _finder(find_package), "_eval_dirname": substitutions.directory,
+                "resolve_args": substitutions.resolver(substitution_args.resolve_args),
+                "eval": substitutions.guarded_eval}
     depth = sys.getrecursionlimit()
     sys.setrecursionlimit(max(depth, DEEPEST))
     try:

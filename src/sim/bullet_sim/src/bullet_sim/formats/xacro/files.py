@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.xacro.bounds import TooLarge
 from bullet_sim.formats.xacro.expansion import Attempt, FindPackage, Run, attempt
-from bullet_sim.formats.xacro.limits import TooLarge
 from bullet_sim.formats.xacro.older_releases import Legacy, Melodic
 
 _LOCK = threading.Lock()  # xacro keeps its state in module variables: one expansion at a time

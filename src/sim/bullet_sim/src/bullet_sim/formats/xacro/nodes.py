@@ -65,7 +65,10 @@ def _compiled(expression: str) -> CodeType:
 
 
 def safe_eval(expression: str, symbols: dict, local: dict | None = None) -> Any:
-    """Replaces xacro's: a macro's expressions are compiled once and not for each call."""
+    """Replaces xacro's: a macro's expressions are compiled once and not for each call.
+
+    XacroException of a name that may not be used.
+    """
     code = _compiled(expression)
     if invalid := [name for name in code.co_names if name.startswith("__")]:
         raise xacro.XacroException("Use of invalid name(s): ", ", ".join(invalid))

@@ -28,7 +28,7 @@ class Melodic:
         return {"parse": self.parse, "handle_macro_call": self.call, "grab_macro": self.grab}
 
     def parse(self, source: object, filename: str) -> minidom.Document:
-        """The file with the prefix put before keywords."""
+        """The file with the prefix put before keywords. TooLarge of a file beyond the limits."""
         document = parse(source, filename)
         for element in document.getElementsByTagName("*"):
             if element.tagName in KEYWORDS and not _is_sdf_include(element):

@@ -10,8 +10,8 @@ import xacro
 
 from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
+from bullet_sim.formats.xacro.bounds import TooLarge
 from bullet_sim.formats.xacro.errors import includes_itself, place
-from bullet_sim.formats.xacro.limits import TooLarge
 
 MOST_FILES = 2000  # includes; large robots have 100
 LARGEST_FILE = 8 * 10**6  # bytes; large robots have 100 kB
@@ -56,8 +56,8 @@ def _check(filename: str) -> None:
         try:
             check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")
         except FormatError as error:
-            said = str(error).removeprefix(f"{filename} cannot be read: ")
-            raise OSError(errno.EINVAL, said) from None
+            reason = str(error).removeprefix(f"{filename} cannot be read: ")
+            raise OSError(errno.EINVAL, reason) from None
 
 
 def _unreadable(filename: str, error: OSError) -> str:

@@ -1,6 +1,6 @@
 """Joint controllers by type. A file here with `@controller(...)` is all it takes.
 
-"Upstream" is the package of the type's name in ros_controllers.
+They follow the packages of the types' names in ros_controllers; files named here are theirs.
 """
 
 import importlib

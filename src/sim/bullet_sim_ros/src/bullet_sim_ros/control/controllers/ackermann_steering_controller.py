@@ -1,13 +1,10 @@
 """ackermann_steering_controller: one driven rear wheel and one steered front wheel."""
 
-from __future__ import annotations
-
-import math
-
 from bullet_sim.control.controllers.ackermann_steering_controller import (
     AckermannGeometry,
     AckermannSteering,
 )
+from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
@@ -16,9 +13,10 @@ from bullet_sim_ros.control.registry import controller
 @controller("ackermann_steering_controller/AckermannSteeringController",
             "steer_drive_controller/SteerDriveController")
 class AckermannSteeringController(MobileBaseController):
-    """angular.z of cmd_vel is the steering joint's angle, as upstream has it.
+    """angular.z of cmd_vel is the steering joint's angle.
 
-    steer_drive_controller is what upstream called it before; its parameters are the same.
+    ackermann_steering_controller.cpp, AckermannSteeringController::update.
+    steer_drive_controller is its older name in ros_controllers; its parameters are the same.
     """
 
     def __init__(self, context: ControllerContext):
@@ -33,9 +31,8 @@ class AckermannSteeringController(MobileBaseController):
 def _geometry(context: ControllerContext, rear: str, front: str) -> AckermannGeometry:
     """Parameters, else the URDF; times the multipliers."""
     p, robot = context.parameters, context.robot
-    wheelbase = p.number("wheel_separation_h") if p.has("wheel_separation_h") else math.dist(
-        robot.pose(rear).position, robot.pose(front).position)
-    radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(rear)
+    wheelbase = read_distance(p, robot, "wheel_separation_h", rear, front)
+    radius = read_wheel_radius(p, robot, rear)
     return AckermannGeometry(wheelbase * p.number("wheel_separation_h_multiplier", 1.0),
                              radius * p.number("wheel_radius_multiplier", 1.0),
                              p.number("steer_pos_multiplier", 1.0))

@@ -1,7 +1,5 @@
 """The topic `command` of a controller: one number, or one for each joint."""
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Callable, Sequence
@@ -10,7 +8,7 @@ from std_msgs.msg import Float64, Float64MultiArray
 
 from bullet_sim.control.controllers.commands import Commands
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.convert import LARGEST
+from bullet_sim_ros.convert import LARGEST, is_sane
 from bullet_sim_ros.errors import PluginError
 
 COMPLAINT_PERIOD = 10.0  # s, wall: a sender of bad commands sends many
@@ -19,7 +17,7 @@ log = logging.getLogger("bullet_sim.control")
 
 
 def command_timeout(context: ControllerContext) -> float:
-    """`command_timeout`, s: ours; upstream's controllers go on with the last command for ever.
+    """`command_timeout`, s: ours; those of ros_controllers go on with the last command for ever.
 
     PluginError if it is negative.
     """
@@ -71,9 +69,17 @@ def subscribe_all(context: ControllerContext, commands: Commands, count: int) ->
     context.subscribe("command", Float64MultiArray, take, queue_size=1, tcp_nodelay=True)
 
 
+def subscribe(context: ControllerContext, commands: Commands, joints: int, group: bool) -> None:
+    """`command` of one joint or, for a group, of so many."""
+    if group:
+        subscribe_all(context, commands, joints)
+    else:
+        subscribe_one(context, commands)
+
+
 def _checked(complaints: _LimitedLog, commands: Commands,
              values: Sequence[float]) -> Callable[[], None] | None:
-    if all(abs(value) <= LARGEST for value in values):
+    if is_sane(values):
         return lambda: commands.take(values)
     complaints.write(logging.WARNING, "a command that is not finite, or beyond %g, is ignored",
                    LARGEST)

@@ -1,14 +1,12 @@
 """diff_drive_controller: wheels on two sides, driven by a twist."""
 
-from __future__ import annotations
-
-import math
 from collections.abc import Mapping
 
 from geometry_msgs.msg import TwistStamped
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
 from bullet_sim_ros import convert
+from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
@@ -30,7 +28,8 @@ class DiffDriveController(MobileBaseController):
         if len(left) != len(right):
             raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "
                               "they must be as many")
-        self._separation, self._radius = _lengths(context, left[0], right[0])
+        self._separation = read_distance(p, context.robot, "wheel_separation", left[0], right[0])
+        self._radius = read_wheel_radius(p, context.robot, left[0])
         radius = p.number("wheel_radius_multiplier", 1.0)
         multipliers = {
             "left_wheel_radius_multiplier": p.number("left_wheel_radius_multiplier", radius),
@@ -47,7 +46,10 @@ class DiffDriveController(MobileBaseController):
         self._offer_changes(multipliers)
 
     def update(self, time: float, period: float) -> None:
-        """Drive; publish also what upstream publishes at each update."""
+        """Drive; publish the limited command and the wheels' state, too.
+
+        diff_drive_controller.cpp, DiffDriveController::update.
+        """
         super().update(time, period)
         if self._limited and self._limited.get_num_connections():
             msg = TwistStamped()
@@ -63,7 +65,7 @@ class DiffDriveController(MobileBaseController):
                                  self._radius * multipliers["right_wheel_radius_multiplier"])
 
     def _offer_changes(self, multipliers: Mapping[str, float]) -> None:
-        """dynamic_reconfigure, with upstream's names and ranges."""
+        """dynamic_reconfigure: names and ranges of DiffDriveController.cfg."""
         context = self.context
         values = {name: Value(now, *MULTIPLIERS, name.replace("_", " "))
                   for name, now in multipliers.items()}
@@ -78,12 +80,3 @@ class DiffDriveController(MobileBaseController):
         self._drive.geometry = self._geometry(values)
         self.odometry.set_transform(values["enable_odom_tf"])
         self.set_publish_rate(values["publish_rate"])
-
-
-def _lengths(context: ControllerContext, left: str, right: str) -> tuple[float, float]:
-    """Separation and radius of the wheels, m: parameters, else the URDF."""
-    p, robot = context.parameters, context.robot
-    separation = p.number("wheel_separation") if p.has("wheel_separation") else math.dist(
-        robot.pose(left).position, robot.pose(right).position)
-    radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(left)
-    return separation, radius

@@ -1,9 +1,6 @@
 """four_wheel_steering_controller: four wheels, each driven and each steered."""
 
-from __future__ import annotations
-
 import logging
-import math
 from collections.abc import Callable
 
 from roslib.message import get_message_class
@@ -13,10 +10,10 @@ from bullet_sim.control.controllers.four_wheel_steering_controller import (
     FourWheelSteering,
 )
 from bullet_sim_ros import convert
+from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
 from bullet_sim_ros.control.registry import controller
-from bullet_sim_ros.errors import PluginError
 
 log = logging.getLogger("bullet_sim.control")
 MESSAGE = "four_wheel_steering_msgs/FourWheelSteering"
@@ -27,8 +24,10 @@ class FourWheelSteeringController(MobileBaseController):
     """cmd_vel, and cmd_four_wheel_steering where that message's package is there."""
 
     def __init__(self, context: ControllerContext):
-        wheels = _pair(context, "front_wheel") + _pair(context, "rear_wheel")
-        steering = _pair(context, "front_steering") + _pair(context, "rear_steering")
+        wheels, steering = (
+            [name for axle in ("front", "rear") for name in context.parameters.pair(
+                f"{axle}_{kind}", "an axle has two, left and right")]
+            for kind in ("wheel", "steering"))
         self._drive = FourWheelSteering([context.claim("velocity", name) for name in wheels],
                                         [context.claim("position", name) for name in steering],
                                         _geometry(context, wheels, steering),
@@ -43,21 +42,10 @@ class FourWheelSteeringController(MobileBaseController):
 
     def _take_axles(self, msg) -> Callable[[], None] | None:
         command = msg.speed, msg.front_steering_angle, msg.rear_steering_angle
-        if not all(abs(value) <= convert.LARGEST for value in command):
+        if not convert.is_sane(command):
             self.refuse(f"not finite, or beyond {convert.LARGEST:g},")
             return None
         return lambda: self._drive.command_axles(self.context.world_time(), *command)
-
-
-def _pair(context: ControllerContext, parameter: str) -> list[str]:
-    """The left and the right joint of an axle."""
-    names = context.parameters.texts(parameter)
-    if len(names) != 2:
-        raise PluginError(
-            f"parameter {context.parameters.where(parameter)} has {len(names)} joints; "
-            "an axle has two, left and right"
-        )
-    return names
 
 
 def _geometry(
@@ -65,11 +53,6 @@ def _geometry(
 ) -> FourWheelGeometry:
     """Parameters, else the URDF."""
     p, robot = context.parameters, context.robot
-
-    def length(parameter: str, first: str, second: str) -> float:
-        return p.number(parameter) if p.has(parameter) else math.dist(
-            robot.pose(first).position, robot.pose(second).position)
-
-    radius = p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(wheels[0])
-    return FourWheelGeometry(length("track", steering[0], steering[1]),
-                             length("wheel_base", wheels[0], wheels[2]), radius)
+    return FourWheelGeometry(read_distance(p, robot, "track", steering[0], steering[1]),
+                             read_distance(p, robot, "wheel_base", wheels[0], wheels[2]),
+                             read_wheel_radius(p, robot, wheels[0]))

@@ -1,24 +1,16 @@
 """gripper_action_controller: one joint, driven by position or effort, behind an action."""
 
-from __future__ import annotations
-
 import logging
 
 from actionlib import ServerGoalHandle
 from control_msgs.msg import GripperCommandAction, GripperCommandFeedback, GripperCommandResult
 
-from bullet_sim.control.controllers.gripper import (
-    Gripper,
-    GripperOptions,
-    GripperState,
-    move_by_effort,
-    move_by_position,
-)
+from bullet_sim.control.controllers import gripper
 from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
+from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.goal_slot import GoalSlot
-from bullet_sim_ros.control.parameters import ControllerParameters
 from bullet_sim_ros.control.pid import open_pid
 from bullet_sim_ros.control.registry import Controller, controller
 
@@ -26,7 +18,10 @@ log = logging.getLogger("bullet_sim.control")
 
 
 class GripperActionController(Controller):
-    """Stalled is aborted, as upstream has it; the joint keeps its effort."""
+    """Stalled is aborted; the joint keeps its effort.
+
+    gripper_action_controller_impl.h, checkForSuccess.
+    """
 
     interface = ""
 
@@ -34,14 +29,14 @@ class GripperActionController(Controller):
         super().__init__(context)
         p = context.parameters
         self._handle = context.claim(self.interface, p.text("joint"))
-        self._gripper = Gripper(self._handle, self._make_move(), _options(p))
+        self._gripper = gripper.Gripper(self._handle, self._make_move(), _options(p))
         self._goal = GoalSlot()
         self._running = False
         self._pace = Rate(p.number("action_monitor_rate", 20.0))
         context.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
 
     def _make_move(self):
-        return move_by_position(self._handle)
+        return gripper.move_by_position(self._handle)
 
     def start(self, time: float) -> None:
         """Hold what is there."""
@@ -100,17 +95,17 @@ class EffortGripper(GripperActionController):
 
     def _make_move(self):
         pid = open_pid(self.context, f"gains/{self._handle.joint.name}")
-        return move_by_effort(self._handle, pid)
+        return gripper.move_by_effort(self._handle, pid)
 
 
-def _options(parameters: ControllerParameters) -> GripperOptions:
-    default = GripperOptions()
-    return GripperOptions(*(
+def _options(parameters: ControllerParameters) -> gripper.GripperOptions:
+    default = gripper.GripperOptions()
+    return gripper.GripperOptions(*(
         abs(parameters.number(name, getattr(default, name)))
         for name in ("goal_tolerance", "max_effort", "stall_velocity_threshold", "stall_timeout")))
 
 
-def _filled(msg, state: GripperState):
+def _filled(msg, state: gripper.GripperState):
     msg.position, msg.effort = state.position, state.effort
     msg.stalled, msg.reached_goal = state.stalled, state.reached_goal
     return msg

@@ -1,7 +1,5 @@
 """joint_state_controller/JointStateController: what all joints do, on the robot's joint_states."""
 
-from __future__ import annotations
-
 from sensor_msgs.msg import JointState
 
 from bullet_sim.control.rate import Rate
@@ -32,7 +30,7 @@ class JointStateController(Controller):
         self.start(context.world_time())
 
     def start(self, time: float) -> None:
-        """Publish at the first update."""
+        """Publish at the first update. SimulationError of a rate that cannot be."""
         self._pace = Rate(self._rate_hz)
 
     def update(self, time: float, period: float) -> None:

@@ -1,7 +1,5 @@
 """joint_trajectory_controller: joints that follow a trajectory, by topic or by action."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 
@@ -46,7 +44,9 @@ CODES = {
 
 
 class JointTrajectoryController(Controller):
-    """After a violated tolerance the trajectory goes on, as upstream has it; only the goal ends.
+    """After a violated tolerance the trajectory goes on; only the goal ends.
+
+    joint_trajectory_controller_impl.h, checkPathTolerances.
 
     PluginError of parameters that are missing or wrong.
     """

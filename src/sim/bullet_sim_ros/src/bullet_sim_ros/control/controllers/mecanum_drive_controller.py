@@ -1,12 +1,11 @@
 """mecanum_drive_controller: four wheels with rollers, forward, sideways and about."""
 
-from __future__ import annotations
-
 import logging
 
 from geometry_msgs.msg import Twist
 
 from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive, MecanumGeometry
+from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import MobileBaseController, read_limits, read_options
 from bullet_sim_ros.control.registry import controller
@@ -45,21 +44,10 @@ def _joint(context: ControllerContext, corner: str) -> str:
 
 
 def _geometry(context: ControllerContext, wheels: list[str]) -> MecanumGeometry:
-    """Parameters, else the URDF, as upstream reads it."""
+    """Parameters, else the URDF (mecanum_drive_controller.cpp, setWheelParamsFromUrdf)."""
     p, robot = context.parameters, context.robot
-
-    def span(parameter: str, axis: int, first: str, second: str) -> float:
-        if p.has(parameter):
-            return p.number(parameter)
-        ends = (robot.pose(name).position[axis] for name in (first, second))
-        return abs(next(ends) - next(ends))
-
-    length = span("wheel_separation_x", 0, wheels[0], wheels[1])
-    width = span("wheel_separation_y", 1, wheels[0], wheels[3])
-    if p.has("wheel_radius"):
-        radius = p.number("wheel_radius")
-    elif p.flag("use_realigned_roller_joints", False):
-        radius = robot.wheel_radius((robot.joints_on(wheels[0]) or wheels)[0])
-    else:
-        radius = robot.wheel_radius(wheels[0])
-    return MecanumGeometry((length + width) / 2, radius)
+    length = read_distance(p, robot, "wheel_separation_x", wheels[0], wheels[1], axis=0)
+    width = read_distance(p, robot, "wheel_separation_y", wheels[0], wheels[3], axis=1)
+    realigned = p.flag("use_realigned_roller_joints", False)
+    touching = (realigned and robot.joints_on(wheels[0])) or wheels
+    return MecanumGeometry((length + width) / 2, read_wheel_radius(p, robot, touching[0]))

@@ -1,5 +1,5 @@
-"""The plugins of hector_gazebo_plugins.
+"""The plugins of hector_gazebo_plugins, and hector_quadrotor_gazebo_plugins' barometer.
 
-"Upstream" is the file of the library's name in its src, gazebo_ros_imu.cpp and so on; the errors
-are those of its include/hector_gazebo_plugins/sensor_model.h and update_timer.h.
+Files named here are those of their src and include; the errors are those of sensor_model.h, the
+rates those of update_timer.h.
 """

@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_baro.so: height by air pressure."""
 
-from __future__ import annotations
-
 import numpy as np
 from geometry_msgs.msg import Point, PointStamped
 from hector_uav_msgs.msg import Altimeter
@@ -11,7 +9,7 @@ from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
 
 # International barometric formula: pressure = qnh (1 - altitude / SCALE)^EXPONENT
-SCALE, EXPONENT = 44330.0, 5.263157  # m; 1, as upstream rounds 1 / 0.19
+SCALE, EXPONENT = 44330.0, 5.263157  # m; 1: 1 / 0.19, rounded as in gazebo_ros_baro.cpp, Update
 
 
 @plugin("libhector_gazebo_ros_baro.so")

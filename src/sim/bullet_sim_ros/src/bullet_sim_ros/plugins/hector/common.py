@@ -10,9 +10,9 @@ from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.parameters import PluginParameters, read_numbers
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters, read_numbers
 from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
-from bullet_sim_ros.reconfigure_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
         "gaussian_noise": "gaussianNoise", "scale_error": "scaleError"}
@@ -48,7 +48,10 @@ class HectorSensor(SensorPlugin):
                          tf_prefix=no_tf_prefix, queue_size=queue_size)
 
     def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
-        """An error of the sensor with this many components; see HectorError."""
+        """An error of the sensor with this many components; see HectorError.
+
+        PluginError of a tag that is not a number.
+        """
         self._errors.append(HectorError(self.context, name, size, *prefixes))
         return self._errors[-1]
 
@@ -81,7 +84,10 @@ class HectorSensor(SensorPlugin):
 
 
 class HectorError(ErrorModel):
-    """An error model as a plugin's tags have it, that dynamic_reconfigure can change."""
+    """An error model as a plugin's tags have it, that dynamic_reconfigure can change.
+
+    PluginError of a tag that is not a number.
+    """
 
     def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
         """`prefixes` are those of the tags; the last one that is used counts."""
@@ -91,19 +97,14 @@ class HectorError(ErrorModel):
         context.on_reset(self.restart)
 
     def offer(self, namespace: str) -> None:
-        """Let it be reconfigured; one value is for all components, as upstream has it."""
-        known: dict[str, float] = {}
+        """Let it be reconfigured; one value is for all components.
 
-        def change(values: dict[str, float]) -> None:
-            if not known:  # the first call has the present values
-                known.update(values)
-            else:
-                self._context.services.mailbox.post(lambda: self._set(values))
-
+        sensor_model.h, dynamicReconfigureCallback.
+        """
         means = {name: math.fsum(values) / len(values)
                  for name, values in vars(self.parameters).items()}
-        offer_values(self._context, namespace, {
-            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, change)
+        offer_changes(self._context, namespace, {
+            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, self._set)
 
     def _set(self, values: dict[str, float]) -> None:
         size = len(self.parameters.offset)

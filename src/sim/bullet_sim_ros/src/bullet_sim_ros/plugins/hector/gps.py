@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_gps.so: sensor_msgs/NavSatFix and the velocity north, west, up."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,14 +7,14 @@ from geometry_msgs.msg import Vector3, Vector3Stamped
 from sensor_msgs.msg import NavSatFix, NavSatStatus
 
 from bullet_sim.description import SphericalDescription
-from bullet_sim.sensors.gps import GeoReference
+from bullet_sim.sensors.geo_reference import GeoReference
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugins.hector import common
-from bullet_sim_ros.reconfigure_server import Value, offer_values
+from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
-DARMSTADT = (49.9, 8.9)  # degrees, upstream's default place
+DARMSTADT = (49.9, 8.9)  # degrees, the default place of gazebo_ros_gps.cpp
 SERVICES = {"SERVICE_GPS": NavSatStatus.SERVICE_GPS,
             "SERVICE_GLONASS": NavSatStatus.SERVICE_GLONASS,
             "SERVICE_COMPASS": NavSatStatus.SERVICE_COMPASS,
@@ -34,7 +32,8 @@ def world_heading(spherical: SphericalDescription) -> float:
 class HectorGpsPlugin(common.HectorSensor):
     """The world's `<spherical_coordinates>` count unless `useWorldSphericalCoordinates` is false.
 
-    Releases of upstream differ there. A drift of the velocity moves the position, too.
+    Releases of gazebo_ros_gps.cpp, Load, differ there. A drift of the velocity moves the position,
+    too.
     """
 
     def __init__(self, context: PluginContext):
@@ -65,16 +64,9 @@ class HectorGpsPlugin(common.HectorSensor):
                             p.number("referenceAltitude", place[2]), math.radians(heading))
 
     def _offer_status(self, namespace: str) -> None:
-        known: list[bool] = []
-
-        def change(values: dict[str, bool]) -> None:
-            if known:  # the first call has the present values
-                self.context.services.mailbox.post(lambda: self._set_status(values))
-            known.append(True)
-
         usual = {"STATUS_FIX": True, **dict.fromkeys(FIXES, False), **dict.fromkeys(SERVICES, True)}
-        offer_values(self.context, namespace, {
-            name: Value(now, False, True, name) for name, now in usual.items()}, change)
+        offer_changes(self.context, namespace, {
+            name: Value(now, False, True, name) for name, now in usual.items()}, self._set_status)
 
     def _set_status(self, values: dict[str, bool]) -> None:
         fix = sum(FIXES[name] for name in FIXES if values[name])

@@ -1,11 +1,8 @@
 """libhector_gazebo_ros_imu.so: sensor_msgs/Imu with gravity, and the errors of a cheap IMU."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from geometry_msgs.msg import Quaternion, Vector3
 from hector_gazebo_plugins.srv import SetBias, SetBiasResponse
 from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
@@ -54,7 +51,7 @@ class HectorImuPlugin(common.HectorSensor):
         """Calibration forgets the gyroscope's drift; the others set a bias."""
         def setter(error: common.HectorError):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
-                bias = np.array([request.bias.x, request.bias.y, request.bias.z])
+                bias = np.array(convert.triple(request.bias))
                 context.services.mailbox.call(lambda: error.set_drift(bias))
                 return SetBiasResponse()
             return set_bias
@@ -82,11 +79,12 @@ class HectorImuPlugin(common.HectorSensor):
         strength = math.hypot(*gravity)
         error = attitude_error(np.array(rotate(reading.orientation, self._accel.bias)),
                                float(self._yaw.bias[0]), strength)
-        msg = _message(multiply(error, orientation), rate, acceleration)
+        msg = convert.imu_to_msg(multiply(error, orientation), rate.tolist(),
+                                 acceleration.tolist())
         self._fill_covariances(msg, strength)
         if self._biases:
-            self._biases.publish(self.stamped(
-                _message(error, self._rate.bias, self._accel.bias)))
+            self._biases.publish(self.stamped(convert.imu_to_msg(
+                error, self._rate.bias.tolist(), self._accel.bias.tolist())))
         return msg
 
     def _fill_covariances(self, msg: ImuMsg, gravity: float) -> None:
@@ -97,10 +95,3 @@ class HectorImuPlugin(common.HectorSensor):
         msg.orientation_covariance = convert.diagonal((*level, yaw))
         msg.angular_velocity_covariance = convert.diagonal(rates)
         msg.linear_acceleration_covariance = convert.diagonal(accelerations)
-
-
-def _message(orientation, rate: np.ndarray, acceleration: np.ndarray) -> ImuMsg:
-    msg = ImuMsg(orientation=Quaternion(*orientation))
-    msg.angular_velocity = Vector3(*rate.tolist())
-    msg.linear_acceleration = Vector3(*acceleration.tolist())
-    return msg

@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_magnetic.so: the Earth's magnetic field in the axes of a link."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -19,7 +17,8 @@ from bullet_sim_ros.plugins.hector.gps import world_heading
 class HectorMagneticPlugin(common.HectorSensor):
     """Of length `magnitude`, `inclination` below level, `declination` clockwise from true north.
 
-    The world's `<magnetic_field>` is not used in upstream either; its heading is, as by the GPS.
+    The world's `<magnetic_field>` is not used, as in gazebo_ros_magnetic.cpp, Load; its heading is,
+    as by the GPS.
     """
 
     def __init__(self, context: PluginContext):

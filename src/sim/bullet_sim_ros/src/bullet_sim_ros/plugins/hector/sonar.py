@@ -1,7 +1,5 @@
 """libhector_gazebo_ros_sonar.so: sensor_msgs/Range of a ray sensor."""
 
-from __future__ import annotations
-
 import numpy as np
 from sensor_msgs.msg import Range
 

@@ -28,7 +28,8 @@ class GeoReference:
     def geodetic(self, position: Vector3) -> Vector3:
         """Latitude, longitude in degrees and altitude in m of a point near the origin.
 
-        To the first order in the distance, as gazebo plugins do it: 1 km away it is 0.1 m off.
+        To the first order in the distance, as in hector's gazebo_ros_gps.cpp, Update: 1 km away it
+        is 0.1 m off.
         """
         north, west, up = self.north_west_up(position)
         squeeze = 1.0 / (1.0 - ECCENTRICITY_2 * math.sin(math.radians(self.latitude_deg)) ** 2)

@@ -15,7 +15,7 @@ LEAST_RATIO = 0.3  # of the smaller of two opposite forces to the greater
 
 @dataclass(frozen=True)
 class GraspParameters:
-    """Defaults of gazebo_grasp_plugin."""
+    """Defaults of GazeboGraspFix.cpp."""
 
     angle: float = math.radians(120)  # rad between two forces that count as opposite
     most_grips: int = 10  # how far updates with a grip are counted

@@ -45,7 +45,7 @@ class Effort:
     span: Span
 
 
-class Forces:
+class TimedForces:
     """All that act or are to act, in the order of the requests."""
 
     def __init__(self):
@@ -58,8 +58,8 @@ class Forces:
     def apply(self, time: float, timestep: float) -> None:
         """Have the step that ends at `time` feel them; those that are over are forgotten.
 
-        Of several wrenches on one link the last acts, as in Gazebo, which sets and does not add;
-        efforts on one joint add up.
+        Of several wrenches on one link the last acts: gazebo_ros_api_plugin.cpp,
+        wrenchBodySchedulerSlot, sets and does not add. Efforts on one joint add up.
         """
         slack = timestep / 1000  # of what a sum of seconds may be off
         self.wrenches = [job for job in self.wrenches if not job.span.is_over(time, slack)]

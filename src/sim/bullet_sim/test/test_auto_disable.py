@@ -256,7 +256,7 @@ def test_a_robot_that_creeps_on_command_is_solved_and_arrives(counted, speed):
     assert drive.model.pose.position[0] - start == pytest.approx(20 * speed, rel=0.2)
 
 
-def test_a_slope_holds_a_box_while_a_robot_drives_briskly(counted):
+def test_a_slope_holds_a_box_while_a_robot_drives_fast(counted):
     """Then steps are solved less exactly; and exactly again when it stands."""
     world, rest = counted.world, counted.world._client.auto_disable
     world.spawn(ground())

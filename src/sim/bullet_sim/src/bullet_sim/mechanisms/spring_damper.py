@@ -1,4 +1,4 @@
-"""An unseen hand: a spring and a critical damper pull a link to a wanted pose."""
+"""A spring and a critical damper pull a link to a wanted pose."""
 
 import math
 
@@ -8,7 +8,7 @@ from bullet_sim.world import World
 
 
 class SpringDamper:
-    """Law and default gains of gazebo_ros_hand_of_god; `update` at every step.
+    """Law and default gains of gazebo_ros_hand_of_god.cpp; `update` at every step.
 
     The forces are those of an implicit step, so that a light link is not shaken to pieces; for
     heavy ones they are the plain law's.

@@ -13,7 +13,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class ForceGains:
-    """Of the velocity's error; defaults are those of hector_gazebo_plugins."""
+    """Of the velocity's error; defaults as in hector's gazebo_ros_force_based_move.cpp."""
 
     forward: float = 10000.0  # N for each m/s
     leftward: float = 10000.0  # N for each m/s

@@ -5,8 +5,9 @@ from collections.abc import Callable
 from bullet_sim.joint import Joint
 from bullet_sim.world import World
 
-# Gazebo drives lift and door by forces, force = -p gap - d rate, so heavily damped that both come
-# nearer at the rate p / d times their gap. The motors here hold these rates.
+# ElevatorPlugin.cc, LiftController and DoorController, drives both by forces,
+# force = -p gap - d rate, so heavily damped that both come nearer at the rate p / d times their
+# gap. The motors here hold these rates.
 LIFT_GAIN = 1.0  # 1/s
 DOOR_GAIN = 2.0  # 1/s
 MOTOR_EFFORT = 1e6  # N

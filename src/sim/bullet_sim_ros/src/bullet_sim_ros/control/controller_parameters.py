@@ -1,7 +1,5 @@
 """Reads the parameters of one controller, with errors that name what was looked for."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -59,6 +57,13 @@ class ControllerParameters:
             return [found]
         return list(self._checked(name, default, lambda v: isinstance(v, list | tuple) and good(v),
                                   "a list of names"))
+
+    def pair(self, name: str, what: str) -> list[str]:
+        """Two names; else a PluginError, `what` says which two."""
+        found = self.texts(name)
+        if len(found) != 2:
+            raise PluginError(f"parameter {self.where(name)} has {len(found)} joints; {what}")
+        return found
 
     def numbers(self, name: str, count: int, default: Any = REQUIRED) -> list[float]:
         """A list of so many finite numbers; else a PluginError."""

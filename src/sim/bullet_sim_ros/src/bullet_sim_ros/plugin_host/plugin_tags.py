@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import re
+from dataclasses import replace
 
 from bullet_sim.description import PluginDescription
 from bullet_sim_ros.errors import PluginError
@@ -20,7 +21,7 @@ WORDS = ("inf", "nan", "infinity")  # that a stream does not know, but xacro and
 def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
     """The numbers at the beginning of a text, `count` at most, and whether that was all of it.
 
-    As upstream's conversion: it goes on until something is no number any more.
+    It goes on until something is not a number.
     """
     values: list[float] = []
     for word in text.split():
@@ -43,14 +44,36 @@ class PluginParameters:
 
     def __init__(self, model: str, description: PluginDescription):
         self._model = model
+        self._description = description
         self._plugin = description.name
         self._element = description.element
+        self._groups: dict[str, list[PluginParameters]] = {}
         self.read: set[str] = set()  # tags that were asked for
 
     def unread(self) -> list[str]:
-        """Tags that are there and were not asked for, each once; those of other namespaces not."""
-        found = dict.fromkeys(child.tag for child in self._element if isinstance(child.tag, str))
-        return [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
+        """Tags that are there and were not asked for, each once; those of other namespaces not.
+
+        Also those within what was asked for as a group, as `GROUP/TAG`.
+        """
+        found = [child.tag for child in self._element if isinstance(child.tag, str)]
+        found = [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
+        found += [f"{name}/{tag}" for name, groups in self._groups.items() for group in groups
+                  for tag in group.unread()]
+        return list(dict.fromkeys(found))
+
+    def groups(self, tag: str) -> list[PluginParameters]:
+        """The elements of that name, each with parameters of its own."""
+        self.read.add(tag)
+        if tag not in self._groups:
+            self._groups[tag] = [
+                PluginParameters(self._model, replace(self._description, element=element))
+                for element in self._element.findall(tag)]
+        return self._groups[tag]
+
+    def texts(self, tag: str) -> list[str]:
+        """Trimmed texts of all such tags."""
+        self.read.add(tag)
+        return [(element.text or "").strip() for element in self._element.findall(tag)]
 
     def has(self, tag: str) -> bool:
         """Whether the tag is there, empty or not."""
@@ -71,24 +94,24 @@ class PluginParameters:
         return found
 
     def number(self, tag: str, default: float) -> float:
-        """A finite number; PluginError if it is none."""
+        """A finite number; PluginError if it is not finite."""
         value = self.bound(tag, default)
         if self.text(tag) and math.isinf(value):
             raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
         return value
 
     def bound(self, tag: str, default: float) -> float:
-        """A number that may be infinite: there is no such bound. PluginError if it is no number."""
+        """A number that may be infinite: no bound. PluginError if it is not a number."""
         text = self.text(tag)
         if not text:
             return default
         values = self._leading(tag, text, 1)
         if not values or math.isnan(values[0]):
-            raise PluginError(f"<{tag}> is {text!r}, which is no number")
+            raise PluginError(f"<{tag}> is {text!r}, which is not a number")
         return values[0]
 
     def deviation(self, tag: str) -> float:
-        """A standard deviation; 0 if absent, PluginError if it is negative or no number."""
+        """A standard deviation; 0 if absent, PluginError if it is negative or not a number."""
         value = self.number(tag, 0.0)
         if value < 0:
             raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")

@@ -52,7 +52,7 @@ def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
 
 
 def check_kept(before: PhysicsDescription, after: PhysicsDescription) -> None:
-    """A SimulationError that names what of KEPT was changed to no number, or below zero.
+    """A SimulationError that names what of KEPT was changed to what is not finite, or below zero.
 
     What a world file says is left alone: it does no harm.
     """

@@ -1,7 +1,5 @@
 """What all plugins of one simulation use together: world, loop, drawing thread and /tf."""
 
-from __future__ import annotations
-
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
@@ -12,7 +10,7 @@ from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.scheduler import Scheduler
 
 
-class SimServices:
+class SharedByPlugins:
     """What all plugins of one simulation use together."""
 
     def __init__(self, world: World, mailbox: Mailbox, scheduler: Scheduler, drawing: DrawingThread,
@@ -26,7 +24,7 @@ class SimServices:
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
     def announce_transforms(self) -> None:
-        """Make /tf known, so that who is there before time begins misses nothing."""
+        """Make /tf known, so that early subscribers miss nothing."""
         if self._broadcaster is None:
             self._broadcaster = tf2_ros.TransformBroadcaster()
 

@@ -65,8 +65,8 @@ class Budget:
 def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
     """The same function, which records what it evaluates."""
     def noted(expression: str, symbols: dict, local: dict | None = None) -> Any:
-        said = f"{time.monotonic()} {place('xacro')}: ${{{one_line(expression[:200])}}}"
-        _note[:] = said.encode()[:NOTE_BYTES].ljust(NOTE_BYTES, b"\0")
+        line = f"{time.monotonic()} {place('xacro')}: ${{{one_line(expression[:200])}}}"
+        _note[:] = line.encode()[:NOTE_BYTES].ljust(NOTE_BYTES, b"\0")
         value = evaluate(expression, symbols, local)
         _note[:1] = b"\0"
         return value

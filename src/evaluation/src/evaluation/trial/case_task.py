@@ -1,0 +1,101 @@
+"""What a Dask worker does with a case: a process of its own, in a folder that is made for it."""
+
+from __future__ import annotations
+
+import io
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+from dask.distributed import Status, Worker, get_worker
+
+from evaluation.session.failure import RunError
+from evaluation.session.launch import describe_exit
+from evaluation.session.processes import end_with_parent, read_log
+from evaluation.trial.case_process import ORDER, OUT, RESULT
+
+LOOK_PERIOD = 0.5  # s, wall, between two looks at whether the case is still wanted
+END_TIME = 10.0  # s, wall, for a case that is not; its session takes 3 s at most
+DETAILS = 12  # lines
+GONE = (Status.closing, Status.closed, Status.failed)
+
+
+class CaseError(RunError):
+    """The case could not be run; what it left comes along, packed."""
+
+    files: bytes = b""
+
+
+def run_case(order: bytes, out: str) -> tuple[bytes, bytes]:
+    """The result, pickled, and the files, packed; `out` is what messages call the case's folder.
+
+    CaseError if the case could not be run. A case that nobody waits for any more is ended: then,
+    and when the worker dies, all of its processes end with it.
+    """
+    worker = get_worker()
+    with tempfile.TemporaryDirectory(dir=worker.local_directory, prefix="case-",
+                                     ignore_cleanup_errors=True) as name:
+        folder, log = Path(name), Path(name) / "log"
+        (folder / ORDER).write_bytes(order)
+        code = _run_process(name, log, _wanted_from(worker))
+        files = pack(folder / OUT)
+        if code == 0:
+            return (folder / RESULT).read_bytes(), files
+        said = [line.replace(str(folder / OUT), out) for line in read_log(log) if line.strip()]
+        reason = said.pop() if code > 0 and said else describe_exit(code)
+        error = CaseError(reason.partition(": ")[2] or reason, "\n".join(said[-DETAILS:]))
+        error.files = files
+        raise error
+
+
+def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
+    """The process's exit code."""
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "evaluation.trial.case_process", folder],
+            env={**os.environ, "ROS_HOSTNAME": "localhost"}, stdin=subprocess.DEVNULL,
+            stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
+            preexec_fn=_end_with_worker)
+    ended = os.pidfd_open(process.pid)
+    try:
+        while not select.select([ended], [], [], LOOK_PERIOD)[0]:
+            if not wanted():
+                process.send_signal(signal.SIGINT)
+                select.select([ended], [], [], END_TIME)
+                process.kill()
+                break
+    finally:
+        os.close(ended)
+    return process.wait()
+
+
+def _end_with_worker() -> None:
+    end_with_parent()
+
+
+def _wanted_from(worker: Worker) -> Callable[[], bool]:
+    """Whether a client still waits for this thread's task, as the worker knows it."""
+    key = worker.get_current_task()
+
+    def wanted() -> bool:
+        task = worker.state.tasks.get(key)
+        return worker.status not in GONE and task is not None and task.state != "cancelled"
+
+    return wanted
+
+
+def pack(folder: Path) -> bytes:
+    """All files below a folder, which need not be there; no links."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=1,
+                         strict_timestamps=False) as archive:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and not path.is_symlink():
+                archive.write(path, path.relative_to(folder))
+    return packed.getvalue()

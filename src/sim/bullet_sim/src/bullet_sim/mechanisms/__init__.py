@@ -1,0 +1,1 @@
+"""What holds, joins or moves links and joints, and is no drive train: grippers, lifts, winches."""
