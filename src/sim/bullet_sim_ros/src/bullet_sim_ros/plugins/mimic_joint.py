@@ -55,7 +55,7 @@ class MimicJointPlugin:
 class DisableLinkPlugin:
     """Only looks whether the link is there.
 
-    disable_link_plugin.cpp, Load, calls Link::SetEnabled(false), and the first touch wakes it again.
+    disable_link_plugin.cpp, Load, calls Link::SetEnabled(false): the first touch wakes it again.
     """
 
     def __init__(self, context: PluginContext):
