@@ -51,7 +51,8 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
 def _draw_runs(axes: object, x: np.ndarray, y: np.ndarray, drive: TrackScorer) -> None:
     """Green where the distance was kept, else orange."""
     near = np.abs(drive.errors) <= BAND
-    for chosen, colour, text in ((near, GOOD, f"within {BAND:g} m of the wanted distance"),
+    what = "cylinder" if drive.task.wanted is None else "wanted distance"
+    for chosen, colour, text in ((near, GOOD, f"within {BAND:g} m of the {what}"),
                                  (~near, BAD, "not")):
         axes.plot(x, np.where(chosen, y, np.nan), color=colour, linewidth=2, label=text)
 
