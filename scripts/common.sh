@@ -28,10 +28,9 @@ enter_workspace() {
   if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
-# Sets up what a trial needs whose arguments these are; --bench before them: its chart, too.
+# Sets up what a trial needs whose arguments these are.
 set_up_trial() {
   local options=() word
-  if [ "${1:-}" = --bench ]; then options=(--bench); shift; fi
   for word in "$@"; do
     case "$word" in --workers* | --scheduler*) options+=(--workers); break ;; esac
   done

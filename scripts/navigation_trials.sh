@@ -8,6 +8,6 @@
 # Exit code 0: 95 % of the yards crossed and no person touched; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-set_up_trial --bench "$@"
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/navigation_trials.py" "$@"

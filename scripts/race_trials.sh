@@ -7,6 +7,6 @@
 # Exit code 0: all laps of the first follower closed within the limits; 1: some not; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-set_up_trial --bench "$@"
+set_up_trial "$@"
 enter_workspace
 exec python3 "$root/src/evaluation/scripts/race_trials.py" "$@"

@@ -46,10 +46,9 @@ def test_a_venv_of_another_architecture_is_made_again(
 
 
 @pytest.mark.parametrize(("asked", "options"), [
-    ("", ""), ("--bench --seeds 2", "--bench"), ("--workers 2", "--workers"),
-    ("--bench --seeds 2 --workers=2", "--bench --workers"),
-    ("--scheduler tcp://a:1 --workers 1", "--workers"), ("--bench --scheduler=tcp://a:1",
-                                                         "--bench --workers"),
+    ("", ""), ("--seeds 2", ""), ("--workers 2", "--workers"),
+    ("--seeds 2 --workers=2", "--workers"), ("--scheduler tcp://a:1 --workers 1", "--workers"),
+    ("--scheduler=tcp://a:1", "--workers"),
 ])
 def test_a_trial_sets_up_what_its_arguments_need(tmp_path: Path, asked: str, options: str) -> None:
     (tmp_path / "scripts").mkdir()

@@ -23,7 +23,7 @@ pip_failed() {
 python_packages() {
   local file target
   for file in requirements.txt requirements-source.txt requirements-rosdep.txt \
-    $([ "$tests" = no ] || echo requirements-test.txt) $([ "$bench" = no ] || echo requirements-bench.txt) \
+    $([ "$tests" = no ] || echo requirements-test.txt) \
     $([ "$workers" = no ] || echo requirements-workers.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"

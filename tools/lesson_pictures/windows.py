@@ -18,7 +18,8 @@ from gazebo_msgs.srv import GetWorldProperties
 from sensor_msgs.msg import Image
 from std_srvs.srv import Empty
 
-from evaluation.picture import FONT, PAPER, TEXT, write_text
+from evaluation.colours import PAPER, TEXT, bgr
+from evaluation.plan import FONT, write_text
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
 from evaluation.session.names import WORLD
@@ -127,9 +128,9 @@ def _wait_for(condition: Callable[[], list], what: str) -> list:
 def _window(title: str, frame: np.ndarray) -> np.ndarray:
     """A picture in a window's frame."""
     height = round(frame.shape[0] * WINDOW_WIDTH_PX / frame.shape[1])
-    page = np.full((height + BAR_PX, WINDOW_WIDTH_PX, 3), PAPER, np.uint8)
+    page = np.full((height + BAR_PX, WINDOW_WIDTH_PX, 3), bgr(PAPER), np.uint8)
     page[BAR_PX:] = cv2.resize(frame, (WINDOW_WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-    write_text(page, title, (12, BAR_PX - 11), 13, TEXT)
+    write_text(page, title, (12, BAR_PX - 11), 13, bgr(TEXT))
     return page
 
 
@@ -154,9 +155,9 @@ def _output(*command: str) -> str:
 def _terminal(lines: list[str]) -> np.ndarray:
     """Text as a terminal shows it: letters in columns, commands brighter."""
     width = max(WINDOW_WIDTH_PX, max(map(len, lines)) * LETTER_PX + 24)
-    page = np.full((len(lines) * LINE_PX + 24, width, 3), PAPER, np.uint8)
+    page = np.full((len(lines) * LINE_PX + 24, width, 3), bgr(PAPER), np.uint8)
     for row, line in enumerate(line.expandtabs(4) for line in lines):
-        colour = (140, 230, 160) if line.startswith("$") else TEXT
+        colour = (140, 230, 160) if line.startswith("$") else bgr(TEXT)
         for column, letter in enumerate(line):
             at = (12 + column * LETTER_PX, 12 + row * LINE_PX + 15)
             cv2.putText(page, letter, at, FONT, 0.42, colour, 1, cv2.LINE_AA)

@@ -4,8 +4,9 @@ import math
 
 import cv2
 import numpy as np
-
-from evaluation.track import Corner, Track, TrackFile, build_track
+from racecar_description.track.centre_line import Corner
+from racecar_description.track.closed_line import Track, build_track
+from racecar_description.track.track_file import TrackFile
 
 LAWN, ASPHALT, WHITE, YELLOW, SKY = (
     (60, 110, 64), (56, 53, 52), (235, 235, 235), (20, 205, 250), (225, 190, 158),

@@ -1,12 +1,7 @@
 #!/usr/bin/env python3
 """Drives a follower round the course without a screen, scores it and writes a report (--help)."""
 
-import signal
-import sys
-
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load: just end
-
-from evaluation.course_run.main import main  # noqa: E402
+from evaluation.start import start
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    start("course_run.main", "CourseRun")

@@ -1,33 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the course model (sdf, material, texture) from its track file; same input, same bytes."""
+"""`rosrun learning_topic make_course.py` by its former name."""
 
-import argparse
+import os
 import sys
-from pathlib import Path
 
-import rospkg
-
-from evaluation.course_model import write_model
-from evaluation.track import TrackError, load_track_file
-
-
-def main() -> int:
-    packages = rospkg.RosPack()
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--track", type=Path, help="YAML file (default: tracks/course.yaml)")
-    parser.add_argument("--model", type=Path, help="folder to write (default: the lesson's course)")
-    options = parser.parse_args()
-    try:
-        track = options.track or Path(packages.get_path("evaluation")) / "tracks" / "course.yaml"
-        lessons = Path(packages.get_path("learning_topic")) if options.model is None else Path()
-        model = options.model or lessons / "models" / "turtlebot3_autorace" / "course"
-        for path in write_model(load_track_file(track), model):
-            print(f"{path}: {path.stat().st_size} bytes")
-    except (TrackError, OSError, rospkg.ResourceNotFound) as error:
-        print(f"make_course: {error}", file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+os.execvp("rosrun", ["rosrun", "learning_topic", "make_course.py", *sys.argv[1:]])

@@ -5,10 +5,10 @@ import math
 from pathlib import Path
 
 import rospy
+from lane_keeping.world.scenery import load_crossings
 from nav_msgs.msg import Odometry
 
 from evaluation.lane.recording import CAR, Moment, line_of
-from evaluation.lane.scenery import load_crossings
 
 
 def main() -> None:

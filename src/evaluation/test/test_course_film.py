@@ -6,13 +6,14 @@ import cv2
 import numpy as np
 import pytest
 import rospy
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.video import Film
+from evaluation.course_run.film import CourseFilm
 from evaluation.lap import LapScorer, Sample
 from evaluation.session.course_file import load_course
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, fit
-from evaluation.track import build_track, load_track_file
 
 TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"
 PICTURE = np.zeros((9, 16, 3), np.uint8).tobytes()
@@ -23,7 +24,7 @@ def film_of(path: Path, period: float, stamps: np.ndarray) -> int:
     track_file = load_track_file(TRACK)
     drive = LapScorer(build_track(track_file))
     drive.add(Sample(0.0, 0.0, 0.0, 0.0))
-    film = Film(path, load_course("course"), track_file, drive, period)
+    film = CourseFilm(path, load_course("course"), track_file, drive, period)
     for stamp in stamps:
         image = Image(height=9, width=16, encoding="rgb8", step=48, data=PICTURE)
         image.header.stamp = rospy.Time.from_sec(stamp)

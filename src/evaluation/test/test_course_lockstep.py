@@ -8,7 +8,7 @@ from sensor_msgs.msg import CameraInfo
 from evaluation.session.connections import Connections
 from evaluation.session.course_file import load_course
 from evaluation.session.frames import FrameCount, frame_figures
-from evaluation.session.observer import missing_connection
+from evaluation.session.observer import missing_connection, missing_controller
 
 COURSE = load_course("course")
 ME, SIMULATOR, FOLLOWER = "/course_run", "/gazebo", "/follower"
@@ -156,3 +156,19 @@ def test_each_controller_of_the_racecar_is_waited_for():
     found = Connections(publishers, subscribers, links)
     said = missing_connection(found, ME, race)
     assert said == f"the car's control (nobody subscribes to {race.lockstep[-1]})"
+
+
+@pytest.mark.parametrize(("states", "wanted", "said"), [
+    ({"drive": "running", "joints": "waiting"}, {"drive"}, None),
+    ({}, set(), "controller of the car (spawned and started)"),
+    ({"joints": "running"}, {"drive"}, "controller drive (spawned and started)"),
+    ({"drive": "initialized", "j": "running"}, set(), "controller drive (spawned and started)"),
+])
+def test_each_controller_is_waited_for(states, wanted, said):
+    assert missing_controller(states, wanted) == said
+
+
+@pytest.mark.parametrize("name", ["race", "lane", "lane_empty"])
+def test_courses_whose_cars_are_driven_by_controllers_wait_for_them(name):
+    """Time that begins before the drive is started begins at another tick of its own each time."""
+    assert load_course(name).controllers

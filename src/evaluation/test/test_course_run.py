@@ -289,7 +289,7 @@ def test_even_a_killed_run_leaves_nothing(start):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--laps", "0"), "--laps (LAPS=) must be a whole number, 1 or more; got '0'"),
+        (("--laps", "0"), "--laps (LAPS=) must be a whole number, 1 to 999999; got '0'"),
         (("--laps", "-1"), "got '-1'"),
         (("--laps", "abc"), "got 'abc'"),
         (("--laps", "1.5"), "got '1.5'"),
@@ -301,7 +301,7 @@ def test_even_a_killed_run_leaves_nothing(start):
         (("--camera", "640"), "--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480"),
         (("--camera", "0x480"), "got '0x480'"),
         (("--camera", "640x480.5"), "got '640x480.5'"),
-        (("--seed", "-1"), "--seed (SEED=) must be a whole number, 0 or more; got '-1'"),
+        (("--seed", "-1"), "--seed (SEED=) must be a whole number, 0 to 999999999; got '-1'"),
         (("--seed", "abc"), "got 'abc'"),
         (("--quick",), "unrecognized arguments: --quick"),
     ],

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lane_keeping.world.scenery import load_crossings
 
 from evaluation.lane.comparison import LaneComparison
 from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
@@ -17,8 +18,8 @@ from evaluation.lane.results import (
     lap_table,
     to_json,
 )
-from evaluation.lane.scenery import load_crossings
-from evaluation.lane.trial import LaneTrial, course_arguments, draw, known_methods, lane_case
+from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
+from evaluation.laps.disturbance import draw
 from evaluation.session.failure import RunError
 from evaluation.trial.report import write_json
 from evaluation.trial.runner import run_trial
@@ -108,18 +109,19 @@ def test_a_recording_is_read_as_it_was_written(tmp_path):
 
 
 def test_seeds_differ_within_the_bounds():
-    drawn = [draw(seed) for seed in range(40)]
+    drawn = [draw(seed, BOUNDS) for seed in range(40)]
     lights = [each.light for each in drawn]
     assert 0.6 <= min(lights) < 0.7 and 1.3 < max(lights) <= 1.4
-    assert draw(7) == drawn[7]
+    assert draw(7, BOUNDS) == drawn[7]
 
 
 def test_the_command_line_of_a_drive_with_people_records_them(tmp_path):
     people = lane_case("skeleton", 3, people=True)
-    words = course_arguments(people, draw(3), tmp_path / "w", tmp_path)
-    assert f"record:={tmp_path / 'poses.txt'}" in words and "near:=3" in words
+    outing = LaneTrial().outing(tmp_path, people)
+    words = outing.arguments(3, tmp_path / "w")
+    assert f"record:={outing.out / 'poses.txt'}" in words and "near:=3" in words
     assert words[words.index("--follower") + 1] == "skeleton.py"
-    alone = course_arguments(lane_case("skeleton", 3), draw(3), tmp_path / "w", tmp_path)
+    alone = LaneTrial().outing(tmp_path, lane_case("skeleton", 3)).arguments(3, tmp_path / "w")
     assert "lane_empty" in alone and "--launch" not in alone
 
 
@@ -131,19 +133,19 @@ REPORT = {
 
 
 def test_speed_is_that_of_closed_laps_and_the_limits_hold():
-    good = from_report(REPORT, "skeleton", 1, draw(1), people=False)
+    good = from_report(REPORT, "skeleton", 1, draw(1, BOUNDS), people=False)
     assert good.mean_speed == 0.65 and good.within_limits
-    assert not from_report(REPORT | {"rms_lateral_m": 0.051}, "skeleton", 1, draw(1), False
+    assert not from_report(REPORT | {"rms_lateral_m": 0.051}, "skeleton", 1, draw(1, BOUNDS), False
                            ).within_limits
     left = from_report(REPORT | {"outcome": "left the course", "laps": [], "laps_closed": 0},
-                       "skeleton", 2, draw(2), people=False)
+                       "skeleton", 2, draw(2, BOUNDS), people=False)
     rows = lap_table([good, left], {"skeleton": 4.2}).splitlines()
     assert rows[0].endswith("ms a frame") and "1 of 2" in rows[1] and rows[1].endswith("4.2")
 
 
 def test_a_report_is_gone_on_with(tmp_path):
     met = tuple(judge(drive(stops(0.4, 2.5), walks), CROSSINGS, 0.3))
-    plain = from_report(REPORT, "skeleton", 1, draw(1), people=True)
+    plain = from_report(REPORT, "skeleton", 1, draw(1, BOUNDS), people=True)
     one = type(plain)(**{**vars(plain), "nearest_person": 0.6, "encounters": met})
     write_json(to_json([one]), tmp_path / "report.json")
     assert from_json(json.loads((tmp_path / "report.json").read_text())) == [one]
@@ -158,12 +160,12 @@ def test_a_report_is_gone_on_with(tmp_path):
 
 @pytest.mark.parametrize("nearest, clear", [(0.6, True), (0.003, False), (None, False)])
 def test_who_was_touched_outside_of_encounters_counts_too(nearest, clear):
-    plain = from_report(REPORT, "skeleton", 1, draw(1), people=True)
+    plain = from_report(REPORT, "skeleton", 1, draw(1, BOUNDS), people=True)
     assert type(plain)(**{**vars(plain), "nearest_person": nearest}).kept_clear is clear
 
 
 def test_going_on_with_another_method_is_refused(tmp_path, capsys):
-    write_json(to_json([from_report(REPORT, "skeleton", 0, draw(0), people=False)]),
+    write_json(to_json([from_report(REPORT, "skeleton", 0, draw(0, BOUNDS), people=False)]),
                tmp_path / "report.json")
     arguments = ["--seeds", "1", "--crossings", "0", "--resume", "--out", str(tmp_path)]
     assert run_trial(LaneTrial(), arguments) == 2
@@ -190,7 +192,7 @@ def test_the_bench_takes_all_methods_and_the_pages_own_first():
 def with_people(seed, encounters):
     """A good drive in which so many people were met."""
     good = Encounter("pedestrian_1", 1, 1.0, 2.0, 0.5, None, None, must_move=False)
-    return replace(from_report(REPORT, "sliding_windows", seed, draw(seed), people=True),
+    return replace(from_report(REPORT, "sliding_windows", seed, draw(seed, BOUNDS), people=True),
                    nearest_person=0.5, encounters=(good,) * encounters)
 
 

@@ -3,9 +3,11 @@
 import math
 
 import pytest
+from racecar_description.track.centre_line import Corner
+from racecar_description.track.closed_line import Track, build_track
+from racecar_description.track.track_file import TrackFile
 
 from evaluation.lap import LapScorer, Sample, Verdict
-from evaluation.track import Corner, Track, TrackFile, build_track
 
 RATE_HZ = 25
 SPEED = 0.15  # m/s

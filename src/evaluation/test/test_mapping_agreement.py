@@ -7,7 +7,6 @@ from evaluation.mapping.map_agreement import map_agreement
 from evaluation.mapping.trajectory_error import (
     align,
     at_moments,
-    read_trajectory,
     trajectory_error,
 )
 from nav_algorithms.grid import OccupancyGrid
@@ -138,14 +137,3 @@ def test_between_moments():
     assert found[0] == pytest.approx([0.5, 1.0, np.pi])  # the short way round
     assert found[1] == pytest.approx([1.0, 2.0, -3.0])
     assert np.isnan(found[2:]).all()
-
-
-def test_a_file_of_poses(tmp_path):
-    path = tmp_path / "map.tum"
-    path.write_text("# stamp x y z qx qy qz qw\n1.5 2 3 0 0 0 1 0\n2.5 2 3 0 0 0 0.6 0.8\n")
-    stamps, poses = read_trajectory(path)
-    assert stamps.tolist() == [1.5, 2.5]
-    assert poses == pytest.approx(np.array([[2, 3, np.pi], [2, 3, 2 * np.arcsin(0.6)]]))
-    path.write_text("1 2 3\n")
-    with pytest.raises(ValueError, match="has 3 columns"):
-        read_trajectory(path)

@@ -16,13 +16,11 @@ import pytest
 from evaluation.laps.disturbance import Disturbance, draw
 from evaluation.race_trials.path_sheet import write_path_sheet
 from evaluation.race_trials.results import (
-    LEAST_SPEED,
-    MOST_RMS,
     Lap,
     summarize,
     summary_table,
 )
-from evaluation.race_trials.trial import RaceTrial
+from evaluation.race_trials.trial import BOUNDS, RaceTrial
 from evaluation.session.failure import RunError
 from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
@@ -33,8 +31,10 @@ CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
 
 def lap(seed=0, follower="lane_follow.py", **changes) -> Lap:
     """A good lap, or one that differs in this."""
-    usual = Lap(follower, "racetrack", "racetrack", seed, "closed", None, 18.0, 2.0, 0.01, 0.2,
-                0, CALM, "nowhere")  # fmt: skip
+    usual = Lap(
+        follower=follower, set="racetrack", track="racetrack", seed=seed, outcome="closed",
+        why=None, time=18.0, mean_speed=2.0, rms_lateral=0.01, max_lateral=0.2, frames_dropped=0,
+        disturbance=CALM, folder="nowhere")
     return replace(usual, **changes)
 
 
@@ -71,9 +71,9 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
 @pytest.mark.parametrize(
     ("changes", "good"),
     [
-        ({"rms_lateral": MOST_RMS, "mean_speed": LEAST_SPEED}, True),
-        ({"rms_lateral": MOST_RMS + 1e-4}, False),
-        ({"mean_speed": LEAST_SPEED - 1e-3}, False),
+        ({"rms_lateral": Lap.most_rms, "mean_speed": Lap.least_speed}, True),
+        ({"rms_lateral": Lap.most_rms + 1e-4}, False),
+        ({"mean_speed": Lap.least_speed - 1e-3}, False),
         ({"outcome": "stalled", "time": None}, False),
     ],
 )
@@ -129,7 +129,7 @@ def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
         def score(self, record):
             case = self._case
             return replace(record, set=case.set, seed=case.seed, follower=case.follower,
-                           disturbance=draw(case.seed))
+                           disturbance=draw(case.seed, BOUNDS))
 
     return run_trial(Driven(), ["--tracks", "0", "--out", str(tmp_path / "out"), *options])
 
@@ -141,7 +141,7 @@ def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
     assert "[1/2] lane_follow.py racetrack seed 0" in capsys.readouterr().out
     values = json.loads((tmp_path / "out" / "report.json").read_text())
     assert [each["within_limits"] for each in values["laps"]] == [False, True]
-    assert values["laps"][0]["disturbance"]["light"] == draw(0).light
+    assert values["laps"][0]["disturbance"]["light"] == draw(0, BOUNDS).light
     assert (tmp_path / "out" / "paths_lane_follow_p.png").exists()
 
 
@@ -171,7 +171,8 @@ def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
     values = json.loads((tmp_path / "out" / "report.json").read_text())
     found = RaceTrial().from_values(values)
     assert [each.mean_speed for each in found] == [1.7, 2.0, 2.0, 2.0]
-    assert [(each.seed, each.disturbance) for each in found[1:3]] == [(0, draw(0)), (1, draw(1))]
+    assert [(each.seed, each.disturbance) for each in found[1:3]] == [
+        (seed, draw(seed, BOUNDS)) for seed in (0, 1)]
 
 
 @pytest.mark.parametrize(("text", "said"), [(None, "nothing to go on with"), ("{}", "no report"),

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import rospkg
+from racecar_description.track.closed_line import load_track
 
 from bullet_sim.description import (
     CameraDescription,
@@ -23,15 +24,15 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.world import World
-from evaluation.course_run.options import parse_options
-from evaluation.laps.disturbance import CAMERA_NOISE, LIGHT, Disturbance, draw
+from evaluation.course_run.main import CourseRun
+from evaluation.laps.disturbance import Disturbance, draw
 from evaluation.laps.light import write_lit_world
 from evaluation.race_trials import trial as trial_module
 from evaluation.race_trials.results import Lap
+from evaluation.race_trials.trial import BOUNDS
 from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
-from evaluation.track import load_track
 from evaluation.trial.protocol import try_case
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -42,14 +43,14 @@ PACKAGES = rospkg.RosPack()
 
 
 def test_a_seed_is_always_the_same_disturbance():
-    assert draw(3) == draw(3)
-    assert draw(3) != draw(4)
+    assert draw(3, BOUNDS) == draw(3, BOUNDS)
+    assert draw(3, BOUNDS) != draw(4, BOUNDS)
 
 
 def test_disturbances_fill_their_bounds():
-    found = [draw(seed) for seed in range(400)]
-    bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": CAMERA_NOISE,
-              "light": LIGHT, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
+    found = [draw(seed, BOUNDS) for seed in range(400)]
+    bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": BOUNDS.camera_noise,
+              "light": BOUNDS.light, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
     for name, (low, high) in bounds.items():
         values = [getattr(each, name) for each in found]
         tenth = (high - low) / 10
@@ -131,9 +132,10 @@ def test_no_world_is_a_clear_error(tmp_path):
 
 
 def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
-    words = trial_module.course_arguments(racetrack(), 5, draw(5), Path("/w.world"))
-    found = parse_options(words)
-    assert (found.fast, found.video, found.seed, found.camera_px) == (True, False, 5, None)
+    case = trial_module.RaceCase("a lap", trial_module.RACETRACK, 5, "lane_follow.py")
+    words = trial_module.RaceTrial().outing(Path("/o"), case).arguments(5, Path("/w.world"))
+    found = CourseRun.parse(words)
+    assert (found.fast, found.video, found.seed, found.camera) == (True, False, 5, None)
     assert found.track == racetrack().track
     package, file = found.launch
     launch = ElementTree.parse(Path(PACKAGES.get_path(package)) / "launch" / file).getroot()
@@ -141,7 +143,7 @@ def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know
     given = dict(argument.split(":=") for argument in found.launch_args)
     assert set(given) <= known
     assert given["world_name"] == "/w.world"
-    assert float(given["camera_noise"]) == pytest.approx(draw(5).camera_noise, abs=1e-6)
+    assert float(given["camera_noise"]) == pytest.approx(draw(5, BOUNDS).camera_noise, abs=1e-6)
 
 
 def test_the_launch_file_hands_the_noise_to_the_camera():
@@ -186,7 +188,7 @@ def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
     found = drive(tmp_path)
     assert (found.outcome, found.time, found.mean_speed) == ("closed", 18.0, 2.0)
     assert found.rms_lateral == 0.02  # of the whole drive
-    assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4))
+    assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4, BOUNDS))
     assert found.folder == "laps/racetrack-4/lane_follow"
 
 

@@ -25,8 +25,7 @@ def test_a_short_drive(tmp_path):
     assert report["kept_s"] >= 4
     assert report["frames_dropped"] == 0
     assert report["frames_sent"] == pytest.approx(30 * report["simulated_s"], abs=5)
-    height, width, _ = cv2.imread(str(tmp_path / "path.png")).shape
-    assert (height, width) == (1460, 1080)
+    assert cv2.imread(str(tmp_path / "path.png")).shape[1] == 1400
     assert cv2.VideoCapture(str(tmp_path / "run.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) >= 8
 
 

@@ -11,13 +11,7 @@ import pytest
 import rospkg
 from ai_robot_tracking.follower import Follower, FollowerSettings
 from ai_robot_tracking.page_law import PageSettings, largest_blob, page_command
-from ai_robot_tracking.settings import load_settings
-
-from bullet_sim.actors import pose_at
-from bullet_sim.formats.loading import load_world
-from bullet_sim.formats.resources import Resources
-from evaluation.tracking.kinematic import follow
-from evaluation.tracking.scene import (
+from ai_robot_tracking.scenes.scene import (
     HALF_REACH,
     HIDDEN_TIME,
     KINDS,
@@ -27,9 +21,15 @@ from evaluation.tracking.scene import (
     Scene,
     draw_scene,
 )
+from ai_robot_tracking.scenes.start import draw_start
+from ai_robot_tracking.scenes.world_file import TARGET, world_name, world_text
+from ai_robot_tracking.settings import load_settings
+from kinematic_tracker import follow
+
+from bullet_sim.actors import pose_at
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from evaluation.tracking.score import FIND_TIME, Task, TrackScorer
-from evaluation.tracking.sdf import TARGET, world_name, world_text
-from evaluation.tracking.start import draw_start
 
 LESSON = Path(rospkg.RosPack().get_path("ai_robot_tracking"))
 CONFIG = LESSON / "config" / "tracking_params.yaml"

@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from ai_robot_tracking.scenes.scene import KINDS
+from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
 from evaluation.session.failure import RunError
-from evaluation.tracking.options import parse_options
-from evaluation.tracking.scene import KINDS
+from evaluation.tracking.run import TrackRun
 from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
-from evaluation.tracking.sdf import RADIUS
 from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize, summary_table
 from evaluation.trial.runner import run_trial
 
@@ -117,7 +117,7 @@ def test_near_but_turned_away_is_not_found():
 ])  # fmt: skip
 def test_mistakes_are_one_line_that_says_what_to_type(words, said):
     with pytest.raises(RunError, match=said) as raised:
-        parse_options(words)
+        TrackRun.parse(words)
     assert "\n" not in str(raised.value)
 
 

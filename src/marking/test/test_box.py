@@ -8,13 +8,13 @@ import time
 from pathlib import Path
 
 import made_up
+import psutil
 import pytest
 from marking.box import Box
 from marking.rules import load_rules
 from marking.sandbox import Kind, available, namespace
 
 from evaluation.session.failure import RunError
-from evaluation.session.processes import descendants
 
 LIMIT = 30.0  # s, wall
 LIMITS = dataclasses.replace(
@@ -47,7 +47,8 @@ def boxed(kind, tmp_path):
     yield start
     for box in boxes:
         box.end()
-    assert [pid for pid, state in descendants(os.getpid()) if state != "Z"] == []
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
 
 
 def fault_of(box: Box) -> str:

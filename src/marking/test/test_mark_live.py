@@ -1,7 +1,6 @@
 """`make mark` with the real simulator: a small class, Ctrl-C, and going on."""
 
 import csv
-import os
 import signal
 import subprocess
 import sys
@@ -9,9 +8,8 @@ import time
 from pathlib import Path
 
 import made_up
+import psutil
 import pytest
-
-from evaluation.session.processes import descendants
 
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parents[1] / "scripts" / "mark.py"
@@ -49,7 +47,8 @@ def test_a_class_is_marked_and_goes_on_where_it_was_interrupted(tmp_path):
         assert says in rows[student]["why points were lost"], student
         assert least <= float(rows[student]["points"]) <= most, rows[student]
     assert (tmp_path / "out/students/good/track0-seed1.png").stat().st_size > 10_000
-    assert [pid for pid, state in descendants(os.getpid()) if state != "Z"] == []
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
     marks = (tmp_path / "out" / "marks.csv").read_bytes()
     (tmp_path / "out" / "marks.csv").unlink()
     again = mark(tmp_path, "--resume")
@@ -72,7 +71,8 @@ def test_ctrl_c_keeps_what_is_done(tmp_path):
     running.send_signal(signal.SIGINT)
     assert running.wait(30.0) == 130
     assert set(rows_of(tmp_path)) == {"broken"}
-    assert [pid for pid, state in descendants(os.getpid()) if state != "Z"] == []
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
 
 
 def test_a_course_that_is_not_there_is_one_line(tmp_path):

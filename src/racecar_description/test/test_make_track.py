@@ -13,6 +13,7 @@ import pytest
 import yaml
 from racecar_description.track.centre_line import CentreLine
 from racecar_description.track.clearance import touching_place
+from racecar_description.track.closed_line import load_track
 from racecar_description.track.command import main
 from racecar_description.track.course import road_width
 from racecar_description.track.from_numbers import from_seed
@@ -21,7 +22,6 @@ from racecar_description.track.wishes import Wishes
 
 from bullet_sim.formats import Resources, load_world
 from bullet_sim.world import World
-from evaluation.track import load_track
 
 PACKAGE = Path(__file__).resolve().parent.parent
 RACETRACK = PACKAGE / "tracks" / "racetrack.yaml"

@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
+from racecar_description.track.closed_line import load_track
+from racecar_description.track.track_file import load_track_file
 from racecar_in_world import MIDDLE, PACKAGE, RESOURCES
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.core import RLException
@@ -16,7 +18,6 @@ from roslaunch.xmlloader import XmlLoader
 
 from bullet_sim.description import Box, Plane
 from bullet_sim.formats.loading import load_world
-from evaluation.track import load_track, load_track_file
 
 TRACK = PACKAGE / "tracks" / "racetrack.yaml"
 FIELD = (12.0, 8.0)  # m, inside the walls

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
-
-from evaluation.track import Track
+from racecar_description.track.closed_line import Track
 
 STALL_TIME, STALL_DISTANCE = 5.0, 0.02  # s and m: less progress than this in that time is a stall
 START_TIME = 30.0  # s that a follower may take until the car moves for the first time
@@ -94,6 +93,11 @@ class LapScorer:
     def driven_share(self) -> float:
         """Share of the present lap, 0 to 1."""
         return min(max((self._position - self._lap_from) / self.track.length, 0.0), 1.0)
+
+    @property
+    def present_lap(self) -> int:
+        """From 1."""
+        return min(len(self.laps) + 1, self.wanted_laps)
 
     def add(self, sample: Sample) -> Verdict:
         """Score one more sample."""

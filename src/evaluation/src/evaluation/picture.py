@@ -1,170 +1,123 @@
-"""Pictures of the course from above, in pixels: the map, the car on it, and the path driven."""
+"""Pictures by matplotlib, which is loaded when one is drawn: no drive waits for it."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import cv2
 import numpy as np
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import TrackFile
 
-from evaluation.lap import LapScorer
-from evaluation.track import TrackFile, build_track
-
-FLOOR, YELLOW, WHITE = (16, 14, 14), (40, 215, 245), (225, 225, 225)  # BGR, as all pictures here
-PAPER, GRID, TEXT, FAINT = (30, 26, 24), (44, 39, 36), (235, 232, 228), (165, 158, 152)
-LAP_COLOURS = (
-    (240, 170, 70),
-    (110, 110, 250),
-    (130, 210, 90),
-    (220, 120, 210),
-    (90, 190, 250),
-    (200, 200, 80),
+from evaluation.colours import (
+    CAR,
+    FAINT,
+    FLOOR,
+    GRID,
+    LAPS,
+    LINE,
+    PAPER,
+    TEXT,
+    WHITE,
+    lap_colour,
 )
-FONT = cv2.FONT_HERSHEY_DUPLEX
-LEGEND_WIDTH_PX = 440
-SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
+from evaluation.lap import LapScorer
+from evaluation.plan import arrow, start_mark
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DPI, WIDTH, SIDE, HEADER, FOOT = 100, 14.0, 0.5, 1.25, 0.45  # px an inch; inches
+PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
 
 
-class CourseMap:
-    """The course seen from above, drawn to fit a width; world coordinates in m, y up."""
+def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[float],
+              more: float = 0.0) -> tuple[Figure, Axes]:
+    """A figure, 1400 px wide, with a map of what lies between two corners (x, y), m.
 
-    def __init__(self, track_file: TrackFile, width_px: int, margin: float = 0.15):
-        self._yellow = build_track(track_file)
-        self._white = self._yellow.offset(-track_file.lane_width)
-        self._line_width = track_file.line_width
-        points = np.array(self._yellow.points() + self._white.points())
-        self._low, self._high = points.min(axis=0) - margin, points.max(axis=0) + margin
-        self.px_per_m = width_px / (self._high[0] - self._low[0])
-        self.width_px = width_px
-        self.height_px = round((self._high[1] - self._low[1]) * self.px_per_m)
+    `more` inches stay free below the map.
+    """
+    from matplotlib.figure import Figure
 
-    def to_px(self, points: Iterable[tuple[float, float]]) -> np.ndarray:
-        """World points (n, 2) as pixel coordinates (n, 2), float."""
-        points = np.asarray(points, float).reshape(-1, 2)
-        return (points - (self._low[0], self._high[1])) * (self.px_per_m, -self.px_per_m)
-
-    def empty(self) -> np.ndarray:
-        """The floor with its grid of half metres and the two lines."""
-        image = np.full((self.height_px, self.width_px, 3), FLOOR, np.uint8)
-        for axis in (0, 1):
-            for k in range(math.ceil(self._low[axis] * 2), math.floor(self._high[axis] * 2) + 1):
-                ends = np.array((self._low, self._high))
-                ends[:, axis] = k / 2
-                draw_line(image, self.to_px(ends), GRID, 1)
-        thick = max(2, round(self._line_width * self.px_per_m))
-        for line, colour in ((self._white, WHITE), (self._yellow, YELLOW)):
-            draw_line(image, self.to_px(line.points()), colour, thick, closed=True)
-        self._mark_start(image)
-        return image
-
-    def _mark_start(self, image: np.ndarray) -> None:
-        x, y, heading = self._yellow.pose(0.0)
-        across = np.array((math.sin(heading), -math.cos(heading)))
-        ends = [(x, y) - 0.07 * across, (x, y) + 0.07 * across]
-        draw_line(image, self.to_px(ends), TEXT, max(2, round(0.012 * self.px_per_m)))
-
-    def draw_car(self, image: np.ndarray, x: float, y: float, yaw: float) -> None:
-        """A red arrow head, 0.2 m long, with its reference point at x, y."""
-        shape = np.array([(0.12, 0.0), (-0.08, 0.075), (-0.04, 0.0), (-0.08, -0.075)])
-        turn = np.array([(math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))])
-        corners = _fixed_point(self.to_px(shape @ turn + (x, y)))
-        cv2.fillPoly(image, [corners], (60, 60, 240), cv2.LINE_AA, SHIFT)
-        cv2.polylines(image, [corners], True, (255, 255, 255), 1, cv2.LINE_AA, SHIFT)
+    (left, bottom), (right, top) = low, high
+    map_width = WIDTH - 2 * SIDE
+    map_height = map_width * (top - bottom) / (right - left)
+    height = HEADER + map_height + FOOT + more
+    figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor=PAPER)
+    figure.text(SIDE / WIDTH, 1 - 0.62 / height, title, color=TEXT, size=22)
+    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=FAINT, size=11)
+    axes = figure.add_axes((SIDE / WIDTH, (FOOT + more) / height, map_width / WIDTH,
+                            map_height / height))
+    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel="m")
+    _finish(axes)
+    return figure, axes
 
 
-def draw_line(
-    image: np.ndarray, points_px: np.ndarray, colour: tuple, thick_px: int, closed: bool = False
-) -> None:
-    """An anti-aliased line through points between pixels."""
-    cv2.polylines(image, [_fixed_point(points_px)], closed, colour, thick_px, cv2.LINE_AA, SHIFT)
+def below(figure: Figure, more: float) -> Axes:
+    """A place for a curve in the `more` inches below a map."""
+    height = figure.get_figheight()
+    axes = figure.add_axes(
+        (SIDE / WIDTH, 0.6 / height, 1 - 2 * SIDE / WIDTH, (more - 0.7) / height))
+    _finish(axes)
+    return axes
 
 
-def write_text(
-    image: np.ndarray, text: str, at_px: tuple[int, int], height_px: int, colour: tuple = TEXT
-) -> int:
-    """Text with its base line's left end at a pixel; returns its width in px."""
-    thick = 2 if height_px > 24 else 1
-    scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
-    cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)
-    return cv2.getTextSize(text, FONT, scale, thick)[0][0]
+def legend(axes: Axes) -> None:
+    """Where it covers least."""
+    axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
 
 
-def path_picture(
-    track_file: TrackFile, drive: LapScorer, title: str, subtitle: str, width_px: int = 1400
-) -> np.ndarray:
-    """The driven path over the course, a colour for each lap, with title, legend and scale."""
-    fine = 2  # drawn larger and shrunk, so that letters and curves are smooth
-    course = CourseMap(track_file, (width_px - 80) * fine)
-    floor = course.empty()
-    laps = _draw_path(course, floor, drive, thick_px=3 * fine)
-    _draw_legend(floor, drive, laps, fine)
-    if drive.samples:
-        last = drive.samples[-1]
-        course.draw_car(floor, last.x, last.y, last.yaw)
-    header, foot = 130 * fine, 70 * fine
-    page = np.full((course.height_px + header + foot, width_px * fine, 3), PAPER, np.uint8)
-    page[header : header + course.height_px, 40 * fine : -40 * fine] = floor
-    write_text(page, title, (40 * fine, 62 * fine), 26 * fine)
-    write_text(page, subtitle, (40 * fine, 102 * fine), 15 * fine, FAINT)
-    _draw_scale(page, course.px_per_m, (40 * fine, header + course.height_px + 36 * fine), fine)
-    size = (page.shape[1] // fine, page.shape[0] // fine)
-    return cv2.resize(page, size, interpolation=cv2.INTER_AREA)
+def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str) -> None:
+    """An arrow head at x, y, yaw; m, rad."""
+    axes.fill(*arrow(pose, length).T, facecolor=colour, edgecolor="white", zorder=5)
 
 
-def _draw_path(course: CourseMap, image: np.ndarray, drive: LapScorer, thick_px: int) -> int:
-    """Draw the samples lap by lap; returns how many colours were needed."""
+def pixels(figure: Figure) -> np.ndarray:
+    """The picture (rows, columns, 3), BGR."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., 2::-1].copy()
+
+
+def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: str) -> np.ndarray:
+    """The driven path over the course (rows, 1400, 3), BGR, a colour for each lap."""
+    yellow = build_track(track_file)
+    white = yellow.offset(-track_file.lane_width)
+    lines = [np.array([*line.points(), line.points()[0]]) for line in (yellow, white)]
+    everything = np.concatenate(lines)
+    figure, axes = map_sheet(title, subtitle, everything.min(0) - 0.15, everything.max(0) + 0.15)
+    points_a_metre = 72 * (WIDTH - 2 * SIDE) / (np.ptp(everything[:, 0]) + 0.3)
+    texts = ("yellow: what the car follows", "white: right edge of the lane")
+    for points, colour, text in zip(lines, (LINE, WHITE), texts, strict=True):
+        axes.plot(*points.T, color=colour, label=text,
+                  linewidth=max(1.5, track_file.line_width * points_a_metre))
+    axes.plot(*start_mark(yellow.pose(0.0)).T, color=TEXT, linewidth=2)
+    _draw_laps(axes, drive)
+    legend(axes)
+    return pixels(figure)
+
+
+def _draw_laps(axes: Axes, drive: LapScorer) -> None:
+    """Laps lie on one another: earlier ones are wider, so that they show beside later ones."""
     if not drive.samples:
-        return 0
-    points = course.to_px([(sample.x, sample.y) for sample in drive.samples])
+        return
+    points = np.array([(sample.x, sample.y) for sample in drive.samples])
     numbers = np.minimum(drive.lap_numbers, drive.wanted_laps - 1)
     for number in range(numbers[-1] + 1):
         chosen = np.flatnonzero(numbers == number)
-        first, last = max(chosen[0] - 1, 0), chosen[-1]
-        # Laps lie on one another: earlier ones are wider, so that they show beside later ones.
-        wider = 1 + 0.6 * min(numbers[-1] - number, 4)
-        draw_line(image, points[first : last + 1], lap_colour(number), round(thick_px * wider))
-    return int(numbers[-1]) + 1
-
-
-def lap_colour(number: int) -> tuple[int, int, int]:
-    """The colour (BGR) of a lap, counted from 0."""
-    return LAP_COLOURS[number % len(LAP_COLOURS)]
-
-
-def _draw_legend(image: np.ndarray, drive: LapScorer, laps: int, fine: int) -> None:
-    """What the lines mean, where the course leaves room for it."""
-    entries = [
-        (YELLOW, "yellow: what the car follows"),
-        (WHITE, "white: right edge of the lane"),
-    ]
-    shown = min(laps, len(LAP_COLOURS))
-    for number in range(shown):
-        entries.append((lap_colour(number), f"lap {number + 1}{_lap_figures(drive, number)}"))
-    if laps > shown:
-        entries.append((FAINT, f"laps {shown + 1} to {laps}: the same colours again"))
-    step = 30 * fine
-    left, top = _free_place(image, (LEGEND_WIDTH_PX * fine, step * len(entries)))
-    top += step // 2
-    for row, (colour, text) in enumerate(entries):
-        y = top + row * step
-        ends = np.array([(left, y), (left + 44 * fine, y)])
-        draw_line(image, ends, colour, 5 * fine)
-        write_text(image, text, (left + 60 * fine, y + 6 * fine), 13 * fine)
-
-
-def _free_place(image: np.ndarray, size_px: tuple[int, int]) -> tuple[int, int]:
-    """Left and top of a box (width, height) that covers no line, as near the middle as may be."""
-    width, height = size_px
-    drawn = cv2.integral((image.max(axis=2) > max(GRID) + 16).astype(np.uint8))
-    lefts = np.arange(0, image.shape[1] - width, 16)
-    tops = np.arange(0, image.shape[0] - height, 16)[:, None]
-    lines = (drawn[tops + height, lefts + width] - drawn[tops, lefts + width]
-             - drawn[tops + height, lefts] + drawn[tops, lefts])  # fmt: skip
-    away = np.hypot(lefts + width / 2 - image.shape[1] / 2, tops + height / 2 - image.shape[0] / 2)
-    best = np.argmin(lines * 1e6 + away)
-    row, column = np.unravel_index(best, away.shape)
-    return int(lefts[column]), int(tops[row, 0])
+        text = f"lap {number + 1}{_lap_figures(drive, number)}" if number < len(LAPS) else None
+        axes.plot(*points[max(chosen[0] - 1, 0):chosen[-1] + 1].T, color=lap_colour(number),
+                  label=text, linewidth=2 * (1 + 0.6 * min(numbers[-1] - number, 4)))
+    if numbers[-1] >= len(LAPS):
+        axes.plot([], [], color=FAINT,
+                  label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
+    last = drive.samples[-1]
+    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR)
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:
@@ -174,26 +127,46 @@ def _lap_figures(drive: LapScorer, number: int) -> str:
     return f": {lap.time:.1f} s, {lap.distance:.2f} m, RMS {lap.rms_lateral * 100:.1f} cm"
 
 
-def _draw_scale(image: np.ndarray, px_per_m: float, at_px: tuple[int, int], fine: int) -> None:
-    x, y = at_px
-    end = x + round(px_per_m / 2)
-    for points in (((x, y), (end, y)), ((x, y - 8), (x, y + 8)), ((end, y - 8), (end, y + 8))):
-        draw_line(image, np.array(points), FAINT, 2 * fine)
-    write_text(image, "0.5 m", (end + 14 * fine, y + 6 * fine), 13 * fine, FAINT)
+def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tuple[str, bool]],
+                size: tuple[float, float], columns: int = 5) -> None:
+    """A picture with a small one for each of the tiles, `size` in inches (width, height).
 
+    `draw` fills one and returns its caption, and whether that is good news.
+    """
+    from matplotlib.figure import Figure
 
-def _fixed_point(points_px: np.ndarray) -> np.ndarray:
-    return np.round(np.asarray(points_px) * (1 << SHIFT)).astype(np.int32)
-
-
-def tile_sheet(tiles: Sequence[np.ndarray], columns: int, gap_px: int) -> np.ndarray:
-    """Pictures (height, width, 3) of one size, row by row, with gaps between and round them."""
-    height, width = tiles[0].shape[:2]
     columns, rows = min(columns, len(tiles)), -(-len(tiles) // columns)
-    sheet = np.full((rows * (height + gap_px) + gap_px, columns * (width + gap_px) + gap_px, 3),
-                    PAPER, np.uint8)
-    for number, tile in enumerate(tiles):
-        row, column = divmod(number, columns)
-        top, left = gap_px + row * (height + gap_px), gap_px + column * (width + gap_px)
-        sheet[top:top + height, left:left + width] = tile
-    return sheet
+    figure = Figure(figsize=(size[0] * columns, size[1] * rows), dpi=DPI, facecolor=PAPER,
+                    layout="constrained")
+    for number, tile in enumerate(tiles, start=1):
+        axes = figure.add_subplot(rows, columns, number, facecolor=FLOOR)
+        axes.set(xticks=(), yticks=(), aspect="equal")
+        caption, good = draw(axes, tile)
+        axes.set_title(caption, fontsize=7, color=TEXT if good else CAR)
+    figure.savefig(path)
+
+
+@contextlib.contextmanager
+def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[np.ndarray]:
+    """Axes (rows, columns) of a chart that is written when they were drawn on."""
+    from matplotlib.figure import Figure
+
+    sheet = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows))
+    grid = sheet.subplots(rows, columns, squeeze=False, **settings)
+    yield grid
+    for axes in grid.flat:
+        axes.tick_params(labelsize=8, length=0)
+        axes.grid(alpha=0.3)
+    sheet.tight_layout()
+    sheet.savefig(path, dpi=PANEL_DPI)
+
+
+def _finish(axes: Axes) -> None:
+    axes.set_facecolor(FLOOR)
+    axes.grid(color=GRID)
+    axes.tick_params(colors=FAINT, labelsize=8, length=0)
+    axes.xaxis.label.set_color(FAINT)
+    axes.yaxis.label.set_color(FAINT)
+    axes.set_axisbelow(True)
+    for spine in axes.spines.values():
+        spine.set_visible(False)

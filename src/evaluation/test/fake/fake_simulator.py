@@ -16,10 +16,9 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
+from racecar_description.track.closed_line import load_track
 from sensor_msgs.msg import CameraInfo, Image
 from std_srvs.srv import Empty, EmptyResponse
-
-from evaluation.track import load_track
 
 SPEED = 0.15  # m/s, simulated
 FRAME_RATE_HZ = 30

@@ -13,7 +13,8 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from evaluation.session.processes import descendants
+import psutil
+
 from marking.rules import Limits
 from marking.sandbox import HOME, SUBMISSION, Kind, sandbox
 from marking.text import one_line
@@ -65,17 +66,24 @@ class Box:
             thread.join(END_TIME)
 
     def _kill(self) -> None:
-        below = [pid for pid, _ in descendants(self._process.pid)]
-        for pid in (self._process.pid, *below):
+        for pid in (self._process.pid, *self._below()):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
+
+    def _below(self) -> list[int]:
+        """What it started, and they."""
+        try:
+            children = psutil.Process(self._process.pid).children(recursive=True)
+        except psutil.NoSuchProcess:
+            return []
+        return [each.pid for each in children]
 
     def _guard(self) -> None:
         """End it where it uses too much: what the kernel limits only for each process."""
         limits = self._limits
         while self._process.poll() is None and not self._excess:
             time.sleep(GUARD_PERIOD)
-            running = [pid for pid, _ in descendants(self._process.pid)]
+            running = self._below()
             used_mb = sum(map(_resident_bytes, running)) / 1e6
             if len(running) > limits.processes:
                 self._excess = f"it started more than {limits.processes:g} processes"

@@ -6,9 +6,11 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
+
 from evaluation.lap import LapScorer
 from evaluation.session.course_file import Course
-from evaluation.track import build_track, load_track_file
 from marking.venues import driven
 
 CASE, REPORT, PATH_PICTURE, OUTPUT, FILM = (

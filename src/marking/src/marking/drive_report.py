@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import cv2
+from racecar_description.track.track_file import load_track_file
 
 from evaluation.lap import LapScorer, Verdict, fingerprint
 from evaluation.picture import path_picture
-from evaluation.track import load_track_file
 from evaluation.trial.report import write_json
 from marking.case_files import PATH_PICTURE, REPORT, CaseFile
 

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 import rospy
+from racecar_description.track.track_file import load_track_file
 
-from evaluation.course_run.video import Film
+from evaluation.course_run.film import CourseFilm
 from evaluation.session.film import FILM_PERIOD
-from evaluation.track import load_track_file
 from marking.case_files import FILM, read_case
 from marking.states import STATE_LOG, Tail, sample_of
 
@@ -22,7 +22,7 @@ def main(folder: Path) -> int:
     """Film the case of this folder until the node is asked to end; returns the exit code."""
     case = read_case(folder)
     drive, robot, states = case.scorer(), case.robot(), Tail(folder / STATE_LOG)
-    film = Film(folder / FILM, case.driven(), load_track_file(Path(case.track)), drive,
+    film = CourseFilm(folder / FILM, case.driven(), load_track_file(Path(case.track)), drive,
                 FILM_PERIOD)
     rospy.init_node(NODE.strip("/"), disable_rosout=True)
     film.start()

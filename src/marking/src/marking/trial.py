@@ -12,11 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from racecar_description.track.closed_line import load_track
+
 from evaluation.laps.lit_drive import MODEL_PATH
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
-from evaluation.track import load_track
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial
 from marking.case_files import CaseFile

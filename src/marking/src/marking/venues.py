@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from racecar_description.track.closed_line import load_track
 
-from evaluation.course_model import write_model
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
 from evaluation.session.course_file import Course, load_course
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
-from evaluation.track import load_track, load_track_file
 from marking.rules import Rules
 
 # What can be driven: our launch file of that name, and the course file of evaluation's.
@@ -67,13 +66,12 @@ def _draw(rules: Rules, seed: int) -> Disturbance:
 _Venue = tuple[Path, Path, Path]
 
 
-def _course(track: Path | None, out: Path) -> _Venue:
+def _course(track: Path | None, _out: Path) -> _Venue:
     package = find_package("learning_topic")
     world = package / "worlds" / "course.world"
-    if track is None:
-        return world, load_course("course").track_path(), package / "models"
-    write_model(load_track_file(track), out / "models" / "turtlebot3_autorace" / "course")
-    return world, track, out / "models"
+    if track is not None:
+        raise RunError("tracks: the course has its own alone, the racetrack takes others")
+    return world, load_course("course").track_path(), package / "models"
 
 
 def _race(track: Path | None, _out: Path) -> _Venue:

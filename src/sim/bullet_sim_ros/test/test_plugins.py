@@ -17,8 +17,11 @@ from bullet_sim_ros.plugin_host import registry
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
 from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
+from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.services.models import with_namespace
+
+register_plugins()
 
 
 def described(filename: str = "libx.so", body: str = "") -> PluginDescription:

@@ -1,12 +1,11 @@
-"""report.json and the table at the end: this run beside the last run of every other follower."""
+"""The figures of a drive, and the table at the end: beside the last run of every other follower."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
-from evaluation.course_run.options import Options
-from evaluation.lap import LapScorer, fingerprint
+from evaluation.lap import LapScorer
 from evaluation.trial.report import write_json
 from evaluation.trial.table import cell, table
 
@@ -22,10 +21,9 @@ COLUMNS = (  # heading, key, factor, digits
 )
 
 
-def summarize(drive: LapScorer, outcome: tuple[str, str], frames: dict, wall: float) -> dict:
-    """The figures of one drive; lengths in m, times in s, all simulated but wall_s."""
+def summarize(drive: LapScorer, outcome: tuple[str, str]) -> dict:
+    """The figures of one drive; lengths in m, times in simulated s."""
     times = [lap.time for lap in drive.laps]
-    simulated = drive.samples[-1].time - drive.samples[0].time if drive.samples else 0.0
     return {
         "outcome": outcome[0],
         "why": outcome[1] or None,
@@ -33,38 +31,15 @@ def summarize(drive: LapScorer, outcome: tuple[str, str], frames: dict, wall: fl
         "laps_closed": len(times),
         "lap_times_s": [round(time, 3) for time in times],
         "mean_lap_s": round(sum(times) / len(times), 3) if times else None,
-        "distance_m": round(drive.total.distance, 3),
-        "rms_lateral_m": round(drive.total.rms_lateral, 4),
-        "max_lateral_m": round(drive.total.max_lateral, 4),
-        "laps": [
-            {
-                "time_s": round(lap.time, 3),
-                "distance_m": round(lap.distance, 3),
-                "rms_lateral_m": round(lap.rms_lateral, 4),
-                "max_lateral_m": round(lap.max_lateral, 4),
-            }
-            for lap in drive.laps
-        ],
-        **frames,
-        "frames_per_simulated_s": (
-            round(frames["frames_sent"] / simulated, 2) if simulated > 0 else None
-        ),
-        "drive_sha256": fingerprint(drive),
-        "simulated_s": round(simulated, 3),
-        "wall_s": round(wall, 3),
-        "real_time_factor": round(simulated / wall, 3) if wall > 0 else None,
+        **_lengths(drive.total),
+        "laps": [{"time_s": round(lap.time, 3), **_lengths(lap)} for lap in drive.laps],
     }
 
 
-def conditions(options: Options) -> dict:
-    """What was asked for that makes a run drive otherwise; None is what the launch file says."""
-    camera = options.camera_px
-    return {
-        "fast": options.fast,
-        "seed": options.seed,
-        "camera_width_px": camera[0] if camera else None,
-        "camera_height_px": camera[1] if camera else None,
-    }
+def _lengths(part: object) -> dict:
+    """Of a lap, or of the whole drive."""
+    return {"distance_m": round(part.distance, 3), "rms_lateral_m": round(part.rms_lateral, 4),
+            "max_lateral_m": round(part.max_lateral, 4)}
 
 
 def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
@@ -76,11 +51,9 @@ def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
             other = _read(path)
             runs.setdefault(other.get("follower", path.stem), other)
     runs.pop(None, None)
-    known = {name: runs[name] for name in sorted(runs) if "outcome" in runs[name]}
-    side_by_side = {
-        name: {key: known[name].get(key) for key in ("outcome", *(column[1] for column in COLUMNS))}
-        for name in known
-    }
+    kept = ("outcome", *(key for _, key, *_ in COLUMNS))
+    side_by_side = {name: {key: runs[name].get(key) for key in kept}
+                    for name in sorted(runs) if "outcome" in runs[name]}
     write_json({"follower": follower, **run, "followers": side_by_side}, folder / "report.json")
     return side_by_side
 

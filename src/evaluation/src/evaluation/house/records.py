@@ -70,17 +70,21 @@ class Records:
             self.contacts.append(Contact(gap.own, now, now, gap.place))
 
     def pairs(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Believed and true poses (N, 3) of the same moments, from a moment (s) on.
+        """Believed and true poses (N, 3) of the same moments, from a moment (s) on."""
+        return self.moments(since)[1:]
+
+    def moments(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times (N,), s, believed and true poses (N, 3) then, from a moment on.
 
         Not where the true pose was not seen for LONGEST_GAP: it may have turned meanwhile.
         """
         believed = np.array(self.believed[:]).reshape(-1, 4)
         truth = np.array(self.truth[:]).reshape(-1, 4)
         if not len(truth):
-            return np.empty((0, 3)), np.empty((0, 3))
+            return np.empty(0), np.empty((0, 3)), np.empty((0, 3))
         moments = believed[:, 0]
         true_poses = at_moments(truth[:, 0], truth[:, 1:], moments)
         after = np.searchsorted(truth[:, 0], moments).clip(1, max(len(truth) - 1, 1))
         unseen = np.diff(truth[:, 0], append=np.inf)[after - 1] > LONGEST_GAP
         known = np.isfinite(true_poses[:, 0]) & ~unseen & (moments >= since)
-        return believed[known, 1:], true_poses[known]
+        return moments[known], believed[known, 1:], true_poses[known]

@@ -6,12 +6,13 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from lane_keeping.world.timing import ms_a_frame
+
+from evaluation.lane.chart import write_chart
 from evaluation.lane.results import LaneDrive, lap_table, to_json
-from evaluation.lane.timing import ms_a_frame
 from evaluation.lane.trial import LaneCase, LaneDrives, check_methods, known_methods, lane_case
 from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
-from evaluation.trial.program import chart_writer
 
 
 class LaneComparison(LaneDrives):
@@ -31,7 +32,6 @@ class LaneComparison(LaneDrives):
         check_methods(options.methods)
         if not options.seeds:
             raise RunError("--seeds 0: nothing to drive")
-        self._write_chart = chart_writer("evaluation.lane.chart")  # what is missing is said at once
         self._methods, self._times = options.methods, {}
 
     def cases(self, options: argparse.Namespace) -> list[LaneCase]:
@@ -50,7 +50,7 @@ class LaneComparison(LaneDrives):
         return to_json(results, ms_a_frame=self._ms_a_frame())
 
     def pictures(self, results: Sequence[LaneDrive], out: Path) -> list[str]:
-        self._write_chart(results, self._ms_a_frame(), out / "lanes.png")
+        write_chart(results, self._ms_a_frame(), out / "lanes.png")
         return ["lanes.png"]
 
     def _ms_a_frame(self) -> dict[str, float]:

@@ -15,9 +15,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from lane_keeping.world.files import PERSON_RADIUS
+from lane_keeping.world.scenery import Crossings, Zebra
+
 from evaluation.lane.recording import CAR, Moment, Recording
-from evaluation.lane.scenery import Crossings, Zebra
-from evaluation.lane.world import PERSON_RADIUS
 
 CAR_FRONT, CAR_REAR, CAR_HALF_WIDTH = 0.20, 0.16, 0.15  # m round base_footprint, wheels included
 APPROACH, KEPT_OFF, TOUCHED = 2.0, 0.3, 0.005  # m

@@ -1,35 +1,27 @@
-"""What became of the drives: laps and encounters, one by one, as tables, as report.json."""
+"""What became of the drives: laps and encounters, one by one and as tables."""
 
 from __future__ import annotations
 
-import statistics
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
+from evaluation.laps import lap_drive
 from evaluation.laps.disturbance import Disturbance
+from evaluation.laps.lap_drive import HEAD, LapDrive, cells, seen, summary
 from evaluation.trial.table import cell, table
 
-MOST_RMS, LEAST_SPEED = 0.05, 0.6  # m from the lane's middle, m/s
-CLOSED = "closed"
 
+@dataclass(frozen=True, kw_only=True)
+class LaneDrive(LapDrive):
+    """One drive."""
 
-@dataclass(frozen=True)
-class LaneDrive:
-    """One drive; m, s, m/s. Speed counts standing, too."""
+    least_speed = 0.6
 
     method: str
-    seed: int
     people: bool
     laps_wanted: int
     laps_closed: int
-    outcome: str
-    why: str | None
-    mean_speed: float
-    rms_lateral: float  # of the whole drive, the way from where it was put to the middle included
-    max_lateral: float
-    frames_dropped: int  # images without a command: such a drive will not be repeated
-    disturbance: Disturbance
     nearest_person: float | None = None  # over the whole drive; None: nobody was there
     encounters: tuple[Encounter, ...] = field(default=())
 
@@ -39,32 +31,16 @@ class LaneDrive:
         return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
 
     @property
-    def closed(self) -> bool:
-        """Did it go all the way?"""
-        return self.outcome == CLOSED
-
-    @property
     def kept_clear(self) -> bool:
         """Was nobody touched, over the whole drive? Without a distance nobody knows."""
         return self.nearest_person is not None and self.nearest_person >= TOUCHED
-
-    @property
-    def within_limits(self) -> bool:
-        """Closed, close enough to the middle, fast enough."""
-        return self.closed and self.rms_lateral <= MOST_RMS and self.mean_speed >= LEAST_SPEED
 
 
 def from_report(report: dict, method: str, seed: int, disturbance: Disturbance,
                 people: bool) -> LaneDrive:
     """A drive from course_run's report.json."""
-    time, distance = report["simulated_s"], report["distance_m"]
-    if report["laps"]:
-        time = sum(lap["time_s"] for lap in report["laps"])
-        distance = sum(lap["distance_m"] for lap in report["laps"])
-    return LaneDrive(
-        method, seed, people, report["laps_wanted"], report["laps_closed"], report["outcome"],
-        report["why"], round(distance / time, 3) if time else 0.0, report["rms_lateral_m"],
-        report["max_lateral_m"], report["frames_dropped"], disturbance)
+    return LaneDrive(**seen(report, seed, disturbance), method=method, people=people,
+                     laps_wanted=report["laps_wanted"], laps_closed=report["laps_closed"])
 
 
 def line_of(drive: LaneDrive) -> str:
@@ -81,23 +57,12 @@ def line_of(drive: LaneDrive) -> str:
 
 def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None = None) -> str:
     """A row for each method; figures are of closed laps."""
-    head = ["method", "laps closed", "within limits", "m/s", "least", "RMS cm", "worst", "max cm"]
-    rows = [head + ["ms a frame"] * bool(ms_a_frame)]
+    rows = [["method", "laps closed", "within limits", *HEAD, *["ms a frame"] * bool(ms_a_frame)]]
     for method in dict.fromkeys(drive.method for drive in drives):
-        own = [drive for drive in drives if drive.method == method]
-        closed = [drive for drive in own if drive.closed]
-        errors, speeds = [d.rms_lateral for d in closed], [d.mean_speed for d in closed]
-        row = [
-            method, f"{len(closed)} of {len(own)}",
-            f"{sum(drive.within_limits for drive in own)} of {len(own)}",
-            cell(statistics.fmean(speeds) if closed else None, 1, 2),
-            cell(min(speeds, default=None), 1, 2),
-            cell(statistics.fmean(errors) if closed else None, 100, 1),
-            cell(max(errors, default=None), 100, 1),
-            cell(max((drive.max_lateral for drive in closed), default=None), 100, 1),
-        ]  # fmt: skip
-        rows.append(row + [cell(ms_a_frame.get(method), 1, 1)] * bool(ms_a_frame)
-                    if ms_a_frame else row)
+        found = summary([drive for drive in drives if drive.method == method])
+        time = [cell(ms_a_frame.get(method), 1, 1)] if ms_a_frame else []
+        rows.append([method, f"{found.closed} of {found.laps}",
+                     f"{found.within_limits} of {found.laps}", *cells(found), *time])
     return table(rows)
 
 
@@ -126,19 +91,10 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
 
 def to_json(drives: Sequence[LaneDrive], **more: object) -> dict:
     """All there is, with the limits it is held against."""
-    return {
-        "most_rms_lateral_m": MOST_RMS, "least_mean_speed_mps": LEAST_SPEED, **more,
-        "drives": [{**asdict(drive), "within_limits": drive.within_limits} for drive in drives],
-    }  # fmt: skip
+    return lap_drive.to_json(LaneDrive, "drives", drives, **more)
 
 
 def from_json(values: dict) -> list[LaneDrive]:
     """The drives that `to_json` was given; KeyError or TypeError."""
-    return [_drive({key: each[key] for key in LaneDrive.__dataclass_fields__})
-            for each in values["drives"]]
-
-
-def _drive(values: dict) -> LaneDrive:
-    met = tuple(Encounter(**each) for each in values["encounters"])
-    return LaneDrive(**{**values, "encounters": met,
-                        "disturbance": Disturbance(**values["disturbance"])})
+    return [lap_drive.from_json(LaneDrive, each, encounters=tuple(
+        Encounter(**met) for met in each["encounters"])) for each in values["drives"]]

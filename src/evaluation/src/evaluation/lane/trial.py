@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import lane_keeping.methods
-import numpy as np
+from lane_keeping.settings import SettingsError
+from lane_keeping.world.scenery import Crossings, load_crossings
+from racecar_description.track.track_file import load_track_file
 
 from evaluation.lane.encounters import judge, nearest_ever
 from evaluation.lane.recording import read_recording
@@ -21,24 +23,18 @@ from evaluation.lane.results import (
     line_of,
     to_json,
 )
-from evaluation.lane.scenery import load_crossings
-from evaluation.laps import lit_drive
-from evaluation.laps.disturbance import Disturbance
+from evaluation.laps.disturbance import Bounds, draw
+from evaluation.laps.lap_trial import LapTrial, Outing
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
-from evaluation.session.session import Session
-from evaluation.track import load_track, load_track_file
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import REPORT, Case, Trial
+from evaluation.trial.protocol import REPORT, Case
 
 LAPS_WITH_PEOPLE = 4  # in a row; bringing up a simulator takes as long as a quarter of a lap
 PEOPLE_FROM = 500  # first seed of the drives with people
-LIGHT, NOISE = (0.6, 1.4), (0.0, 0.02)  # times the world's own; standard deviation, 1: full
-START_OFFSET, START_TURN = 0.05, 0.1  # m and rad, to either side, at most
+BOUNDS = Bounds(sideways=0.05, along=0.0, turn=0.1, camera_noise=(0.0, 0.02), light=(0.6, 1.4))
 NEAR = 3.0  # m: people set off when the car is that near or nearer, so that they meet
 LONGEST_LAP = 240.0  # s, simulated
-STARTUP_LIMIT, LAP_LIMIT = 240.0, 1800.0  # s, wall: the machine may be busy
-ANSWER_LIMIT = 20.0  # s, wall
 
 
 @dataclass(frozen=True)
@@ -57,33 +53,31 @@ def lane_case(method: str, seed: int, people: bool = False) -> LaneCase:
     return LaneCase(name, method, seed, LAPS_WITH_PEOPLE if people else 1, people)
 
 
-class LaneDrives(Trial):
+class LaneDrives(LapTrial):
     """What the trials of one method and the comparison of all have in common."""
 
-    def setup(self, session: Session, case: LaneCase) -> None:
-        self._case, self._disturbance = case, draw(case.seed)
-        folder = session.out / "drives" / case.name.partition(" ")[2]
-        self._folder = folder / case.method
+    def outing(self, out: Path, case: LaneCase) -> Outing:
+        """With people, poses.txt is written beside the report."""
+        lit = out / "drives" / case.name.partition(" ")[2]
+        folder = lit / case.method
         models = find_package("lane_keeping") / "models"
         world = models.parent / "worlds" / ("lane.world" if case.people else "lane_empty.world")
-        lit = lit_drive.write_world(world, models, self._disturbance.light, folder)
-        self._drive = lit_drive.start(
-            session, course_arguments(case, self._disturbance, lit, self._folder), self._folder,
-            [folder / "models", models])
-
-    def run(self) -> dict:
-        """course_run's report; poses.txt is beside it where people cross."""
-        case = self._case
-        return self._drive.report(LAP_LIMIT * case.laps, f"{case.method}, seed {case.seed}")
+        options, record = (), ()
+        if case.people:
+            options = ("--launch", "evaluation", "lane.launch")
+            record = (f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}")
+        return Outing(f"{case.method}, seed {case.seed}", "lane" if case.people else "lane_empty",
+                      f"{case.method}.py", _track(), world, models, lit, folder,
+                      draw(case.seed, BOUNDS), LONGEST_LAP, case.laps, options, record)
 
     def score(self, record: dict) -> LaneDrive:
         case = self._case
-        found = from_report(record, case.method, case.seed, self._disturbance, case.people)
+        found = from_report(
+            record, case.method, case.seed, self._outing.disturbance, case.people)
         if not case.people:
             return found
-        recording = read_recording(self._folder / "poses.txt")
-        track = load_track_file(find_package("evaluation") / "tracks" / "lane.yaml")
-        met = judge(recording, load_crossings(), track.lane_width)
+        recording = read_recording(self._outing.out / "poses.txt")
+        met = judge(recording, _crossings(), load_track_file(_track()).lane_width)
         nearest = round(nearest_ever(recording), 3)
         return LaneDrive(**{**vars(found), "nearest_person": nearest, "encounters": tuple(met)})
 
@@ -164,33 +158,15 @@ def count_met(results: Sequence[LaneDrive]) -> int:
     return sum(len(each.encounters) for each in results)
 
 
-def draw(seed: int) -> Disturbance:
-    """The seed's start, noise and light, evenly distributed between the bounds above."""
-    random = np.random.default_rng(seed)
-    return Disturbance(
-        sideways=random.uniform(-START_OFFSET, START_OFFSET),
-        along=0.0,
-        turn=random.uniform(-START_TURN, START_TURN),
-        camera_noise=random.uniform(*NOISE),
-        light=random.uniform(*LIGHT),
-    )
+def _track() -> Path:
+    return find_package("evaluation") / "tracks" / "lane.yaml"
 
 
-def course_arguments(case: LaneCase, disturbance: Disturbance, world: Path, folder: Path
-                     ) -> list[str]:
-    """Those of course_run for a drive in this world; people are recorded into the folder."""
-    start = disturbance.start(load_track(find_package("evaluation") / "tracks" / "lane.yaml"))
-    launch, record = [], []
-    if case.people:
-        launch = ["--launch", "evaluation", "lane.launch"]
-        record = [f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}"]
-    return [
-        "--course", "lane" if case.people else "lane_empty", *launch,
-        "--follower", f"{case.method}.py", "--laps", str(case.laps), "--fast", "--no-video",
-        "--seed", str(case.seed), "--duration", f"{LONGEST_LAP * case.laps:g}",
-        "--startup-timeout", f"{STARTUP_LIMIT:g}",
-        *lit_drive.launch_arguments(world, start, disturbance.camera_noise, ANSWER_LIMIT, *record),
-    ]  # fmt: skip
+def _crossings() -> Crossings:
+    try:
+        return load_crossings()
+    except SettingsError as error:
+        raise RunError(str(error)) from error
 
 
 def known_methods() -> list[str]:

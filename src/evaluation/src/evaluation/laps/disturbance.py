@@ -6,13 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from evaluation.track import Track
-
-START_OFFSET = 0.2  # m, to each side and forwards or backwards, at most
-START_TURN = math.radians(10)  # rad, at most
-CAMERA_NOISE = (0.01, 0.03)  # standard deviation; 1 is full brightness
-LIGHT = (0.7, 1.3)  # times the world's own
+from racecar_description.track.closed_line import Track
 
 
 @dataclass(frozen=True)
@@ -33,13 +27,24 @@ class Disturbance:
         return x, y, heading + self.turn
 
 
-def draw(seed: int) -> Disturbance:
-    """The seed's disturbance, evenly distributed between the bounds above."""
+@dataclass(frozen=True)
+class Bounds:
+    """Between which disturbances are drawn: m and rad to either side, and as in Disturbance."""
+
+    sideways: float
+    along: float
+    turn: float
+    camera_noise: tuple[float, float]
+    light: tuple[float, float]
+
+
+def draw(seed: int, bounds: Bounds) -> Disturbance:
+    """The seed's disturbance, evenly distributed between the bounds."""
     random = np.random.default_rng(seed)
     return Disturbance(
-        sideways=random.uniform(-START_OFFSET, START_OFFSET),
-        along=random.uniform(-START_OFFSET, START_OFFSET),
-        turn=random.uniform(-START_TURN, START_TURN),
-        camera_noise=random.uniform(*CAMERA_NOISE),
-        light=random.uniform(*LIGHT),
+        sideways=random.uniform(-bounds.sideways, bounds.sideways),
+        along=random.uniform(-bounds.along, bounds.along) if bounds.along else 0.0,
+        turn=random.uniform(-bounds.turn, bounds.turn),
+        camera_noise=random.uniform(*bounds.camera_noise),
+        light=random.uniform(*bounds.light),
     )

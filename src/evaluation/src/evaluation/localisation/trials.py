@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from evaluation.house.ground import Ground
-from evaluation.house.records import LONGEST_GAP, Records
+from evaluation.house.records import Records
 from evaluation.localisation.results import (
     FINDING,
     HOLD,
@@ -20,7 +20,6 @@ from evaluation.localisation.results import (
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.wander import Wander
-from evaluation.mapping.trajectory_error import at_moments
 from evaluation.session.failure import RunError
 from nav_algorithms.poses import wrap_angle
 
@@ -33,23 +32,10 @@ PARTICLES = 2000
 
 
 def errors_since(records: Records, since: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (N,), s, and errors (N, 2), m and rad, of poses on a map that lies as the world does.
-
-    Not where the true pose was not seen for LONGEST_GAP.
-    """
-    believed = np.array(records.believed[:]).reshape(-1, 4)
-    truth = np.array(records.truth[:]).reshape(-1, 4)
-    believed = believed[believed[:, 0] >= since]
-    if not len(truth) or not len(believed):
-        return np.empty(0), np.empty((0, 2))
-    times = believed[:, 0]
-    true = at_moments(truth[:, 0], truth[:, 1:], times)
-    after = np.searchsorted(truth[:, 0], times).clip(1, max(len(truth) - 1, 1))
-    seen = np.diff(truth[:, 0], append=np.inf)[after - 1] <= LONGEST_GAP
-    known = np.isfinite(true[:, 0]) & seen
-    off = believed[:, 1:] - true
-    errors = np.stack((np.hypot(off[:, 0], off[:, 1]), np.abs(wrap_angle(off[:, 2]))), axis=1)
-    return times[known], errors[known]
+    """Times (N,), s, and errors (N, 2), m and rad; the map lies as the world does."""
+    times, believed, true = records.moments(since)
+    off = believed - true
+    return times, np.stack((np.hypot(off[:, 0], off[:, 1]), np.abs(wrap_angle(off[:, 2]))), axis=1)
 
 
 def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:

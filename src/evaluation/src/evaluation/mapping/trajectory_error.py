@@ -8,7 +8,6 @@ between two point patterns" (1991).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -57,16 +56,6 @@ def at_moments(stamps: np.ndarray, poses: np.ndarray, moments: np.ndarray) -> np
     columns = [np.interp(moments, stamps, column, np.nan, np.nan)
                for column in (poses[:, 0], poses[:, 1], headings)]
     return np.stack((*columns[:2], wrap_angle(columns[2])), axis=1)
-
-
-def read_trajectory(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """(stamps (N,), s, poses (N, 3)) of a file in TUM's format: stamp x y z qx qy qz qw."""
-    rows = np.loadtxt(path, ndmin=2)
-    if rows.shape[1] != 8:
-        raise ValueError(f"{path}: has {rows.shape[1]} columns; stamp x y z qx qy qz qw are wanted")
-    x, y, z, w = rows[:, 4:].T
-    yaw = np.arctan2(2 * (w * z + x * y), w**2 + x**2 - y**2 - z**2)
-    return rows[:, 0], np.stack((rows[:, 1], rows[:, 2], yaw), axis=1)
 
 
 def _rms(values: np.ndarray) -> float:

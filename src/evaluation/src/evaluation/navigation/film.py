@@ -5,26 +5,29 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
+import cv2
 import numpy as np
 import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
+from evaluation.colours import CAR, FLOOR, TEXT, bgr, lap_colour
 from evaluation.house.ground import Ground
-from evaluation.house.house_map import HouseMap
 from evaluation.house.records import Records
 from evaluation.house.watch import Watch
+from evaluation.navigation.picture import CLEAR, OCCUPIED_FROM
 from evaluation.navigation.score import Result
-from evaluation.picture import FAINT, LAP_COLOURS, PAPER, write_text
-from evaluation.session.film import FILM_RATE_HZ, VIEW_PX, FilmFile, fit
+from evaluation.plan import Plan
+from evaluation.session.film import FilmFile, fit, side_by_side
+from nav_algorithms.grid import FREE, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
 
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint
 PERIOD = 1.0  # s, simulated, between two pictures: the film runs at ten times the speed
 LOOK_PERIOD = 0.1  # s, wall
-MAP_WIDTH_PX, BAR_PX, SIDE_PX = 760, 48, 12
-SCAN, PLAN, DRIVEN = (80, 80, 255), (90, 230, 250), LAP_COLOURS[0]  # BGR
+PLAN_PX = 760
+SCAN, PLANNED, DRIVEN = "#ff5050", "#fae65a", lap_colour(0)
 
 
 class Film(FilmFile):
@@ -32,14 +35,14 @@ class Film(FilmFile):
 
     def __init__(self, path: Path, ground: Ground, watch: Watch, result: Result):
         super().__init__(path)
+        self.title = ""  # what is going on now
         self._watch, self._result = watch, result
         walls = ground.walls
         low = np.array(walls.origin)
         high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
-        self._house = HouseMap(low - 0.2, high + 0.2, MAP_WIDTH_PX)
+        self._floor = Plan(low - 0.2, high + 0.2, PLAN_PX)
         self._view: Image | None = None
         self._eye: rospy.Subscriber | None = None
-        self._title = ""
         self._records: Records | None = None
         self._number = -1
         self._thread = threading.Thread(target=self._film, daemon=True, name="film")
@@ -47,10 +50,6 @@ class Film(FilmFile):
     def start(self) -> None:
         """Begin to film."""
         self._thread.start()
-
-    def tell(self, title: str) -> None:
-        """What is going on now."""
-        self._title = title
 
     def close(self) -> None:
         """Finish the file, if there is any picture."""
@@ -81,32 +80,34 @@ class Film(FilmFile):
                 self._look()
 
     def _page(self, records: Records) -> np.ndarray:
-        """Camera view and map side by side under a bar of text."""
-        plan = self._plan(records)
-        height = max(plan.shape[0], VIEW_PX[1]) + BAR_PX + SIDE_PX
-        width = VIEW_PX[0] + MAP_WIDTH_PX + 3 * SIDE_PX
-        page = np.full((height + height % 2, width + width % 2, 3), PAPER, np.uint8)
-        left = VIEW_PX[0] + 2 * SIDE_PX
-        page[BAR_PX:BAR_PX + plan.shape[0], left:left + plan.shape[1]] = plan
-        if self._view is not None:
-            view = fit(CvBridge().imgmsg_to_cv2(self._view, "bgr8"))
-            page[BAR_PX:BAR_PX + view.shape[0], SIDE_PX:SIDE_PX + view.shape[1]] = view
-        write_text(page, self._title, (SIDE_PX, 31), 15)
-        touched = len(records.contacts)
-        figures = f"{records.now:6.1f} s   {records.length:6.1f} m   touched {touched}"
-        write_text(page, figures, (left, 31), 14)
-        speed = f"film at {PERIOD * FILM_RATE_HZ:g}x"
-        write_text(page, speed, (page.shape[1] - 120, 31), 12, FAINT)
-        return page
+        view = self._view and fit(CvBridge().imgmsg_to_cv2(self._view, "bgr8"))
+        words = {12: self.title, 660: f"{records.now:6.1f} s   {records.length:6.1f} m   touched"
+                                      f" {len(records.contacts)}"}
+        return side_by_side(view, self._plan(records), words, PERIOD)
 
     def _plan(self, records: Records) -> np.ndarray:
         """The map as it is now, on it what the robot sees, wants and has done."""
-        watch, house, there = self._watch, self._house, self._result.map_in_world
-        plan = house.draw_cells(watch.map, there)
-        house.draw_path(plan, np.array(records.truth).reshape(-1, 4)[:, 1:3], DRIVEN, 2)
-        house.draw_path(plan, transform_points(there, watch.plan), PLAN, 2)
+        watch, plan, there = self._watch, self._floor.copy(), self._result.map_in_world
+        if watch.map is not None:
+            _draw_cells(plan, watch.map, there)
+        plan.line(np.array(records.truth).reshape(-1, 4)[:, 1:3], DRIVEN, 2)
+        plan.line(transform_points(there, watch.plan), PLANNED, 2)
         if watch.scan is not None and records.believed:
             laser = compose(compose(there, records.believed_pose), LASER)
-            house.draw_dots(plan, transform_points(laser, watch.scan.points), SCAN)
-        house.draw_robot(plan, records.true_pose)
-        return plan
+            plan.dots(transform_points(laser, watch.scan.points), SCAN)
+        plan.arrow(records.true_pose, 0.38, CAR)
+        return plan.image
+
+
+def _draw_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
+    """Unknown cells have the floor's colour."""
+    cells = np.full((*grid.cells.shape, 3), bgr(FLOOR), np.uint8)
+    cells[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = bgr(CLEAR)
+    cells[grid.cells >= OCCUPIED_FROM] = bgr(TEXT)
+    # Pixel (0, 0) of the cells has its middle half a cell within the grid.
+    corners = np.array([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)])
+    points = (corners + 0.5) * grid.resolution + grid.origin
+    there = plan.to_px(transform_points(np.asarray(grid_in_world), points)) - 0.5
+    turn = cv2.getAffineTransform(corners.astype(np.float32), there.astype(np.float32))
+    plan.image = cv2.warpAffine(cells, turn, plan.image.shape[1::-1], flags=cv2.INTER_NEAREST,
+                                borderValue=bgr(FLOOR))

@@ -1,7 +1,8 @@
-"""The run from beginning to end: map, start again, localise, visit goals, end all, report."""
+"""`make navigate`: map, start again, localise, visit goals, end all, report."""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,41 +10,60 @@ import cv2
 import numpy as np
 
 from evaluation.house.ground import Ground
+from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.film import Film
-from evaluation.navigation.options import Options, parse_options
 from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
-from evaluation.navigation.report import lines, read_map_frame, write_report
+from evaluation.navigation.report import lines, read_map_frame, summarize
 from evaluation.navigation.score import Result
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
-from evaluation.session.versions import versions
-from evaluation.trial.live import LiveDrive, Outcome, run_live
-from evaluation.trial.program import run_program
+from evaluation.trial.command_line import LARGEST_SEED, Parser
+from evaluation.trial.live import LiveDrive, Outcome
+from evaluation.trial.report import write_json
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 
 RESULTS = ("map.png", "run.mp4", "report.json")
-MAP_FILES = ("map.pgm", "map.yaml")
-
-
-def main(arguments: list[str]) -> int:
-    """Run the command line; returns the exit code."""
-    return run_program("navigate", lambda: run_live(NavigationRun(parse_options(arguments))))
 
 
 class NavigationRun(LiveDrive):
     """One run: who takes part in it and what was found."""
 
     program = "navigate"
+    does = ("Map a house, start again on that map, visit goals in it; all without a screen. Scores"
+            " map, localisation and driving, writes a report.")
+    ends = ("0 all goals reached, nothing touched, map and localisation within their limits, 1 not"
+            " so")
+    usual_out = "out/navigate"
     vehicle = "robot"
-    writes = (*RESULTS, *MAP_FILES)
+    logs = "*simulator.log"
+    writes = (*RESULTS, "map.pgm", "map.yaml")
 
-    def __init__(self, options: Options):
-        super().__init__(options.out, Progress())
-        self.options, self.result = options, Result()
+    @classmethod
+    def add_options(cls, parser: Parser) -> None:
+        parser.add_whole("--goals", 5, "goals to visit, drawn from the seed", variable="GOALS",
+                         least=1)
+        parser.add_whole("--seed", 0, "of noise, goals and the first pose", variable="SEED",
+                         most=LARGEST_SEED)
+        parser.add_pace("simulated seconds a second; below 1 on a slow machine (1)")
+        parser.add_argument("--house", default="house", type=load_house, metavar="NAME",
+                            help="a house of houses/, or a file (house)")
+        parser.add_argument("--map", type=Path, metavar="YAML", help="no mapping round: navigate"
+                            " on this map, which was made by a run with the same house")
+
+    @classmethod
+    def check(cls, options: argparse.Namespace) -> argparse.Namespace:
+        if options.map is not None and not options.map.exists():
+            raise RunError(f"--map {options.map}: no such file; it is a map's NAME.yaml")
+        options.map = options.map and options.map.resolve()
+        return options
+
+    def __init__(self, options: argparse.Namespace):
+        super().__init__(options, Progress())
+        self.result = Result()
         self._ground = Ground(options.house)
         self._check_way_points()
         self._goals = self._ground.draw_goals(options.goals, options.seed)
@@ -56,13 +76,11 @@ class NavigationRun(LiveDrive):
         self._watch: Watch | None = None
 
     def bring_up(self, launched: Launched) -> None:
-        """The master, and who looks on; each part brings up its own nodes."""
-        self.progress.status("starting roscore")
-        launched.start_roscore()
+        """Who looks on; each part brings up its own nodes."""
         self._watch = Watch(launched.master_uri)
         self._watch.start()
         if self.options.video:
-            self.film = Film(self.options.out / "run.mp4", self._ground, self._watch, self.result)
+            self.film = Film(self.out / "run.mp4", self._ground, self._watch, self.result)
             self.film.start()
         self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
 
@@ -75,7 +93,7 @@ class NavigationRun(LiveDrive):
             part = MappingPart(*everybody)
             part.run(self.result)
             part.end()
-            map_file = self.options.out / "map.yaml"
+            map_file = self.out / "map.yaml"
         self._tell(f"{len(self._goals)} goals: map_server, amcl, move_base")
         NavigationPart(*everybody).run(self.result, str(map_file), self._goals)
         faults = self.result.faults
@@ -96,22 +114,18 @@ class NavigationRun(LiveDrive):
     def owned_files(self) -> Sequence[str]:
         return RESULTS if self.options.map else self.writes
 
-    def report(self, outcome: Outcome, log_folder: Path) -> None:
-        """Write map.png and report.json, print the figures and where the files are."""
-        out = self.options.out
-        log = [line for path in sorted(log_folder.glob("*simulator.log"))
-               for line in path.read_text(encoding="utf-8", errors="replace").splitlines()]
-        made_with = {"film": (self.film.codec or None) if self.film else None,
-                     "versions": versions(Path(__file__).parent, log)}
+    def figures(self, outcome: Outcome, log: list[str]) -> dict:
+        return summarize(self.options, outcome, self.result)
+
+    def write(self, report: dict) -> list[str]:
         picture = map_picture(self._ground, self.result, *_titles(self.options, self.result))
-        cv2.imwrite(str(out / "map.png"), picture)
-        write_report(out / "report.json", self.options, outcome, self.result, made_with)
-        self.progress.say("\n" + "\n".join(lines(self.options, self.result)))
-        self.name_files()
+        cv2.imwrite(str(self.out / "map.png"), picture)
+        write_json(report, self.out / "report.json")
+        return lines(self.options, self.result)
 
     def _tell(self, title: str) -> None:
         if self.film is not None:
-            self.film.tell(title)
+            self.film.title = title
 
     def _check_way_points(self) -> None:
         for point in self.options.house.way_points:
@@ -120,7 +134,7 @@ class NavigationRun(LiveDrive):
                                " a wall: change the house file")
 
 
-def _titles(options: Options, result: Result) -> tuple[str, str]:
+def _titles(options: argparse.Namespace, result: Result) -> tuple[str, str]:
     """Headline and figures for the picture."""
     reached = sum(way.reached for way in result.navigation.ways) if result.navigation else 0
     figures = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from collections.abc import Callable
 
@@ -12,7 +13,6 @@ from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver
-from evaluation.navigation.options import Options
 from evaluation.navigation.score import (
     Navigation,
     Pace,
@@ -47,8 +47,8 @@ class Part:
 
     name = ""
 
-    def __init__(self, options: Options, ground: Ground, watch: Watch, launched: Launched,
-                 progress: Progress):
+    def __init__(self, options: argparse.Namespace, ground: Ground, watch: Watch,
+                 launched: Launched, progress: Progress):
         self._options, self._ground, self._watch = options, ground, watch
         self._launched, self._progress = launched, progress
         self._children: list[Child] = []

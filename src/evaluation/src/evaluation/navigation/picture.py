@@ -2,60 +2,65 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
+from evaluation.colours import CAR, FLOOR, TEXT, lap_colour
 from evaluation.house.ground import Ground
-from evaluation.house.house_map import CLEAR, GOAL, MISSED, TRUE_WALL, WALL, HouseMap
 from evaluation.navigation.score import Result
-from evaluation.picture import FAINT, LAP_COLOURS, PAPER, draw_line, write_text
+from evaluation.picture import legend, map_sheet, pixels
+from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
+from nav_algorithms.poses import transform_points
 
-WIDTH_PX, SIDE_PX, HEADER_PX, FOOT_PX = 1400, 40, 130, 76
-PATHS = (("mapping", "driven while mapping", LAP_COLOURS[0]),
-         ("goals", "driven to the goals", LAP_COLOURS[3]))
+CLEAR, TRUE_WALL, GOAL = "#363a42", "#3cbe78", "#fac846"
+OCCUPIED_FROM = 50  # percent
+PATHS = (("mapping", "driven while mapping", lap_colour(0)),
+         ("goals", "driven to the goals", lap_colour(3)))
 
 
 def map_picture(ground: Ground, result: Result, title: str, subtitle: str) -> np.ndarray:
-    """The picture (rows, columns, 3), BGR."""
-    fine = 2  # drawn larger and shrunk, so that letters and curves are smooth
+    """The picture (rows, 1400, 3), BGR."""
     walls = ground.walls
     low = np.array(walls.origin)
     high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
-    house = HouseMap(low - 0.3, high + 0.3, (WIDTH_PX - 2 * SIDE_PX) * fine)
-    plan = house.draw_cells(result.map, result.map_in_world)
-    house.draw_true_walls(plan, walls, fine)
-    for part, _, colour in PATHS:
-        house.draw_path(plan, result.paths.get(part, np.empty((0, 2))), colour, 2 * fine)
+    figure, axes = map_sheet(title, subtitle, low - 0.3, high + 0.3)
+    axes.grid(False)
+    if result.map is not None:
+        _draw_cells(axes, result.map, result.map_in_world)
+    x, y = _edges(walls)
+    middle = walls.resolution / 2
+    axes.contour(x[:-1] + middle, y[:-1] + middle, walls.cells == OCCUPIED, levels=[0.5],
+                 colors=[TRUE_WALL], linewidths=1)
+    axes.plot([], [], color=TRUE_WALL, label="true wall")
+    for part, text, colour in PATHS:
+        axes.plot(*result.paths.get(part, np.empty((0, 2))).T, color=colour, linewidth=2,
+                  label=text)
     ways = result.navigation.ways if result.navigation else []
     for number, way in enumerate(ways, start=1):
-        house.draw_goal(plan, np.array(way.goal), str(number), GOAL if way.reached else MISSED,
-                        fine)
-    rows = house.height_px + (HEADER_PX + FOOT_PX) * fine
-    page = np.full((rows, WIDTH_PX * fine, 3), PAPER, np.uint8)
-    top, left = HEADER_PX * fine, SIDE_PX * fine
-    page[top:top + house.height_px, left:left + house.width_px] = plan
-    write_text(page, title, (left, 62 * fine), 26 * fine)
-    write_text(page, subtitle, (left, 102 * fine), 13 * fine, FAINT)
-    _draw_legend(page, (left, top + house.height_px + 42 * fine), fine)
-    _draw_metre(page, house, (page.shape[1] - left, 62 * fine), fine)
-    return cv2.resize(page, (WIDTH_PX, rows // fine), interpolation=cv2.INTER_AREA)
+        ends = transform_points(np.array(way.goal), np.array([(0.0, 0.0), (0.4, 0.0)]))
+        axes.plot(*ends.T, color=GOAL if way.reached else CAR, linewidth=2, marker="o",
+                  markevery=[0], markersize=12, fillstyle="none")
+        axes.annotate(str(number), ends[0], (10, 8), textcoords="offset points", color=TEXT)
+    for colour, text in ((GOAL, "goal"), (CAR, "not reached")):
+        axes.plot([], [], "o", color=colour, fillstyle="none", label=text)
+    legend(axes)
+    return pixels(figure)
 
 
-def _draw_legend(page: np.ndarray, at_px: tuple[int, int], fine: int) -> None:
-    """What the colours mean, on one line."""
-    x, y = at_px
-    entries = [(WALL, "wall on the map"), (CLEAR, "free on the map"), (TRUE_WALL, "true wall"),
-               *((colour, text) for _, text, colour in PATHS), (GOAL, "goal"),
-               (MISSED, "not reached")]
-    for colour, text in entries:
-        draw_line(page, np.array([(x, y - 5 * fine), (x + 26 * fine, y - 5 * fine)]), colour,
-                  6 * fine)
-        x += 34 * fine
-        x += write_text(page, text, (x, y), 12 * fine, FAINT) + 24 * fine
+def _draw_cells(axes: object, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
+    """Free and occupied cells, turned to where the map lies in the world."""
+    from matplotlib.colors import ListedColormap
+
+    shade = np.zeros(grid.cells.shape)
+    shade[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = 1
+    shade[grid.cells >= OCCUPIED_FROM] = 2
+    corners = np.stack(np.meshgrid(*_edges(grid)), axis=-1)
+    there = transform_points(np.asarray(grid_in_world), corners.reshape(-1, 2))
+    axes.pcolormesh(*there.reshape(corners.shape).transpose(2, 0, 1), shade, vmin=0, vmax=2,
+                    cmap=ListedColormap([FLOOR, CLEAR, TEXT]), rasterized=True)
 
 
-def _draw_metre(page: np.ndarray, house: HouseMap, at_px: tuple[int, int], fine: int) -> None:
-    """A metre that ends at a pixel."""
-    x, y = at_px
-    draw_line(page, np.array([(x - house.px_per_m, y), (x, y)]), FAINT, 2 * fine)
-    write_text(page, "1 m", (x - 24 * fine, y - 10 * fine), 12 * fine, FAINT)
+def _edges(grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of the cells' borders in the grid's frame, m."""
+    rows, columns = grid.cells.shape
+    return (grid.origin[0] + np.arange(columns + 1) * grid.resolution,
+            grid.origin[1] + np.arange(rows + 1) * grid.resolution)

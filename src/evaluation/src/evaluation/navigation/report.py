@@ -1,7 +1,8 @@
-"""report.json, and the table at the end."""
+"""The figures of a run, and the table at its end."""
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 from dataclasses import asdict
@@ -11,7 +12,6 @@ import numpy as np
 
 from evaluation.house.records import Contact
 from evaluation.navigation.driver import Way
-from evaluation.navigation.options import Options
 from evaluation.navigation.score import (
     LEAST_AGREEMENT,
     MOST_ATE,
@@ -23,18 +23,16 @@ from evaluation.navigation.score import (
     Result,
     Seen,
 )
-from evaluation.trial.report import write_json
 from evaluation.trial.table import table
 
 COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
 
 
-def write_report(path: Path, options: Options, outcome: tuple[str, str], result: Result,
-                 made_with: dict) -> None:
+def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Result) -> dict:
     """All figures; lengths in m, times in simulated s but wall_s, angles in degrees."""
     speed = options.house.max_speed
     mapping, navigation = result.mapping, result.navigation
-    values = {
+    return {
         "outcome": outcome[0],
         "why": outcome[1] or None,
         "seed": options.seed,
@@ -47,9 +45,7 @@ def write_report(path: Path, options: Options, outcome: tuple[str, str], result:
         "map_in_world": [round(value, 4) for value in result.map_in_world.tolist()],
         "mapping": _mapping(mapping, speed) if mapping else None,
         "navigation": _navigation(navigation, speed) if navigation else None,
-        **made_with,
     }
-    write_json(values, path)
 
 
 def read_map_frame(path: Path) -> np.ndarray:
@@ -61,7 +57,7 @@ def read_map_frame(path: Path) -> np.ndarray:
     return found if found.shape == (3,) else np.zeros(3)
 
 
-def lines(options: Options, result: Result) -> list[str]:
+def lines(options: argparse.Namespace, result: Result) -> list[str]:
     """The table of goals and what there is to say of map and localisation."""
     found = []
     if result.mapping:

@@ -5,62 +5,42 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib import pyplot
-from matplotlib.axes import Axes
-
-from evaluation.race_trials.results import LEAST_SPEED, MOST_RMS, Lap
+from evaluation.picture import chart
+from evaluation.race_trials.results import Lap
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
-LIMIT_COLOUR, DOTS_PER_INCH = "#c0392b", 110
-PANEL_WIDTH, PANEL_HEIGHT = 6.5, 3.4  # inches
+LIMIT_COLOUR = "#c0392b"
 
 # Label, its value, the limit, which side of it is good.
 ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
-    ("RMS beside the line, cm", lambda lap: lap.rms_lateral * 100, MOST_RMS * 100, "at most"),
-    ("mean speed, m/s", lambda lap: lap.mean_speed, LEAST_SPEED, "at least"),
+    ("RMS beside the line, cm", lambda lap: lap.rms_lateral * 100, Lap.most_rms * 100, "at most"),
+    ("mean speed, m/s", lambda lap: lap.mean_speed, Lap.least_speed, "at least"),
 )
 
 
 def write_chart(laps: Sequence[Lap], path: Path) -> None:
     """A column for each set of laps; a lap that was not closed is a cross."""
     sets = list(dict.fromkeys(lap.set for lap in laps))
-    size = (PANEL_WIDTH * len(sets), PANEL_HEIGHT * len(ROWS))
-    sheet, grid = pyplot.subplots(len(ROWS), len(sets), figsize=size, squeeze=False, sharey="row")
-    for column, name in enumerate(sets):
-        chosen = [lap for lap in laps if lap.set == name]
-        for axes, row in zip(grid[:, column], ROWS, strict=True):
-            _draw(axes, chosen, *row)
-        grid[0, column].set_title(name, fontsize=10)
-        grid[-1, column].set_xlabel("seed", fontsize=9)
-    for axes in grid[:, 0]:  # its row follows
-        axes.set_ylim(bottom=0)
-    grid[0, 0].legend(fontsize=8)
-    sheet.tight_layout()
-    sheet.savefig(path, dpi=DOTS_PER_INCH)
-    pyplot.close(sheet)
+    with chart(path, len(ROWS), len(sets), sharey="row") as grid:
+        for column, name in enumerate(sets):
+            for axes, (label, value, limit, side) in zip(grid[:, column], ROWS, strict=True):
+                _draw(axes, [lap for lap in laps if lap.set == name], value)
+                axes.axhline(limit, color=LIMIT_COLOUR, linewidth=1, label=f"{side} {limit:g}")
+                axes.set_ylabel(label, fontsize=9)
+            grid[0, column].set_title(name, fontsize=10)
+            grid[-1, column].set_xlabel("seed", fontsize=9)
+        for axes in grid[:, 0]:  # its row follows
+            axes.set_ylim(bottom=0)
+        grid[0, 0].legend(fontsize=8)
 
 
-def _draw(
-    axes: Axes, laps: Sequence[Lap], label: str, value: Callable[[Lap], float], limit: float,
-    side: str,
-) -> None:  # fmt: skip
+def _draw(axes: object, laps: Sequence[Lap], value: Callable[[Lap], float]) -> None:
     seeds = sorted({lap.seed for lap in laps})
     for number, follower in enumerate(dict.fromkeys(lap.follower for lap in laps)):
-        colour = COLOURS[number % len(COLOURS)]
         for closed, marker, how in ((True, "o", ""), (False, "x", ", not closed")):
             found = [lap for lap in laps if lap.follower == follower and lap.closed == closed]
             if found:
-                axes.plot(
-                    [seeds.index(lap.seed) for lap in found], [value(lap) for lap in found],
-                    marker, color=colour, label=f"{follower}{how}",
-                )  # fmt: skip
-    axes.axhline(limit, color=LIMIT_COLOUR, linewidth=1, label=f"{side} {limit:g}")
+                axes.plot([seeds.index(lap.seed) for lap in found], [value(lap) for lap in found],
+                          marker, color=COLOURS[number % len(COLOURS)], label=f"{follower}{how}")
     axes.set_xticks(range(len(seeds)), [str(seed) for seed in seeds])
     axes.margins(y=0.1)
-    axes.set_ylabel(label, fontsize=9)
-    axes.tick_params(labelsize=8, length=0)
-    axes.grid(alpha=0.3)

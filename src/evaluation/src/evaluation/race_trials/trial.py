@@ -4,34 +4,27 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from evaluation.laps import lit_drive
-from evaluation.laps.disturbance import Disturbance, draw
+from evaluation.laps.disturbance import Bounds, draw
+from evaluation.laps.lap_drive import from_json, seen, to_json
+from evaluation.laps.lap_trial import LapTrial, Outing
+from evaluation.race_trials.chart import write_chart
 from evaluation.race_trials.path_sheet import write_path_sheet
-from evaluation.race_trials.results import (
-    Lap,
-    lap_from_report,
-    lap_line,
-    summarize,
-    summary_table,
-    to_json,
-)
-from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, Venue, racetrack, random_track
+from evaluation.race_trials.results import Lap, lap_line, summarize, summary_table
+from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, racetrack, random_track
 from evaluation.session.failure import RunError
-from evaluation.session.session import Session
-from evaluation.track import load_track
 from evaluation.trial.command_line import Parser
-from evaluation.trial.program import chart_writer
-from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.protocol import Case
 
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
-STARTUP_LIMIT, LIMIT = 120.0, 1200.0  # s, wall
-ANSWER_LIMIT = 10.0  # s, wall
+BOUNDS = Bounds(sideways=0.2, along=0.2, turn=math.radians(10), camera_noise=(0.01, 0.03),
+                light=(0.7, 1.3))
 
 
 @dataclass(frozen=True)
@@ -43,7 +36,7 @@ class RaceCase(Case):
     follower: str
 
 
-class RaceTrial(Trial):
+class RaceTrial(LapTrial):
     """Laps on the racetrack and on random tracks; the first follower must keep the limits."""
 
     program = "race_trials"
@@ -65,7 +58,6 @@ class RaceTrial(Trial):
         if not options.seeds and not options.tracks:
             raise RunError("--seeds 0 --tracks 0: nothing to drive")
         self._first = options.followers[0]
-        self._write_chart = chart_writer("evaluation.race_trials.chart")  # missing: said at once
 
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
         """Followers take turns."""
@@ -75,29 +67,20 @@ class RaceTrial(Trial):
                                            (RANDOM_TRACKS, options.first_track, options.tracks))
                 for seed, follower in itertools.product(range(first, first + count), followers)]
 
-    def setup(self, session: Session, case: RaceCase) -> None:
-        self._out = out = session.out
-        self._case, self._disturbance = case, draw(case.seed)
-        self._venue = (racetrack() if case.set == RACETRACK else
-                       random_track(case.seed, out / "tracks"))
-        folder = out / "laps" / f"{self._venue.name}-{case.seed}"
-        self._folder = folder / Path(case.follower).stem
-        world = lit_drive.write_world(
-            self._venue.world, self._venue.models, self._disturbance.light, folder)
-        arguments = course_arguments(self._venue, case.seed, self._disturbance, world)
-        self._drive = lit_drive.start(session, [*arguments, "--follower", case.follower],
-                                      self._folder, [folder / "models", self._venue.models])
-
-    def run(self) -> dict:
-        """course_run's report."""
-        case = self._case
-        return self._drive.report(
-            LIMIT, f"{case.follower} on {self._venue.name}, seed {case.seed}")
+    def outing(self, out: Path, case: RaceCase) -> Outing:
+        venue = self._venue = (racetrack() if case.set == RACETRACK else
+                               random_track(case.seed, out / "tracks"))
+        self._out, folder = out, out / "laps" / f"{venue.name}-{case.seed}"
+        return Outing(f"{case.follower} on {venue.name}, seed {case.seed}", "race", case.follower,
+                      venue.track, venue.world, venue.models, folder,
+                      folder / Path(case.follower).stem, draw(case.seed, BOUNDS), LONGEST_LAP)
 
     def score(self, record: dict) -> Lap:
-        return lap_from_report(
-            record, self._venue, self._case.seed, self._disturbance,
-            self._folder.relative_to(self._out))
+        case, outing = self._case, self._outing
+        return Lap(**seen(record, case.seed, outing.disturbance), follower=record["follower"],
+                   set=case.set, track=self._venue.name,
+                   folder=str(outing.out.relative_to(self._out)),
+                   time=record["laps"][0]["time_s"] if record["laps"] else None)
 
     def passed(self, results: Sequence[Lap]) -> bool:
         return all(lap.within_limits for lap in results if lap.follower == self._first)
@@ -109,25 +92,13 @@ class RaceTrial(Trial):
         return summary_table(summarize(results))
 
     def values(self, results: Sequence[Lap]) -> dict:
-        return to_json(results)
+        return to_json(Lap, "laps", results, summaries=[asdict(s) for s in summarize(results)])
 
     def from_values(self, values: dict) -> list[Lap]:
-        kept = [{name: each[name] for name in Lap.__dataclass_fields__} for each in values["laps"]]
-        return [Lap(**{**each, "disturbance": Disturbance(**each["disturbance"])}) for each in kept]
+        return [from_json(Lap, each) for each in values["laps"]]
 
     def pictures(self, results: Sequence[Lap], out: Path) -> list[str]:
-        self._write_chart(results, out / "trials.png")
+        write_chart(results, out / "trials.png")
         sheets = [write_path_sheet([lap for lap in results if lap.follower == follower], out)
                   for follower in dict.fromkeys(lap.follower for lap in results)]
         return ["trials.png", *(sheet.name for sheet in sheets)]
-
-
-def course_arguments(venue: Venue, seed: int, disturbance: Disturbance, world: Path) -> list[str]:
-    """Those of course_run, but for follower and results."""
-    start = disturbance.start(load_track(venue.track))
-    return [
-        "--course", "race", "--track", str(venue.track), "--fast", "--no-video",
-        "--seed", str(seed), "--duration", f"{LONGEST_LAP:g}",
-        "--startup-timeout", f"{STARTUP_LIMIT:g}",
-        *lit_drive.launch_arguments(world, start, disturbance.camera_noise, ANSWER_LIMIT),
-    ]  # fmt: skip

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import importlib
-import math
 import os
 import re
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package, read_keys
+from evaluation.session.resources import find_package, load_record, located
 
 
 @dataclass(frozen=True)
@@ -64,35 +62,9 @@ class Course:
 
     def track_path(self) -> Path:
         """Where the track file is."""
-        package, _, rest = self.track.removeprefix("package://").partition("/")
-        return find_package(package) / rest if self.track.startswith("package://") else Path(
-            self.track)
+        return located(self.track)
 
 
 def load_course(name: str) -> Course:
     """Course `name` of courses/, or the file of that path; RunError names file and key."""
-    folder = find_package("evaluation") / "courses"
-    path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
-    if not name.endswith(".yaml") and not path.exists():
-        known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
-        raise RunError(f"no course {name!r} (--course); there are: {known}")
-    return _checked(path, read_keys(path, [field.name for field in fields(Course)]))
-
-
-def _checked(path: Path, values: dict) -> Course:
-    expected = {field.name: field.type for field in fields(Course)}
-    for key, kind in expected.items():
-        if kind == "float":
-            fits = type(values[key]) in (int, float) and 0 <= values[key] < math.inf
-        elif kind == "str":
-            fits = isinstance(values[key], str)
-        else:
-            fits = isinstance(values[key], list) and all(isinstance(v, str) for v in values[key])
-        if not fits or (key == "launch" and len(values[key]) != 2):
-            raise RunError(f"{path}: {key}: must be {_WANTED[kind]}, is {values[key]!r}")
-    return Course(**{key: tuple(value) if isinstance(value, list) else value
-                     for key, value in values.items()})
-
-
-_WANTED = {"float": "a number, 0 or more", "str": "a text", "tuple[str, ...]": "a list of topics",
-           "tuple[str, str]": "[package, file]"}
+    return load_record(Course, name, "courses")

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
 import re
 import time
 from collections import defaultdict
 from dataclasses import dataclass
-from pathlib import Path
 
-TICK = 1.0 / os.sysconf("SC_CLK_TCK")  # s, what /proc counts in
-PAGE = os.sysconf("SC_PAGE_SIZE")  # bytes
+import psutil
+
 NODE_NAME = re.compile(r"\b__name:=(\S+)")
 PROGRAM = re.compile(r"(rosmaster|roscore|roslaunch|bench\.probes\.\w+)")
 
 
 @dataclass(frozen=True)
 class Process:
-    """One process as /proc shows it now."""
+    """One process as it is now."""
 
     pid: int
     name: str  # of the ROS node, or of the program; a nameless child has its parent's
@@ -27,17 +26,14 @@ class Process:
 
 def processes(root: int | None = None) -> list[Process]:
     """All processes below `root` (this one), without it."""
-    table = _table()
-    below: dict[int, list[int]] = defaultdict(list)
-    for pid, (parent, *_) in table.items():
-        below[parent].append(pid)
-    found, waiting = [], [(root or os.getpid(), "other")]
-    while waiting:
-        parent, parent_name = waiting.pop()
-        for pid in below[parent]:
-            name = process_name(_command_line(pid), parent_name)
-            found.append(Process(pid, name, *table[pid][1:]))
-            waiting.append((pid, name))
+    found: list[Process] = []
+    names: dict[int, str] = {}
+    for each in psutil.Process(root).children(recursive=True):  # parents come first
+        with contextlib.suppress(psutil.NoSuchProcess), each.oneshot():
+            parent = names.get(each.ppid(), "other")
+            name = names[each.pid] = process_name(" ".join(each.cmdline()), parent)
+            used = each.cpu_times()
+            found.append(Process(each.pid, name, used.user + used.system, each.memory_info().rss))
     return found
 
 
@@ -74,27 +70,3 @@ class CpuMeter:
 def memory(name: str) -> int:
     """Bytes in RAM of all processes of that name."""
     return sum(process.memory for process in processes() if process.name == name)
-
-
-def _table() -> dict[int, tuple[int, float, int]]:
-    """Parent, s of processor time and bytes of memory of every process of the machine."""
-    table = {}
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        try:
-            stat = Path("/proc", entry, "stat").read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            continue  # gone by now
-        columns = stat.rpartition(")")[2].split()  # from the third column of proc(5) on
-        ticks = int(columns[11]) + int(columns[12])
-        table[int(entry)] = (int(columns[1]), ticks * TICK, int(columns[21]) * PAGE)
-    return table
-
-
-def _command_line(pid: int) -> str:
-    try:
-        raw = Path("/proc", str(pid), "cmdline").read_bytes()
-    except OSError:
-        return ""
-    return raw.replace(b"\0", b" ").decode(errors="replace")

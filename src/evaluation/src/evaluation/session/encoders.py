@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import signal
 import subprocess
 from pathlib import Path
 
@@ -29,43 +28,12 @@ class FfmpegEncoder:
     codec = "H.264 by ffmpeg"
 
     def __init__(self, path: Path, width: int, height: int, rate_hz: int):
-        command = [
-            "ffmpeg",
-            "-loglevel",
-            "error",
-            "-y",
-            "-f",
-            "rawvideo",
-            "-pixel_format",
-            "bgr24",
-            "-video_size",
-            f"{width}x{height}",
-            "-framerate",
-            str(rate_hz),
-            "-i",
-            "-",
-            "-c:v",
-            "libx264",
-            "-preset",
-            "ultrafast",
-            "-crf",
-            "24",
-            "-threads",
-            "1",
-            "-pix_fmt",
-            "yuv420p",
-            "-movflags",
-            "+faststart",
-            str(path),
-        ]
+        words = (f"nice -n 10 ffmpeg -loglevel error -y -f rawvideo -pixel_format bgr24 -video_size"
+                 f" {width}x{height} -framerate {rate_hz} -i - -c:v libx264 -preset ultrafast"
+                 " -crf 24 -threads 1 -pix_fmt yuv420p -movflags +faststart")
         self._process = subprocess.Popen(
-            ["nice", "-n", "10", *command],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-            preexec_fn=_end_with_parent,
-        )
+            [*words.split(), str(path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL, start_new_session=True, preexec_fn=end_with_parent)
 
     @property
     def process_id(self) -> int:
@@ -99,7 +67,3 @@ class OpenCvEncoder:
 
     def close(self) -> None:
         self._writer.release()
-
-
-def _end_with_parent() -> None:
-    end_with_parent(signal.SIGTERM)

@@ -1,13 +1,21 @@
-"""The file of a film: it begins with the first page and takes no more once it is ended."""
+"""The films: files that begin with the first page and take no more once they are ended."""
 
 from __future__ import annotations
 
 import threading
+import time
+from abc import abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
 
 import cv2
 import numpy as np
+import rospy
+from cv_bridge import CvBridge
+from sensor_msgs.msg import Image
 
+from evaluation.colours import FAINT, PAPER, bgr
+from evaluation.plan import write_text
 from evaluation.session.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
 
 FILM_RATE_HZ = 10
@@ -15,6 +23,9 @@ FILM_RATE_HZ = 10
 FILM_PERIOD = 0.2
 FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
 VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
+BAR_PX = 44  # of text, above
+LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
+LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
 
 
 class FilmFile:
@@ -30,6 +41,9 @@ class FilmFile:
     def process_id(self) -> int | None:
         """Of the encoder, if it is a process."""
         return getattr(self._writer, "process_id", None)
+
+    def start(self) -> None:
+        """Begin to film."""
 
     def stop(self) -> None:
         """Take no more pictures."""
@@ -54,6 +68,63 @@ class FilmFile:
                 self.codec = self._writer.codec
             for _ in range(times):
                 self._writer.write(page)
+
+
+class CameraFilm(FilmFile):
+    """Adds one picture of a topic in `period` (s, simulated); works in that topic's thread.
+
+    The callback waits until the next picture is nearly due, so the rest of the 190 MB a simulated
+    second that a camera sends is dropped by the publisher's queue and never copied here.
+    """
+
+    def __init__(self, path: Path, topic: str, period: float):
+        super().__init__(path)
+        self._topic, self._period = topic, period
+        self._last: tuple[int, float] | None = None  # the last picture's number and s, wall
+
+    @abstractmethod
+    def page(self, view: np.ndarray, now: float) -> np.ndarray:
+        """The film's picture, BGR, with what the camera sees (fits into VIEW_PX) at a time, s."""
+
+    def start(self) -> None:
+        """Begin to film."""
+        # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
+        rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
+
+    def take(self, message: Image) -> None:
+        """Add a picture if one is due, and wait until the next one nearly is."""
+        began, now = time.monotonic(), message.header.stamp.to_sec()
+        number = int(now / self._period + 1e-6)  # stamps are rounded
+        last, last_began = self._last or (number - 1, began)
+        if self._ended.is_set() or number == last:
+            return
+        self._last = number, began
+        view = fit(CvBridge().imgmsg_to_cv2(message))
+        if message.encoding == "rgb8":
+            view = cv2.cvtColor(view, cv2.COLOR_RGB2BGR)
+        page = self.page(view, now)
+        # The film keeps simulated time even where pictures are missing.
+        self._add(page, min(max(number - last, 1), LONGEST_GAP))
+        pace = (began - last_began) / max(number - last, 1)  # s, wall, from one picture to the next
+        due = began + 0.8 * pace
+        self._ended.wait(min(max(0.0, due - time.monotonic()), LONGEST_WAIT))
+
+
+def side_by_side(view: np.ndarray | None, plan: np.ndarray, words: Mapping[int, str],
+                 period: float) -> np.ndarray:
+    """A film's page: camera view and plan, BGR, under a bar of words, by where they begin, px."""
+    height = max(VIEW_PX[1], plan.shape[0]) + BAR_PX
+    page = np.full((height + height % 2, VIEW_PX[0] + plan.shape[1], 3), bgr(PAPER), np.uint8)
+    for part, left, width in ((view, 0, VIEW_PX[0]), (plan, VIEW_PX[0], plan.shape[1])):
+        if part is not None:
+            top = BAR_PX + (height - BAR_PX - part.shape[0]) // 2
+            left += (width - part.shape[1]) // 2
+            page[top:top + part.shape[0], left:left + part.shape[1]] = part
+    for left, text in words.items():
+        write_text(page, text, (left, 29), 14)
+    speed = f"film at {period * FILM_RATE_HZ:g}x"
+    write_text(page, speed, (page.shape[1] - 110, 29), 12, bgr(FAINT))
+    return page
 
 
 def fit(image: np.ndarray) -> np.ndarray:

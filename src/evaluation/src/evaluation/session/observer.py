@@ -9,7 +9,7 @@ import queue
 import threading
 import time
 import xmlrpc.client
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Set
 
 import rosgraph
 import rospy
@@ -117,11 +117,11 @@ class Observer:
             reply = self._asker.call()
             if reply is None:
                 continue
-            started = {c.name for c in reply.controller if c.state in ("running", "waiting")}
-            missing = sorted(self._course.controller_names() - started)
-            if not missing:
+            missing = missing_controller({each.name: each.state for each in reply.controller},
+                                         self._course.controller_names())
+            if missing is None:
                 return
-            self.missing = f"controller {missing[0]} (spawned and started)"
+            self.missing = missing
 
     def _wait_for_connections(self) -> None:
         me, course = rospy.get_name(), self._course
@@ -154,6 +154,18 @@ class Observer:
 
     def _put(self, stamp: rospy.Time, pose: Pose) -> None:
         self._samples.put((time.monotonic(), _to_sample(stamp, pose)))
+
+
+def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | None:
+    """Which controller a run in lockstep still waits for, in words; None: none.
+
+    Those that are loaded have to be started, too: one that starts later drives otherwise.
+    """
+    started = {name for name, state in states.items() if state in ("running", "waiting")}
+    missing = sorted((wanted | states.keys()) - started)
+    if missing or not states:
+        return f"controller {(missing or ['of the car'])[0]} (spawned and started)"
+    return None
 
 
 def missing_connection(found: Connections, me: str, course: Course) -> str | None:

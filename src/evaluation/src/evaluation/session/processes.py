@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import psutil
+
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # <linux/prctl.h>
 INTERRUPT_TIME, TERMINATE_TIME, KILL_TIME = 1.2, 0.4, 0.6  # s; all within the 3 s of a Ctrl-C
 _TERMINAL_CODES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07\n]*\x07?")  # colours, window titles
@@ -65,7 +67,7 @@ class Family:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_end_with_parent,
+                preexec_fn=end_with_parent,
             )
         self._children.append(Child(name, process, log))
         return self._children[-1]
@@ -120,13 +122,17 @@ class Family:
         """Process ids of all descendants; collects those that ended."""
         own = {child.process.pid: child.process for child in self._children}
         living = []
-        for pid, state in descendants(os.getpid()):
-            if state != "Z":
-                living.append(pid)
-            elif pid in own:
-                own[pid].poll()
+        for each in psutil.Process().children(recursive=True):
+            try:
+                ended = each.status() == psutil.STATUS_ZOMBIE
+            except psutil.NoSuchProcess:
+                continue
+            if not ended:
+                living.append(each.pid)
+            elif each.pid in own:
+                own[each.pid].poll()
             else:
-                _collect(pid)
+                _collect(each.pid)
         return living
 
 
@@ -140,13 +146,9 @@ def read_log(path: Path) -> list[str]:
     return strip_terminal_codes(path.read_text(encoding="utf-8", errors="replace")).splitlines()
 
 
-def end_with_parent(number: int) -> None:
-    """Between fork and exec: have the kernel send this signal when our parent dies."""
-    _libc.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
-
-
-def _end_with_parent() -> None:
-    end_with_parent(signal.SIGTERM)
+def end_with_parent() -> None:
+    """Between fork and exec: have the kernel ask us to end when our parent dies."""
+    _libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
 
 
 def _collect(pid: int) -> None:
@@ -154,23 +156,3 @@ def _collect(pid: int) -> None:
         os.waitpid(pid, os.WNOHANG)
     except ChildProcessError:
         return  # not ours yet: its own parent has still to be collected
-
-
-def descendants(root: int) -> list[tuple[int, str]]:
-    """Process id and state of everything below a process."""
-    children: dict[int, list[tuple[int, str]]] = {}
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        try:
-            stat = Path("/proc", entry, "stat").read_text(encoding="utf-8", errors="replace")
-        except OSError:
-            continue
-        state, parent = stat.rpartition(")")[2].split()[:2]
-        children.setdefault(int(parent), []).append((int(entry), state))
-    found, waiting = [], [root]
-    while waiting:
-        below = children.get(waiting.pop(), [])
-        found += below
-        waiting += [pid for pid, _ in below]
-    return found

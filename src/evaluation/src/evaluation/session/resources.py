@@ -1,9 +1,12 @@
-"""Files of packages, and YAML files with known keys."""
+"""Files of packages, and YAML files that hold the fields of a dataclass."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import rospkg
 import yaml
@@ -17,6 +20,60 @@ def find_package(name: str) -> Path:
         return Path(rospkg.RosPack().get_path(name))
     except rospkg.ResourceNotFound as error:
         raise RunError(f"package {name} not found: source devel/setup.bash") from error
+
+
+def located(text: str) -> Path:
+    """The path that a file names: as it is, or package://PACKAGE/PATH."""
+    package, _, rest = text.removeprefix("package://").partition("/")
+    return find_package(package) / rest if text.startswith("package://") else Path(text)
+
+
+def load_record(kind: type, name: str, folder: str) -> Any:
+    """One of `kind`, a dataclass: record `name` of this package's folder, or the file of that path.
+
+    Fields have one of the types in RULES. RunError names file and key.
+    """
+    there = find_package("evaluation") / folder
+    path = Path(name) if name.endswith(".yaml") else there / f"{name}.yaml"
+    if not name.endswith(".yaml") and not path.exists():
+        known, what = ", ".join(sorted(found.stem for found in there.glob("*.yaml"))), folder[:-1]
+        raise RunError(f"no {what} {name!r} (--{what}); there are: {known}")
+    values = read_keys(path, [field.name for field in fields(kind)])
+    for field in fields(kind):
+        wanted, fits = RULES[field.type]
+        if not fits(values[field.name]):
+            raise RunError(f"{path}: {field.name}: must be {wanted}, is {values[field.name]!r}")
+    return kind(**{key: _frozen(value) for key, value in values.items()})
+
+
+def _frozen(value: object) -> object:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+def _is_number(value: object, least: float = -math.inf) -> bool:
+    return type(value) in (int, float) and least <= value < math.inf
+
+
+def _are(value: object, fits: Callable[[object], bool], count: int | None = None) -> bool:
+    """A list of so many (None: any number) that fit."""
+    return isinstance(value, list) and count in (None, len(value)) and all(map(fits, value))
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+Length = float  # of which 0 makes no sense
+RULES: dict[str, tuple[str, Callable[[object], bool]]] = {
+    "str": ("a text", _is_text),
+    "float": ("a number, 0 or more", lambda value: _is_number(value, 0.0)),
+    "Length": ("a number above 0", lambda value: _is_number(value, 0.0) and value > 0),
+    "tuple[str, str]": ("[package, file]", lambda value: _are(value, _is_text, 2)),
+    "tuple[str, ...]": ("a list of topics", lambda value: _are(value, _is_text)),
+    "tuple[float, float, float]": ("[x, y, yaw]", lambda value: _are(value, _is_number, 3)),
+    "tuple[tuple[float, float], ...]": ("a list of [x, y]", lambda value: bool(value) and _are(
+        value, lambda point: _are(point, _is_number, 2))),
+}
 
 
 def read_keys(path: Path, expected: Sequence[str]) -> dict:

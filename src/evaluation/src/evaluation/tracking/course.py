@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from evaluation.session.course_file import Course
 
 PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
 PAGE, PID = TRACKERS = ("visual_tracker.py", "visual_tracker_pid.py")
-CONTROLLER = "car_controller"
 
-
-@dataclass(frozen=True)
-class TrackingCourse(Course):
-    """Commands go to /cmd_vel by a remap, so that their topic does not name the controller."""
-
-    def controller_names(self) -> set[str]:
-        return {CONTROLLER}
-
-
-COURSE = TrackingCourse(
+COURSE = Course(
     launch=(PACKAGE, LAUNCH), follower_package=PACKAGE,
     followers="scripts/visual_tracker*.py", follower=PID, drives_by="cmd_vel",
     robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",

@@ -2,67 +2,69 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
-import rospy
-from cv_bridge import CvBridge
-from sensor_msgs.msg import Image
+from ai_robot_tracking.scenes.scene import HALF_ROOM, SHADE_RADIUS, Scene
+from ai_robot_tracking.scenes.world_file import RADIUS
 
-from evaluation.picture import FAINT, PAPER, write_text
-from evaluation.session.film import (
-    FAST_FILM_PERIOD,
-    FILM_PERIOD,
-    FILM_RATE_HZ,
-    VIEW_PX,
-    FilmFile,
-    fit,
+from evaluation.colours import BAD, CAR, GOOD, HIDDEN
+from evaluation.plan import Plan
+from evaluation.session.film import CameraFilm, side_by_side
+from evaluation.tracking.picture import (
+    FOLLOWER,
+    MARGIN,
+    SHADE,
+    TARGET_WAY,
+    WALL,
+    WALLS,
+    target_way,
 )
-from evaluation.tracking.room import Room
-from evaluation.tracking.scene import Scene
-from evaluation.tracking.score import TrackScorer
+from evaluation.tracking.score import BAND, TrackScorer
 
-ROOM_PX, BAR_PX, GAP_PX = 480, 44, 8
+PLAN_PX = 480
 
 
-class Film(FilmFile):
-    """Adds one of the tracker's pictures in a period of simulated time."""
+class TrackFilm(CameraFilm):
+    """Of one drive after the cylinder."""
 
-    def __init__(self, path: Path, topic: str, scene: Scene, drive: TrackScorer, fast: bool):
-        super().__init__(path)
-        self._topic, self._drive = topic, drive
-        self._period = FAST_FILM_PERIOD / 2 if fast else FILM_PERIOD  # s, simulated
-        self._room = Room(scene, ROOM_PX)
-        self._number = -1
+    def __init__(self, path: Path, topic: str, scene: Scene, drive: TrackScorer, period: float):
+        super().__init__(path, topic, period)
+        self._drive = drive
+        edge = HALF_ROOM + MARGIN
+        self._floor = Plan((-edge, -edge), (edge, edge), PLAN_PX)
+        self._floor.grid(1.0)
+        self._floor.line(WALLS, WALL, 4)
+        for shade in scene.shades:
+            self._floor.disc(shade, SHADE_RADIUS, SHADE)
+        for thing in scene.lookalikes:
+            red, green, blue = (round(255 * part) for part in thing.colour)
+            self._floor.disc(thing.place[:2], 0.25, f"#{red:02x}{green:02x}{blue:02x}")
 
-    def start(self) -> None:
-        """Begin to film."""
-        rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
-
-    def take(self, message: Image) -> None:
-        """Add a picture if one is due."""
-        now = message.header.stamp.to_sec()
-        number = int(now / self._period + 1e-6)
-        if self._ended.is_set() or number == self._number or not self._drive.samples:
-            return
-        self._number = number
-        self._add(self._page(CvBridge().imgmsg_to_cv2(message, "bgr8"), now))
-
-    def _page(self, picture: np.ndarray, now: float) -> np.ndarray:
-        """The two side by side under a bar of figures."""
-        view, drive = fit(picture), self._drive
-        height = max(ROOM_PX, VIEW_PX[1]) + BAR_PX + GAP_PX
-        page = np.full((height, VIEW_PX[0] + ROOM_PX + 2 * GAP_PX, 3), PAPER, np.uint8)
-        left = (VIEW_PX[0] - view.shape[1]) // 2
-        top = BAR_PX + (ROOM_PX - view.shape[0]) // 2
-        page[top:top + view.shape[0], left:left + view.shape[1]] = view
-        plan = self._room.draw(drive.samples[:], drive.errors[:], drive.task)
-        page[BAR_PX:BAR_PX + ROOM_PX, VIEW_PX[0] + GAP_PX:VIEW_PX[0] + GAP_PX + ROOM_PX] = plan
-        write_text(page, f"simulated time {now:5.1f} s", (16, 29), 14)
+    def page(self, view: np.ndarray, now: float) -> np.ndarray:
+        drive = self._drive
+        if not drive.samples:
+            return side_by_side(view, self._floor.image, {}, self._period)
         error = drive.errors[-1]
         text = (f"{error:5.2f} m to go" if drive.task.wanted is None
                 else f"beside {drive.task.wanted:g} m: {error * 100:+5.1f} cm")
-        write_text(page, f"{drive.distance:5.2f} m driven   {text}", (270, 29), 14)
-        speed = f"film at {self._period * FILM_RATE_HZ:g}x"
-        write_text(page, speed, (page.shape[1] - 110, 29), 12, FAINT)
-        return page
+        words = {16: f"simulated time {now:5.1f} s",
+                 270: f"{drive.distance:5.2f} m driven   {text}"}
+        return side_by_side(view, self._plan(), words, self._period)
+
+    def _plan(self) -> np.ndarray:
+        """The drive so far: green where the distance was kept, else orange."""
+        plan, drive = self._floor.copy(), self._drive
+        samples, errors = drive.samples[:], drive.errors[:]
+        now = samples[-1].time
+        plan.line(target_way(drive.task, samples), TARGET_WAY, 2)
+        near = np.abs(errors) <= BAND
+        borders = [0, *(np.flatnonzero(np.diff(near)) + 1), len(near)]
+        for begin, end in itertools.pairwise(borders):
+            part = samples[max(begin - 1, 0):end]
+            plan.line([(each.x, each.y) for each in part], GOOD if near[begin] else BAD, 2)
+        hidden = any(begin <= now < begin + 3 for begin in drive.task.hidden)
+        plan.disc(drive.task.target(now), RADIUS, HIDDEN if hidden else CAR)
+        plan.arrow((samples[-1].x, samples[-1].y, samples[-1].yaw), 0.4, FOLLOWER)
+        return plan.image

@@ -13,10 +13,10 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from ai_robot_tracking.scenes.scene import FALL_TIME, HIDDEN_TIME
+from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
-from evaluation.tracking.scene import FALL_TIME, HIDDEN_TIME
-from evaluation.tracking.sdf import RADIUS
 
 BAND = 0.3            # m beside the wanted distance
 APPROACH_TIME = 20.0  # s

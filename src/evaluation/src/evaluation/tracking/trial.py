@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from ai_robot_tracking.scenes.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
+
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.tracking.course import PAGE, PID
-from evaluation.tracking.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
 from evaluation.tracking.score import FIND_TIME
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial

@@ -61,7 +61,7 @@ def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
             [sys.executable, "-P", "-m", "evaluation.trial.case_process", folder],
             env={**os.environ, "ROS_HOSTNAME": "localhost"}, stdin=subprocess.DEVNULL,
             stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
-            preexec_fn=_end_with_worker)
+            preexec_fn=end_with_parent)
     ended = os.pidfd_open(process.pid)
     try:
         while not select.select([ended], [], [], LOOK_PERIOD)[0]:
@@ -73,10 +73,6 @@ def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
     finally:
         os.close(ended)
     return process.wait()
-
-
-def _end_with_worker() -> None:
-    end_with_parent(signal.SIGTERM)
 
 
 def _wanted_from(worker: Worker) -> Callable[[], bool]:

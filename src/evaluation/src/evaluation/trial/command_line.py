@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 
 from evaluation.session.failure import RunError
 
 MOST = 999_999          # of what is counted or seeds something
+LARGEST_SEED = 999_999_999
 LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine keeps up with more
 
 
@@ -25,16 +27,19 @@ class Parser(argparse.ArgumentParser):
         program = self.prog.split()[0]  # a verb follows
         raise RunError(f"{message} (see: rosrun {self._package} {program} --help)")
 
-    def add_whole(self, flag: str, default: int, text: str, *, variable: str = "",
+    def add_whole(self, flag: str, default: int | None, text: str, *, variable: str = "",
                   least: int = 0, most: int = MOST) -> None:
         """An option that takes a whole number; `variable` is what the Makefile calls it."""
         name = f"{flag} ({variable}=)" if variable else flag
-        self.add_argument(flag, type=partial(whole, name, least=least, most=most), default=default,
-                          metavar="N", help=f"{text} ({default})")
+        self.add_argument(
+            flag, type=partial(whole, name, least=least, most=most), default=default, metavar="N",
+            help=f"{text} ({default or 0})")
 
     def add_pace(self, text: str) -> None:
         """--real-time-factor, simulated seconds a second."""
-        self.add_argument("--real-time-factor", type=pace, default=1.0, metavar="X", help=text)
+        self.add_argument(
+            "--real-time-factor", metavar="X", default=1.0, help=text, type=partial(
+                number, "--real-time-factor (PACE=)", least=LEAST_PACE, most=MOST_PACE))
 
     def add_out(self, default: str, text: str) -> None:
         """--out, a folder."""
@@ -56,6 +61,9 @@ def number(name: str, text: str, least: float, most: float, what: str = "a numbe
     return float(text)
 
 
-def pace(text: str) -> float:
-    """Simulated seconds a second, or RunError."""
-    return number("--real-time-factor (PACE=)", text, LEAST_PACE, MOST_PACE)
+def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
+    """The name, or RunError that says which there are; `variable` is what the Makefile calls it."""
+    known = tuple(names)
+    if name not in known:
+        raise RunError(f"no {kind} {name!r} ({variable}=); there are: {', '.join(known) or 'none'}")
+    return name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -11,9 +12,12 @@ from typing import ClassVar
 from evaluation.session.failure import RunError
 from evaluation.session.film import FilmFile
 from evaluation.session.launch import Launched
+from evaluation.session.processes import read_log
 from evaluation.session.session import Session
 from evaluation.session.status_line import StatusLine
-from evaluation.trial.program import NOT_PASSED, PASSED
+from evaluation.session.versions import versions
+from evaluation.trial.command_line import Parser
+from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 
 Outcome = tuple[str, str]  # a word, and why
 
@@ -22,13 +26,51 @@ class LiveDrive(ABC):
     """One drive; its report is also written of a drive that ended early."""
 
     program: ClassVar[str]
+    does: ClassVar[str]  # for --help
+    ends: ClassVar[str]  # what the exit codes mean
+    usual_out: ClassVar[str]  # where results go, for --help
     writes: ClassVar[Sequence[str]]  # files in `out`
+    timeouts: ClassVar[tuple[int, int]] = (90, 30)  # s, wall: until it begins; of standing time
     vehicle: ClassVar[str] = "car"
+    logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
     driver = ""  # the script that drives, for messages
 
-    def __init__(self, out: Path, progress: StatusLine):
-        self.out, self.progress = out, progress
+    def __init__(self, options: argparse.Namespace, progress: StatusLine | None = None):
+        self.options, self.out = options, options.out
+        self.progress = progress or StatusLine()
         self.film: FilmFile | None = None
+
+    # --- what is asked for
+
+    @classmethod
+    @abstractmethod
+    def add_options(cls, parser: Parser) -> None:
+        """The options beside those that every drive has."""
+
+    @classmethod
+    def check(cls, options: argparse.Namespace) -> argparse.Namespace:
+        """Completed; RunError for options that do not fit together."""
+        return options
+
+    @classmethod
+    def parse(cls, arguments: Sequence[str]) -> argparse.Namespace:
+        """Options from the command line, or RunError."""
+        parser = Parser(prog=f"{cls.program}.py", description=cls.does,
+                        epilog=f"Exit code: {cls.ends}, 2 could not run.")
+        cls.add_options(parser)
+        add, (startup, stuck) = parser.add_argument, cls.timeouts
+        add("--out", type=Path, metavar="DIR",
+            help=f"where {', '.join(cls.writes)} and log/ go ({cls.usual_out})")
+        add("--no-video", dest="video", action="store_false", help="write no run.mp4")
+        add("--startup-timeout", type=float, default=float(startup), metavar="S",
+            help=f"wall seconds for what is started to be there ({startup})")
+        add("--stuck-timeout", type=float, default=float(stuck), metavar="S",
+            help=f"wall seconds that simulated time may stand still ({stuck})")
+        options = cls.check(parser.parse_args(arguments))
+        options.out = (options.out or Path(cls.usual_out)).resolve()
+        return options
+
+    # --- the drive
 
     @abstractmethod
     def bring_up(self, launched: Launched) -> None:
@@ -42,14 +84,20 @@ class LiveDrive(ABC):
     def end(self) -> None:
         """Count what is still to be counted, while all still runs; then look no more."""
 
+    # --- what was found
+
     @property
     @abstractmethod
     def was_seen(self) -> bool:
         """Whether there is something to report."""
 
     @abstractmethod
-    def report(self, outcome: Outcome, log_folder: Path) -> None:
-        """Write and print what was found."""
+    def figures(self, outcome: Outcome, log: list[str]) -> dict:
+        """For report.json; `log` is what the simulator said."""
+
+    @abstractmethod
+    def write(self, report: dict) -> list[str]:
+        """Write pictures and report.json; returns the summary for a person."""
 
     @abstractmethod
     def faults(self, outcome: Outcome) -> list[str]:
@@ -59,13 +107,10 @@ class LiveDrive(ABC):
         """Files of `out` that a run before may have left, and that are not to be kept."""
         return self.writes
 
-    def name_files(self) -> None:
-        """Say where the files are."""
-        here = Path.cwd()
-        made = [self.out / name for name in self.writes if (self.out / name).exists()]
-        shown = [str(path.relative_to(here) if path.is_relative_to(here) else path)
-                 for path in made]
-        self.progress.say(f"files: {'  '.join(shown)}")
+
+def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
+    """Run the command line of such a drive; returns the exit code."""
+    return run_program(kind.program, lambda: run_live(kind(kind.parse(arguments))))
 
 
 def run_live(drive: LiveDrive) -> int:
@@ -75,6 +120,8 @@ def run_live(drive: LiveDrive) -> int:
     with Session(drive.out) as session:
         launched = session.launched(drive.vehicle, drive.driver)
         try:
+            drive.progress.status("starting roscore")
+            launched.start_roscore()
             drive.bring_up(launched)
             outcome = drive.watch(launched)
         except (KeyboardInterrupt, RunError) as ended:
@@ -87,13 +134,25 @@ def run_live(drive: LiveDrive) -> int:
         if drive.film is not None:
             drive.film.close()
     if drive.was_seen:
-        drive.report(outcome, launched.log_folder)
+        _report(drive, outcome, launched.log_folder)
     if early is not None:
         raise early
     faults = drive.faults(outcome)
     for fault in filter(None, faults):
         print(f"{drive.program}: {fault}", file=sys.stderr)
     return NOT_PASSED if faults else PASSED
+
+
+def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> None:
+    log = [line for path in sorted(log_folder.glob(drive.logs)) for line in read_log(path)]
+    found = drive.figures(outcome, log)
+    found |= {"film": (drive.film.codec or None) if drive.film else None,
+              "versions": versions(Path(__file__).parent, log)}
+    drive.progress.say("\n" + "\n".join(drive.write(found)))
+    here = Path.cwd()
+    made = [drive.out / name for name in drive.writes if (drive.out / name).exists()]
+    shown = [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in made]
+    drive.progress.say(f"files: {'  '.join(shown)}")
 
 
 def _make_room(drive: LiveDrive) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import sys
 from collections.abc import Callable
 
+from racecar_description.track.errors import TrackError
+
 from evaluation.session.failure import RunError
 from evaluation.session.interruption import interruptible
-from evaluation.track import TrackError
 
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
@@ -35,12 +35,3 @@ def complain(name: str, failure: Exception) -> None:
     if details := getattr(failure, "details", ""):
         print(details, file=sys.stderr)
     print(f"{name}: {failure}", file=sys.stderr)
-
-
-def chart_writer(module: str) -> Callable:
-    """`write_chart` of a module; RunError where what charts are drawn with is not installed."""
-    try:
-        return importlib.import_module(module).write_chart
-    except ImportError as error:
-        raise RunError(f"{error.name} is not installed: scripts/setup.sh --bench, "
-                       "or apt install python3-matplotlib") from error

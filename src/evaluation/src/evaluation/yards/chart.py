@@ -5,18 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib import pyplot
-from matplotlib.axes import Axes
-
+from evaluation.picture import chart
 from evaluation.yards.results import CROSSINGS, REACHED, YARDS, Drive
 
 COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
            "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}  # fmt: skip
-DOTS_PER_INCH, PANEL_WIDTH, PANEL_HEIGHT = 110, 6.5, 3.4  # inches
 
 # Set, what is along, across, and their values.
 PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], float]], ...] = (
@@ -34,17 +27,14 @@ PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], f
 
 def write_chart(drives: Sequence[Drive], path: Path) -> None:
     """Four panels; the colour says how a drive ended."""
-    sheet, grid = pyplot.subplots(2, 2, figsize=(2 * PANEL_WIDTH, 2 * PANEL_HEIGHT))
-    for axes, (kind, along, across, x, y) in zip(grid.flat, PANELS, strict=True):
-        _draw(axes, [drive for drive in drives if drive.set == kind], x, y)
-        axes.set_xlabel(along, fontsize=9)
-        axes.set_ylabel(across, fontsize=9)
-    sheet.tight_layout()
-    sheet.savefig(path, dpi=DOTS_PER_INCH)
-    pyplot.close(sheet)
+    with chart(path, 2, 2) as grid:
+        for axes, (kind, along, across, x, y) in zip(grid.flat, PANELS, strict=True):
+            _draw(axes, [drive for drive in drives if drive.set == kind], x, y)
+            axes.set_xlabel(along, fontsize=9)
+            axes.set_ylabel(across, fontsize=9)
 
 
-def _draw(axes: Axes, drives: Sequence[Drive], x: Callable[[Drive], float],
+def _draw(axes: object, drives: Sequence[Drive], x: Callable[[Drive], float],
           y: Callable[[Drive], float]) -> None:
     for outcome, colour in COLOURS.items():
         found = [drive for drive in drives if drive.outcome == outcome]
@@ -55,5 +45,3 @@ def _draw(axes: Axes, drives: Sequence[Drive], x: Callable[[Drive], float],
     if drives:
         axes.legend(fontsize=8)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    axes.tick_params(labelsize=8, length=0)
-    axes.grid(alpha=0.3)

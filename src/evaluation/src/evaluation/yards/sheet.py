@@ -6,99 +6,69 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 
-from evaluation.picture import PAPER, TEXT, tile_sheet, write_text
+from evaluation.colours import CAR, FAINT, GOOD, lap_colour
+from evaluation.picture import write_tiles
 from evaluation.yards.crossing import APPROACH, PERSON_RADIUS, Crossing
 from evaluation.yards.results import CROSSINGS, YARDS, Drive
 from evaluation.yards.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
 
-COLUMNS, SCALE, CAPTION_PX, GAP_PX = 5, 64, 20, 6  # SCALE: px/m
-WIDTH_M, HEIGHT_M = (SIZE + 2 * APRON) * CELL, SIZE * CELL
-LEFT_M, HIGH_M = -APRON * CELL, SIZE * CELL / 2  # of a yard's picture
-CROSSING_LEFT_M, CROSSING_WIDTH_M = -0.2, 5.4
-OBSTACLE, SHORTEST, PERSON = (150, 140, 130), (190, 220, 190), (200, 150, 170)  # BGR
-WAYS = ((168, 108, 27), (47, 140, 201), (80, 143, 58))  # a colour for each repeat
-FAILED = (43, 57, 192)
-SHIFT = 4  # bits of a pixel's fraction that OpenCV is given
+YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
+ROOM = (-0.2, 5.2, *YARD[2:])
+TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
 
 
 def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
     """Write them below `out`; returns their names."""
     written = []
-    for kind, draw in ((YARDS, _yard_tile), (CROSSINGS, _crossing_tile)):
+    for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
         groups: dict[int, list[Drive]] = {}
         for drive in drives:
             if drive.set == kind:
                 groups.setdefault(drive.seed, []).append(drive)
+
+        def draw(axes: object, group: list[Drive], edges=edges, ground=ground) -> tuple[str, bool]:
+            axes.set(xlim=edges[:2], ylim=edges[2:])
+            ground(axes, group[0])
+            return _draw_ways(axes, group, out)
+
         if groups:
-            tiles = [draw(group, out) for group in groups.values()]
-            cv2.imwrite(str(out / f"{kind}.png"), tile_sheet(tiles, COLUMNS, GAP_PX))
+            height = TILE_WIDTH * (edges[3] - edges[2]) / (edges[1] - edges[0]) + CAPTION
+            write_tiles(out / f"{kind}.png", list(groups.values()), draw, (TILE_WIDTH, height))
             written.append(f"{kind}.png")
     return written
 
 
-class _Tile:
-    """A picture of a piece of ground, under a caption."""
+def _draw_yard(axes: object, drive: Drive) -> None:
+    """The columns, and the shortest way."""
+    from matplotlib.collections import EllipseCollection
 
-    def __init__(self, left: float, width: float, high: float, height: float):
-        self._left, self._high = left, high
-        self.image = np.full((round(height * SCALE) + CAPTION_PX, round(width * SCALE), 3), PAPER,
-                             np.uint8)
-
-    def pixels(self, points: np.ndarray) -> np.ndarray:
-        """Pixels with SHIFT bits of fraction."""
-        x = (points[:, 0] - self._left) * SCALE
-        y = (self._high - points[:, 1]) * SCALE + CAPTION_PX
-        return np.round(np.stack((x, y), axis=1) * (1 << SHIFT)).astype(np.int32)
-
-    def line(self, points: np.ndarray, colour: tuple, width: int = 1) -> None:
-        """Through points (N, 2), m."""
-        cv2.polylines(self.image, [self.pixels(points)], False, colour, width, cv2.LINE_AA, SHIFT)
-
-    def disc(self, point: np.ndarray, radius: float, colour: tuple) -> None:
-        """About a point (2,), m."""
-        centre = tuple(self.pixels(point[None])[0].tolist())
-        cv2.circle(self.image, centre, round(radius * SCALE * (1 << SHIFT)), colour, -1,
-                   cv2.LINE_AA, SHIFT)
-
-    def ways(self, drives: list[Drive], out: Path) -> None:
-        """What was driven, with a dot where it did not come to its goal."""
-        for drive in drives:
-            path = out / "drives" / f"{drive.name}.json"
-            if path.exists():
-                way = np.array(json.loads(path.read_text()))[:, 1:3]
-                self.line(way, WAYS[drive.repeat % len(WAYS)])
-                if not drive.reached:
-                    self.disc(way[-1], 0.08, FAILED)
-
-    def caption(self, drives: list[Drive]) -> None:
-        """How the drives ended."""
-        said = ", ".join(f"{each.time:.0f} s" if each.reached else each.outcome for each in drives)
-        good = all(each.reached for each in drives)
-        write_text(self.image, f"{drives[0].seed}: {said}", (4, CAPTION_PX - 6), 9,
-                   TEXT if good else FAILED)
+    yard = draw_yard(drive.seed)
+    round_things = np.full(len(yard.cylinders), 2 * RADIUS)
+    axes.add_collection(EllipseCollection(
+        round_things, round_things, 0 * round_things, units="xy", facecolors=FAINT,
+        offsets=yard.cylinders, offset_transform=axes.transData))
+    axes.plot(*places(yard.path).T, color=GOOD, linewidth=3, alpha=0.4)
 
 
-def _yard_tile(drives: list[Drive], out: Path) -> np.ndarray:
-    yard = draw_yard(drives[0].seed)
-    tile = _Tile(LEFT_M, WIDTH_M, HIGH_M, HEIGHT_M)
-    tile.line(places(yard.path), SHORTEST, 3)
-    for centre in yard.cylinders:
-        tile.disc(centre, RADIUS, OBSTACLE)
-    tile.ways(drives, out)
-    tile.caption(drives)
-    return tile.image
+def _draw_walk(axes: object, drive: Drive) -> None:
+    """Where the person walks, as wide as they are."""
+    walk = Crossing(**drive.drawn)
+    begin, yaw = np.array(walk.begin[:2]), walk.heading
+    ends = np.array([begin, begin + 2 * APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
+    aside = PERSON_RADIUS * np.array([-np.sin(yaw), np.cos(yaw)])
+    axes.fill(*np.concatenate([ends + aside, ends[::-1] - aside]).T, color=lap_colour(3), alpha=0.5)
 
 
-def _crossing_tile(drives: list[Drive], out: Path) -> np.ndarray:
-    tile = _Tile(CROSSING_LEFT_M, CROSSING_WIDTH_M, HIGH_M, HEIGHT_M)
-    walk = Crossing(**drives[0].drawn)
-    direction = np.array([np.cos(walk.heading), np.sin(walk.heading)])
-    begin = np.array(walk.begin[:2])
-    tile.line(np.array([begin, begin + 2 * APPROACH * direction]), PERSON,
-              round(2 * PERSON_RADIUS * SCALE))
-    tile.ways(drives, out)
-    tile.caption(drives)
-    return tile.image
+def _draw_ways(axes: object, drives: list[Drive], out: Path) -> tuple[str, bool]:
+    """What was driven, with a dot where it did not come to its goal; how the drives ended."""
+    for drive in drives:
+        path = out / "drives" / f"{drive.name}.json"
+        if path.exists():
+            way = np.array(json.loads(path.read_text()))[:, 1:3]
+            axes.plot(*way.T, color=lap_colour(drive.repeat), linewidth=1)
+            if not drive.reached:
+                axes.plot(*way[-1], "o", color=CAR, markersize=4)
+    said = ", ".join(f"{each.time:.0f} s" if each.reached else each.outcome for each in drives)
+    return f"{drives[0].seed}: {said}", all(each.reached for each in drives)

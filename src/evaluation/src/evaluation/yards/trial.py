@@ -13,8 +13,8 @@ from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
-from evaluation.trial.program import chart_writer
 from evaluation.trial.protocol import Case, Trial
+from evaluation.yards.chart import write_chart
 from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
 from evaluation.yards.results import (
@@ -73,7 +73,6 @@ class YardTrial(Trial):
             options.parameters or find_package("evaluation") / PARAMETERS).resolve()
         if not options.parameters.is_file():
             raise RunError(f"--parameters {options.parameters}: no such file")
-        self._write_chart = chart_writer("evaluation.yards.chart")  # what is missing: said at once
         self._make_rig = partial(Rig, real_time_factor=options.real_time_factor,
                                  parameters=options.parameters)
 
@@ -128,7 +127,7 @@ class YardTrial(Trial):
                 for each in values["drives"]]
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
-        self._write_chart(results, out / "trials.png")
+        write_chart(results, out / "trials.png")
         return ["trials.png", *write_sheets(results, out)]
 
 

@@ -95,7 +95,7 @@ def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -
 
     Whatever is wrong is one SettingsError.
     """
-    values = _read_table(Path(path))
+    values = read_table(Path(path))
     known = {entry.name: entry for entry in fields(Settings)}
     result: dict[str, object] = {}
     for where, table in ((str(path), values), ("the node's parameters", given or {})):
@@ -131,7 +131,8 @@ def _checked(entry: Field, value: object, where: str) -> object:
     return value if whole else float(value)
 
 
-def _read_table(path: Path) -> dict:
+def read_table(path: Path) -> dict:
+    """The `key: value` lines of a YAML file, or SettingsError."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:

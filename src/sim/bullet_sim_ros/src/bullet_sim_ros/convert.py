@@ -191,7 +191,7 @@ def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: flo
 def camera_info_to_msg(camera: CameraDescription, time: float, frame: str, *, centre_x: float = 0,
                        centre_y: float = 0, focal_length: float = 0, baseline: float = 0,
                        distortion: tuple[float, ...] = (0.0,) * 5) -> CameraInfo:
-    """sensor_msgs/CameraInfo; zeros stand for Gazebo's defaults, (width + 1) / 2 among them."""
+    """sensor_msgs/CameraInfo; zeros stand for the values of gazebo_ros_camera_utils.cpp, Init."""
     focal = focal_length or camera.width / (2 * math.tan(camera.horizontal_fov / 2))
     cx, cy = centre_x or (camera.width + 1) / 2, centre_y or (camera.height + 1) / 2
     msg = stamped(CameraInfo(height=camera.height, width=camera.width,

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import rospkg
+from racecar_description.track.closed_line import Track, load_track
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
@@ -16,7 +17,6 @@ from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.world import World
-from evaluation.track import Track, load_track
 
 SETTLING_STEPS = 300
 # The tags of the waffle's drive plugin: what a learner's waffle is driven with.

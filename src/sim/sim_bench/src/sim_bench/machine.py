@@ -7,6 +7,8 @@ import platform
 import time
 from pathlib import Path
 
+import psutil
+
 from evaluation.session import cpu
 from evaluation.session.versions import versions
 
@@ -16,7 +18,7 @@ def describe() -> dict:
     return {
         "processor": _processor(),
         "cores": len(os.sched_getaffinity(0)),
-        "memory_gb": round(os.sysconf("SC_PHYS_PAGES") * cpu.PAGE / 1e9, 1),
+        "memory_gb": round(psutil.virtual_memory().total / 1e9, 1),
         "kernel": platform.release(),
         "versions": versions(Path(__file__).parent, ()),
     }
@@ -37,9 +39,8 @@ class Others:
 
 def _busy() -> float:
     """s that all cores together have worked since the machine's start."""
-    first = Path("/proc/stat").read_text(encoding="ascii").splitlines()[0].split()[1:]
-    user, nice, system, _idle, _wait, irq, softirq = (int(word) for word in first[:7])
-    return (user + nice + system + irq + softirq) * cpu.TICK
+    times = psutil.cpu_times()
+    return times.user + times.nice + times.system + times.irq + times.softirq
 
 
 def _ours() -> float:

@@ -8,9 +8,10 @@ import os
 import time
 
 from evaluation.session.failure import RunError
-from evaluation.trial.program import NOT_RUN, PASSED, chart_writer, complain, run_program
+from evaluation.trial.program import NOT_RUN, PASSED, complain, run_program
 from sim_bench import machine
 from sim_bench.acceptance import judge
+from sim_bench.chart import write_chart
 from sim_bench.options import Options, parse_options
 from sim_bench.results import (
     PartResult,
@@ -28,7 +29,6 @@ def main(arguments: list[str]) -> int:
 
 
 def _run(options: Options) -> int:
-    write_chart = chart_writer("sim_bench.chart")  # what is missing is said at once
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -53,7 +53,10 @@ class MimicJointPlugin:
 @plugin("libroboticsgroup_gazebo_disable_link_plugin.so",
         "libroboticsgroup_upatras_gazebo_disable_link_plugin.so")
 class DisableLinkPlugin:
-    """Only looks whether the link is there: in Gazebo, too, the first touch wakes it again."""
+    """Only looks whether the link is there.
+
+    disable_link_plugin.cpp, Load, calls Link::SetEnabled(false): the first touch wakes it again.
+    """
 
     def __init__(self, context: PluginContext):
         context.model.link(context.parameters.required("link"))

@@ -188,7 +188,7 @@ class EffortTrajectory(JointTrajectoryController):
 
 @controller("pos_vel_controllers/JointTrajectoryController")
 class PositionVelocityTrajectory(JointTrajectoryController):
-    """No simulated joint takes both commands at once, in Gazebo neither."""
+    """No simulated joint takes both commands at once (default_robot_hw_sim.cpp, initSim)."""
 
     def _make_drive(self, joint: str):
         raise PluginError(

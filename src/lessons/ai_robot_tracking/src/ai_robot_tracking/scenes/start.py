@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evaluation.tracking.scene import STANDING, STATIC
+from ai_robot_tracking.scenes.scene import STANDING, STATIC
 
 START_AWAY = 1.5     # m from the standing cylinder, at least
 START_REACH = 4.0    # m from the room's middle, along x and along y

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from evaluation.tracking.scene import (
+from ai_robot_tracking.scenes.scene import (
     FALL_TIME,
     HALF_ROOM,
     HIDDEN_TIME,
@@ -36,7 +36,7 @@ def world_text(scene: Scene) -> str:
     return ('<?xml version="1.0"?>\n'
             f"<!-- A room of {2 * HALF_ROOM:g} x {2 * HALF_ROOM:g} m with a red cylinder: scene"
             f" {scene.kind}, seed {scene.seed},\n     written by make_tracking_world.py of package"
-            " evaluation -->\n"
+            " ai_robot_tracking -->\n"
             f'<sdf version="1.6">\n<world name="default">\n{"".join(body)}</world>\n</sdf>\n')
 
 

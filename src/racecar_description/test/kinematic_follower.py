@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from evaluation.track import Track
+from racecar_description.track.closed_line import Track
 
 CAMERA_AHEAD, CAMERA_LEFT, CAMERA_UP = 0.069, -0.047, 0.117  # m, from base_footprint
 WIDTH_PX, HEIGHT_PX, FIELD_OF_VIEW = 1920, 1080, 1.3439

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package, read_keys
+import rospkg
+
+from lane_keeping.settings import SettingsError, read_table
 
 
 @dataclass(frozen=True)
@@ -64,39 +65,55 @@ class Scenery:
 
 
 def load_crossings(path: Path | None = None) -> Crossings:
-    """The package's own, or another file; RunError names file and key."""
-    path = path or find_package("lane_keeping") / "config" / "crossings.yaml"
-    values = read_keys(path, [field.name for field in fields(Crossings)])
+    """The package's own, or another file; SettingsError names file and key."""
+    path = path or config_folder() / "crossings.yaml"
+    values = _read_keys(path, [field.name for field in fields(Crossings)])
     lengths = {name: _number(path, name, values[name], least=0.0)
                for name in ("length", "half_width", "kerb", "far")}
     return Crossings(**lengths, zebras=_items(path, "zebras", values["zebras"], Zebra))
 
 
 def load_scenery(path: Path | None = None) -> Scenery:
-    """The package's own, or another file; RunError names file and key."""
-    path = path or find_package("evaluation") / "config" / "lane_scenery.yaml"
-    values = read_keys(path, [field.name for field in fields(Scenery)])
+    """The package's own, or another file; SettingsError names file and key."""
+    path = path or config_folder() / "lane_scenery.yaml"
+    values = _read_keys(path, [field.name for field in fields(Scenery)])
     sun = values["sun"]
     if not isinstance(sun, list) or len(sun) != 3:
-        raise RunError(f"{path}: sun: must be [x, y, z], is {sun!r}")
+        raise SettingsError(f"{path}: sun: must be [x, y, z], is {sun!r}")
     direction = tuple(_number(path, f"sun[{i}]", value) for i, value in enumerate(sun))
     if direction[2] >= 0:
-        raise RunError(f"{path}: sun: must shine downwards (z below 0), is {sun!r}")
+        raise SettingsError(f"{path}: sun: must shine downwards (z below 0), is {sun!r}")
     return Scenery(direction, _number(path, "shade", values["shade"], least=0.0),
                    _items(path, "trees", values["trees"], Tree),
                    _items(path, "lamps", values["lamps"], Lamp))
+
+
+def config_folder() -> Path:
+    """The package's own."""
+    return Path(rospkg.RosPack().get_path("lane_keeping")) / "config"
+
+
+def _read_keys(path: Path, expected: list[str]) -> dict:
+    values = read_table(path)
+    for kind, wrong in (("unknown", values.keys() - set(expected)),
+                        ("missing", set(expected) - values.keys())):
+        if wrong:
+            raise SettingsError(f"{path}: {kind} key {min(wrong, key=str)!r};"
+                                f" there are: {', '.join(expected)}")
+    return values
 
 
 def _items(path: Path, name: str, values: object, kind: type) -> tuple:
     """A list of mappings with exactly the keys of a dataclass of numbers."""
     keys = [field.name for field in fields(kind)]
     if not isinstance(values, list):
-        raise RunError(f"{path}: {name}: must be a list of {{{', '.join(keys)}}}")
+        raise SettingsError(f"{path}: {name}: must be a list of {{{', '.join(keys)}}}")
     found = []
     for number, item in enumerate(values):
         place = f"{name}[{number}]"
         if not isinstance(item, dict) or set(item) != set(keys):
-            raise RunError(f"{path}: {place}: must have the keys {', '.join(keys)}, is {item!r}")
+            raise SettingsError(
+                f"{path}: {place}: must have the keys {', '.join(keys)}, is {item!r}")
         found.append(kind(**{key: _number(path, f"{place}.{key}", item[key]) for key in keys}))
     return tuple(found)
 
@@ -105,5 +122,5 @@ def _number(path: Path, place: str, value: object, least: float = -math.inf) -> 
     fits = type(value) in (int, float) and math.isfinite(value) and value >= least
     if not fits:
         more = "" if least == -math.inf else f", {least:g} or more"
-        raise RunError(f"{path}: {place}: must be a number{more}, is {value!r}")
+        raise SettingsError(f"{path}: {place}: must be a number{more}, is {value!r}")
     return float(value)

@@ -6,13 +6,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import rospkg
+from course_model import BACKGROUND, WHITE, YELLOW, encode_png, write_model
+from racecar_description.track.closed_line import load_track
+from racecar_description.track.track_file import load_track_file
 
-from evaluation.course_model import BACKGROUND, WHITE, YELLOW, encode_png, write_model
-from evaluation.track import load_track, load_track_file
-
-EVALUATION = Path(__file__).parent.parent
-TRACK = EVALUATION / "tracks" / "course.yaml"
-COMMITTED = EVALUATION.parent / "learning_topic" / "models" / "turtlebot3_autorace" / "course"
+PACKAGE = Path(__file__).parent.parent
+TRACK = Path(rospkg.RosPack().get_path("evaluation")) / "tracks" / "course.yaml"
+COMMITTED = PACKAGE / "models" / "turtlebot3_autorace" / "course"
 WORLD_YAW = -1.54  # rad, of the model in the lesson's course.world
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import TrackFile
 
-from evaluation.lane.scenery import Crossings, Scenery, Zebra
-from evaluation.picture import draw_line
-from evaluation.track import TrackFile, build_track
+from lane_keeping.world.scenery import Crossings, Scenery, Zebra
 
 PX_PER_M, FINE = 160, 2  # drawn FINE times as large and shrunk, so that edges are smooth
 MARGIN = 1.3  # m of ground round the lane's middle
@@ -72,7 +72,14 @@ _SCALE = PX_PER_M * FINE
 
 
 def _draw(image: np.ndarray, plane: Plane, points: list, colour: object, width: float) -> None:
-    draw_line(image, plane.to_px(points), colour, round(width * _SCALE), closed=True)
+    _line(image, plane.to_px(points), colour, round(width * _SCALE), closed=True)
+
+
+def _line(image: np.ndarray, points_px: np.ndarray, colour: object, thick_px: int,
+          closed: bool = False) -> None:
+    """Through points between pixels; OpenCV takes them in sixteenths."""
+    cv2.polylines(image, [np.round(points_px * 16).astype(np.int32)], closed, colour, thick_px,
+                  cv2.LINE_AA, 4)
 
 
 def _draw_zebra(image: np.ndarray, plane: Plane, zebra: Zebra, crossings: Crossings) -> None:
@@ -103,7 +110,7 @@ def _stroke(cover: np.ndarray, plane: Plane, scenery: Scenery, at: tuple[float, 
             height: float, width: float) -> None:
     """Shade of something thin and upright."""
     ends = plane.to_px([at, scenery.shadow_of(*at, height)])
-    draw_line(cover, ends, 255, round(width * _SCALE))
+    _line(cover, ends, 255, round(width * _SCALE))
 
 
 def _blot(cover: np.ndarray, plane: Plane, scenery: Scenery, at: tuple[float, float],

@@ -5,16 +5,17 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import rospkg
 import yaml
+from lane_keeping.settings import SettingsError
+from lane_keeping.world.files import person_begin, write_world
+from lane_keeping.world.ground import LINE, PX_PER_M, ROAD, WHITE, draw_ground, plane_of
+from lane_keeping.world.scenery import load_crossings, load_scenery
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
 
-from evaluation.lane.ground import LINE, PX_PER_M, ROAD, WHITE, draw_ground, plane_of
-from evaluation.lane.scenery import load_crossings, load_scenery
-from evaluation.lane.world import person_begin, write_world
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.track import build_track, load_track_file
-
-EVALUATION = Path(__file__).parent.parent
+EVALUATION = Path(rospkg.RosPack().get_path("evaluation"))
+PACKAGE = Path(__file__).parent.parent
 TRACK = load_track_file(EVALUATION / "tracks" / "lane.yaml")
 PLANE = plane_of(TRACK)
 
@@ -65,7 +66,7 @@ def test_the_shipped_world_is_what_the_script_writes(tmp_path):
     paths = write_world(TRACK, load_crossings(), load_scenery(), tmp_path)
     assert len(paths) == 6
     for path in paths:
-        shipped = find_package("lane_keeping") / path.relative_to(tmp_path)
+        shipped = PACKAGE / path.relative_to(tmp_path)
         if path.suffix == ".png":
             assert np.array_equal(cv2.imread(str(path)), cv2.imread(str(shipped)))
         else:
@@ -86,18 +87,18 @@ def test_a_person_begins_right_of_the_lane_looking_across():
     ({"zebras": 3}, "zebras: must be a list"),
 ])
 def test_a_mistake_in_the_crossings_names_file_and_key(tmp_path, values, said):
-    own = find_package("lane_keeping") / "config" / "crossings.yaml"
+    own = PACKAGE / "config" / "crossings.yaml"
     found = yaml.safe_load(own.read_text(encoding="utf-8")) | values
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({k: v for k, v in found.items() if v is not None}))
-    with pytest.raises(RunError) as caught:
+    with pytest.raises(SettingsError) as caught:
         load_crossings(path)
     assert "mine.yaml" in str(caught.value) and said in str(caught.value)
 
 
 def test_a_sun_that_shines_upwards_is_refused(tmp_path):
-    own = EVALUATION / "config" / "lane_scenery.yaml"
+    own = PACKAGE / "config" / "lane_scenery.yaml"
     path = tmp_path / "mine.yaml"
     path.write_text(own.read_text().replace("-0.9]", "0.9]"))
-    with pytest.raises(RunError, match="must shine downwards"):
+    with pytest.raises(SettingsError, match="must shine downwards"):
         load_scenery(path)

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import cv2
 from racecar_description.track.painted_plane import config_text, material_text
+from racecar_description.track.track_file import TrackFile
 
-from evaluation.lane.ground import Plane, draw_ground, plane_of
-from evaluation.lane.scenery import Crossings, Lamp, Scenery, Tree, Zebra
-from evaluation.track import TrackFile
+from lane_keeping.world.ground import Plane, draw_ground, plane_of
+from lane_keeping.world.scenery import Crossings, Lamp, Scenery, Tree, Zebra
 
 MODEL = "lane_track"
 PERSON_RADIUS, PERSON_HEIGHT = 0.12, 0.9  # m, of what can be bumped into
@@ -127,7 +127,7 @@ def _box(x: float, y: float, z: float) -> str:
 
 
 _DESCRIPTION = """Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
-Written by make_lane.py of the package evaluation."""
+Written by make_lane.py of the package lane_keeping."""
 
 _GROUND = """<?xml version="1.0"?>
 <sdf version="1.4">
@@ -169,7 +169,7 @@ SHAPES
 
 _WORLD = """<?xml version="1.0"?>
 <!-- The lane in the shape of 凹. Written by make_lane.py of the package
-     evaluation.  凹 形车道，由 evaluation 包的 make_lane.py 生成 -->
+     lane_keeping.  凹 形车道，由 lane_keeping 包的 make_lane.py 生成 -->
 <sdf version="1.4">
 <world name="default">
 <scene>

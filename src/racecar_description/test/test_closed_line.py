@@ -4,21 +4,15 @@ import math
 from pathlib import Path
 
 import pytest
-
-from evaluation.kinematic import drive
-from evaluation.track import (
-    Corner,
-    Piece,
-    Track,
-    TrackError,
-    TrackFile,
-    build_track,
-    load_track,
-    load_track_file,
-)
+import rospkg
+from kinematic_follower import drive
+from racecar_description.track.centre_line import Corner, Piece
+from racecar_description.track.closed_line import Track, build_track, load_track
+from racecar_description.track.errors import TrackError
+from racecar_description.track.track_file import TrackFile, load_track_file
 
 HERE = Path(__file__).parent
-SHIPPED = sorted((HERE.parent / "tracks").glob("*.yaml"))
+SHIPPED = sorted((Path(rospkg.RosPack().get_path("evaluation")) / "tracks").glob("*.yaml"))
 RADII = {"course": (0.5, 1.1), "lane": (1.2, 1.8)}  # m, of bends
 MIDDLE = {"course": (0.0, 0.0), "lane": (0.0, 3.75)}  # m, of the painted plane
 BROKEN = {

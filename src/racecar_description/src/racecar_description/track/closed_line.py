@@ -1,4 +1,4 @@
-"""The course as geometry: a closed line of straights and arcs, from YAML, in the world frame."""
+"""A track as geometry: a closed line of straights and arcs, from a track file's `start` on."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from racecar_description.track.centre_line import Corner, Piece
+from racecar_description.track.centre_line import CentreLine, Piece
 from racecar_description.track.errors import TrackError
 from racecar_description.track.track_file import TrackFile, load_track_file
 
@@ -76,53 +76,14 @@ def load_track(path: str | Path) -> Track:
 
 def build_track(track_file: TrackFile, place: str = "track") -> Track:
     """Round the corners of the polygon and start the closed line at `start`."""
-    pieces = _round_corners(track_file.corners, place)
-    closed = Track(tuple(pieces))
+    try:
+        closed = Track(CentreLine(track_file.corners).pieces)
+    except TrackError as error:
+        raise TrackError(f"{place}: {error}") from error
     start = closed.nearest(*track_file.start)
     if abs(start.lateral) > 1e-6:
         raise TrackError(f"{place}: start: {abs(start.lateral):.3f} m beside the line")
     return Track(_starting_at(closed, start.s))
-
-
-def _round_corners(corners: tuple[Corner, ...], place: str) -> list[Piece]:
-    """A straight and an arc for each corner, in order; straights of no length are left out."""
-    count = len(corners)
-    edges = [
-        (corners[(i + 1) % count].x - corners[i].x, corners[(i + 1) % count].y - corners[i].y)
-        for i in range(count)
-    ]
-    headings = [math.atan2(dy, dx) for dx, dy in edges]
-    turns = [math.remainder(headings[i] - headings[i - 1], 2 * math.pi) for i in range(count)]
-    cut = [corners[i].radius * math.tan(abs(turns[i]) / 2) for i in range(count)]
-    pieces = []
-    for i in range(count):
-        straight = math.hypot(*edges[i]) - cut[i] - cut[(i + 1) % count]
-        if straight < -CLOSED_WITHIN:
-            raise TrackError(
-                f"{place}: corners[{i}] and [{(i + 1) % count}]:"
-                f" the bends overlap by {-straight:.3f} m"
-            )
-        pieces += _corner_pieces(
-            corners[i], headings[i - 1], headings[i], turns[i], cut[i], straight
-        )
-    return pieces
-
-
-def _corner_pieces(
-    corner: Corner, arriving: float, leaving: float, turn: float, cut: float, straight: float
-) -> list[Piece]:
-    """The arc round one corner and the straight after it."""
-    pieces = []
-    if abs(turn) > CLOSED_WITHIN:
-        x = corner.x - cut * math.cos(arriving)
-        y = corner.y - cut * math.sin(arriving)
-        curvature = math.copysign(1.0 / corner.radius, turn)
-        pieces.append(Piece(x, y, arriving, abs(turn) * corner.radius, curvature))
-    if straight > CLOSED_WITHIN:
-        x = corner.x + cut * math.cos(leaving)
-        y = corner.y + cut * math.sin(leaving)
-        pieces.append(Piece(x, y, leaving, straight, 0.0))
-    return pieces
 
 
 def _starting_at(track: Track, s: float) -> tuple[Piece, ...]:

@@ -9,17 +9,19 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import cv2
 import numpy as np
+import rospkg
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
+
 from lane_keeping.lane_keeper import LaneKeeper
 from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import load_settings
-
-from evaluation.lane.ground import draw_ground, plane_of
-from evaluation.lane.scenery import load_crossings, load_scenery
-from evaluation.session.resources import find_package
-from evaluation.track import build_track, load_track_file
+from lane_keeping.world.ground import draw_ground, plane_of
+from lane_keeping.world.scenery import config_folder, load_crossings, load_scenery
 
 PICTURES, WARM_UP = 40, 5
 SIZE = (640, 480)  # px
@@ -31,7 +33,7 @@ def ms_a_frame(method: str) -> float:
     """Median processor time (ms) from a picture to its command, on one thread."""
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
-    settings = load_settings(find_package("lane_keeping") / "config" / "lane_keeping.yaml")
+    settings = load_settings(config_folder() / "lane_keeping.yaml")
     keeper, times = LaneKeeper(replace(settings, method=method)), []
     try:
         for number, picture in enumerate(pictures(road_view(settings, *SIZE))):
@@ -45,7 +47,8 @@ def ms_a_frame(method: str) -> float:
 
 def pictures(view: RoadView) -> list[np.ndarray]:
     """BGR pictures (480, 640, 3) from places all round the lane's middle."""
-    track_file = load_track_file(find_package("evaluation") / "tracks" / "lane.yaml")
+    tracks = Path(rospkg.RosPack().get_path("evaluation")) / "tracks"
+    track_file = load_track_file(tracks / "lane.yaml")
     ground = draw_ground(track_file, load_crossings(), load_scenery())[..., ::-1].copy()
     plane, track = plane_of(track_file), build_track(track_file)
     scale = ground.shape[1] / plane.width

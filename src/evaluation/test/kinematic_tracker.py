@@ -11,6 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from ai_robot_tracking.scenes.scene import Scene
+from ai_robot_tracking.scenes.world_file import world_text
 
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
@@ -19,9 +21,7 @@ from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
 from evaluation.lap import Sample
-from evaluation.tracking.scene import Scene
 from evaluation.tracking.score import CAMERA_X, HALF_FOV, TrackScorer
-from evaluation.tracking.sdf import world_text
 
 CAMERA_HEIGHT = 0.25        # m
 MOST_ACCELERATION = np.array([2.0, 8.0])  # m/s^2, rad/s^2, as the drive's controller allows

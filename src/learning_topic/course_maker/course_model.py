@@ -8,9 +8,11 @@ import zlib
 from pathlib import Path
 
 import numpy as np
+from racecar_description.track.centre_line import Piece
+from racecar_description.track.closed_line import Track, build_track
+from racecar_description.track.errors import TrackError
 from racecar_description.track.painted_plane import model_texts
-
-from evaluation.track import Piece, Track, TrackError, TrackFile, build_track
+from racecar_description.track.track_file import TrackFile
 
 SIDE_PX = 2048
 EDGE_MARGIN = 0.1  # m of bare plane that must stay around every line
@@ -19,7 +21,7 @@ BACKGROUND, WHITE, YELLOW = (10, 10, 10), (255, 255, 255), (255, 255, 0)  # RGB
 
 DESCRIPTION = (
     "A black floor with one closed lane: yellow line on its left, white line on its right.\n"
-    "Written by make_course.py of the package evaluation."
+    "Written by make_course.py of the package learning_topic."
 )
 
 

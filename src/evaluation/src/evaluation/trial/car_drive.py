@@ -1,0 +1,131 @@
+"""A car's drive, watched by its true poses from the first one until nothing more is to be seen."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from abc import abstractmethod
+from collections.abc import Sequence
+
+from evaluation.lap import LapScorer, Sample, fingerprint
+from evaluation.session.course_file import Course
+from evaluation.session.failure import RunError
+from evaluation.session.fingerprints import Fingerprints
+from evaluation.session.frames import frame_figures
+from evaluation.session.launch import Launched
+from evaluation.session.observer import Observer
+from evaluation.trial.live import LiveDrive, Outcome
+
+LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
+
+
+class CarDrive(LiveDrive):
+    """Options are those of LiveDrive and `fast`; `drive` scores and keeps the samples."""
+
+    def __init__(self, options: argparse.Namespace, course: Course, drive: LapScorer):
+        """`drive` has `samples` and takes one more by `add`."""
+        super().__init__(options)
+        self.course, self.drive = course, drive
+        self.fingerprints: Fingerprints | None = None
+        self._first_at = self._last_at = time.monotonic()  # s, wall: when these samples came
+        self._observer: Observer | None = None
+        self._frames = 0, 0  # images and commands
+        self.sensor_sums: dict[str, str | None] = {}
+
+    @abstractmethod
+    def launch_words(self) -> Sequence[str]:
+        """Package, launch file, its arguments."""
+
+    @property
+    @abstractmethod
+    def is_over(self) -> bool:
+        """Whether more samples do not count."""
+
+    @abstractmethod
+    def outcome(self) -> Outcome:
+        """Of a drive that is over."""
+
+    @abstractmethod
+    def line(self) -> str:
+        """How the drive stands."""
+
+    def bring_up(self, launched: Launched) -> None:
+        """Start everything and wait until the car stands there."""
+        words = self.launch_words()
+        listened = self.course.sensors if self.fingerprints else ()
+        self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
+                                  self.course, lockstep=self.options.fast, listened=listened)
+        launched.start("roslaunch", ["roslaunch", *words])
+        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+        if self.fingerprints:
+            self.fingerprints.start()  # before time may begin
+        self._observer.start()
+        if self.film is not None:
+            self.film.start()
+        launched.wait_for(lambda: self._observer.missing, self._take_samples, self.progress.status,
+                          self.options.startup_timeout)
+
+    def watch(self, launched: Launched) -> Outcome:
+        """Follow the car until the drive is over."""
+        while not self.is_over:
+            self._take_samples()
+            now = self.drive.samples[-1].time
+            self.progress.update(now, self.line)
+            launched.check(now)
+            still = time.monotonic() - self._last_at
+            if still > self.options.stuck_timeout:
+                raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                               " the simulator is paused or hangs")
+        return self.outcome()
+
+    def _take_samples(self) -> int:
+        """Score what came in the last LOOK_PERIOD; what came after the end does not count."""
+        arrivals = self._observer.samples(LOOK_PERIOD)
+        samples: list[Sample] = self.drive.samples
+        for arrived, sample in arrivals:
+            if samples and self.is_over:
+                break
+            if not samples:
+                self._first_at = self._last_at = arrived
+            elif sample.time > samples[-1].time:
+                self._last_at = arrived
+            self.drive.add(sample)
+        return len(arrivals)
+
+    def end(self) -> None:
+        """Count the images up to the last sample, and ask no more."""
+        if self._observer is None:
+            return
+        if self.was_seen:
+            self._frames = self._observer.count(self.drive.samples[-1].time)
+            if self.fingerprints:
+                self.sensor_sums = self.fingerprints.sums(self.drive.samples[-1].time)
+        self._observer.stop()
+
+    @property
+    def was_seen(self) -> bool:
+        return bool(self.drive.samples)
+
+    @property
+    def simulated(self) -> float:
+        """s, from the first sample to the last."""
+        samples = self.drive.samples
+        return samples[-1].time - samples[0].time if samples else 0.0
+
+    def counted(self, log: list[str], digits: int) -> dict:
+        """Frames, times and the sum over the drive, for the report."""
+        simulated, wall = self.simulated, self._last_at - self._first_at
+        return {
+            **frame_figures(*self._frames, log if self.options.fast else None),
+            "drive_sha256": fingerprint(self.drive),
+            "simulated_s": round(simulated, digits), "wall_s": round(wall, digits),
+            "real_time_factor": round(simulated / wall, digits) if wall > 0 else None,
+        }  # fmt: skip
+
+    def fast_arguments(self) -> list[str]:
+        """For the launch file: as fast as it goes, in lockstep."""
+        if not self.options.fast:
+            return []
+        # At five times real time the usual 100 Hz would wake every node 500 times a second.
+        return ["paused:=true", "real_time_factor:=0",
+                f"lockstep:={','.join(self.course.lockstep)}", "pub_clock_frequency:=30"]
