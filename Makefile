@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes drive viewer test bench setup build deps deb lint clean
+.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes mark drive viewer test bench setup build deps deb lint clean
 
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
@@ -53,6 +53,12 @@ localisation-trials: ## amcl finds the robot, again, and keeps track of it [STAR
 	@scripts/localisation_trials.sh $(if $(STARTS),--starts "$(STARTS)") \
 	  $(if $(KIDNAPS),--kidnaps "$(KIDNAPS)") $(if $(SEED),--seed "$(SEED)") \
 	  $(if $(PACE),--real-time-factor "$(PACE)") $(WHERE)
+
+mark: ## let submissions drive in a sandbox, and mark them SUBMISSIONS=DIR [COURSE=course SEEDS=3 RULES=YAML FILM=1 RESUME=1 OUT=DIR WORKERS=1]
+	@scripts/mark.sh $(if $(SUBMISSIONS),--submissions "$(SUBMISSIONS)") $(if $(COURSE),--course "$(COURSE)") \
+	  $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(RULES),--rules "$(RULES)") \
+	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
+	  $(if $(OUT),--out "$(OUT)") $(WHERE)
 
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh

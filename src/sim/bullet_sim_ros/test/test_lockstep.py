@@ -48,6 +48,13 @@ def test_of_a_plugin_that_is_gone_nothing_is_awaited():
     assert loop.goes_on()
 
 
+def test_an_image_without_an_answer_is_counted():
+    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox())
+    lockstep.expect()
+    lockstep.wait(lambda: False)
+    assert lockstep.unanswered == 1
+
+
 def test_the_world_waits_for_a_message_on_each_of_several_topics():
     loop = Waiting("/left, /right")
     left, right = loop.joined("left", "/left"), loop.joined("right", "/right")

@@ -55,13 +55,13 @@ def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str
     try:
         slave = xmlrpc.client.ServerProxy(master.lookupNode(node), _ImpatientTransport())
         _, _, connections = slave.getBusInfo(caller)
-    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
-        return []
-    return [
-        (node, topic, receiver)
-        for _, receiver, direction, _, topic, is_open, *_ in connections
-        if direction == "o" and is_open
-    ]
+        return [
+            (node, str(topic), str(receiver))
+            for _, receiver, direction, _, topic, is_open, *_ in connections
+            if direction == "o" and is_open
+        ]
+    except (OSError, xmlrpc.client.Error, rosgraph.MasterException, TypeError, ValueError):
+        return []  # it hangs, is gone, or answers what is no answer
 
 
 class _ImpatientTransport(xmlrpc.client.Transport):

@@ -30,14 +30,17 @@ class Launched:
     """roscore and roslaunch of one run, with the log files they write."""
 
     def __init__(
-        self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car"
+        self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car",
+        alone: bool = False
     ):
+        """`alone`: in a network namespace of its own, where nobody else chooses a port."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         shutil.rmtree(self.log_folder, ignore_errors=True)
         self.log_folder.mkdir(parents=True)
         # From looking for a port to listening there: no other run may choose the same one.
-        self._turn = (Path(tempfile.gettempdir()) / f"course_run-{os.getuid()}.lock").open("w")
+        turn = log_folder if alone else Path(tempfile.gettempdir())
+        self._turn = (turn / f"course_run-{os.getuid()}.lock").open("w")
         fcntl.flock(self._turn, fcntl.LOCK_EX)
         self.port = free_port()
         self.master_uri = f"http://localhost:{self.port}"

@@ -38,9 +38,12 @@ class Session:
         """Do this before the processes end."""
         self._at_end.callback(act)
 
-    def launched(self, vehicle: str, driver: str = "") -> Launched:
-        """A ROS master and launch files of this run's own; logs go to OUT/log."""
-        return Launched(self.family, self.out / "log", driver, vehicle)
+    def launched(self, vehicle: str, driver: str = "", alone: bool = False) -> Launched:
+        """A ROS master and launch files of this run's own; logs go to OUT/log.
+
+        `alone`: in a network namespace of its own.
+        """
+        return Launched(self.family, self.out / "log", driver, vehicle, alone)
 
     def start_drive(self, command: list[str], folder: Path,
                     environment: Mapping[str, str] | None = None) -> DriveProcess:

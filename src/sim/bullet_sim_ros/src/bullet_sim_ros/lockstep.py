@@ -20,6 +20,7 @@ class Lockstep:
 
     def __init__(self, topics: str, timeout: float, mailbox: Mailbox):
         self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
+        self.unanswered = 0  # frames that the world has gone on without an answer to
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
         self._expected: set[str] = set()  # topics whose message is still to come
@@ -72,6 +73,7 @@ class Lockstep:
         while self._expected and not stopped():
             left = until - time.monotonic()
             if left <= 0:
+                self.unanswered += 1
                 self._warn()
                 self.cancel()
                 return

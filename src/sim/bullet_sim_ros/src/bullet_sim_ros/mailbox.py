@@ -22,6 +22,7 @@ class Mailbox:
         # Not SimpleQueue: interrupted by a slow signal handler, its timed get waits for ever.
         self._calls: queue.Queue[tuple[Callable[[], Any], Future | None]] = queue.Queue()
         self._closed = threading.Event()
+        self.each_call: list[Callable[[str, str], None]] = []  # with name and caller
 
     def call(self, function: Callable[[], Any]) -> Any:
         """From any thread: run `function` in the loop and give back what it returns or raises.
@@ -42,6 +43,13 @@ class Mailbox:
     def post(self, function: Callable[[], Any]) -> None:
         """From any thread: have `function` run in the loop, without waiting; errors are logged."""
         self._calls.put((function, None))
+
+    def announce(self, name: str, message: Any) -> None:
+        """From any thread: a service or topic that acts on the world was called by this message."""
+        if self.each_call:
+            header = getattr(message, "_connection_header", None) or {}
+            caller = header.get("callerid", "")
+            self.post(lambda: [observe(name, caller) for observe in self.each_call])
 
     def run_pending(self, wait: float = 0.0) -> None:
         """From the loop: run what has come in; `wait` for a first one (s, wall)."""

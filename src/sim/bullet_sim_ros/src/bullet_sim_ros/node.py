@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import NoReturn
 
 import rosgraph
@@ -26,6 +27,7 @@ from bullet_sim_ros.params import read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
 from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.state_log import StateLog
 
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
 SWITCH_INTERVAL = 0.0005
@@ -136,6 +138,13 @@ def main() -> int:
     for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
         signal.signal(number, lambda _number, _frame: simulation.stop())
     open_network(simulation, resources, parameters)
+    if parameters.state_log:
+        try:
+            StateLog(simulation, Path(parameters.state_log))
+        except OSError as error:
+            rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(names.STATE_LOG),
+                           parameters.state_log, error.strerror)
+            return 1
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
     try:

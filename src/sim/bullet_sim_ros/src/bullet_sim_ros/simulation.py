@@ -37,9 +37,9 @@ class Simulation:
         self.real_time_factor = RealTimeFactorMonitor(world.profiler, parameters.profile)
         self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
-        self._lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
+        self.lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
         self._services = SharedByPlugins(
-            world, self.mailbox, self.scheduler, self._drawing, self._lockstep
+            world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )
         self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
@@ -51,7 +51,7 @@ class Simulation:
         for model in world.models.values():
             self._load_plugins(model)
         self._world_plugins = load_world_plugins(self._services)
-        self._lockstep.listen()
+        self.lockstep.listen()
 
     # --- the loop
 
@@ -96,7 +96,7 @@ class Simulation:
         with world.profiler.measure("plugins"):
             self.scheduler.run()
         with world.profiler.measure("lockstep"):
-            self._lockstep.wait(self._stopped)
+            self.lockstep.wait(self._stopped)
         self.real_time_factor.update(world.time, self.pacer.factor)
         return steps
 
@@ -144,18 +144,18 @@ class Simulation:
         except Exception:
             self.world.delete(name)
             raise
-        self._lockstep.listen()
+        self.lockstep.listen()
         return model
 
     def delete(self, name: str) -> None:
         """Take a model out; its topics disappear."""
         self.world.delete(name)
-        self._lockstep.listen()
+        self.lockstep.listen()
 
     def reset(self) -> None:
         """Time and models back to the start; plugins are reset."""
         self._drawing.settle()  # no picture of the time before comes after it
-        self._lockstep.cancel()
+        self.lockstep.cancel()
         self.world.reset_simulation()
         self.scheduler.restart()
         for contexts in (*self._plugins.values(), self._world_plugins):

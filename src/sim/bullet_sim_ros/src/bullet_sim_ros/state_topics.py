@@ -45,8 +45,12 @@ class StateTopics:
             except SimulationError as error:
                 rospy.logerr("topic %s: %s", rospy.resolve_name(topic), error)
 
-        rospy.Subscriber(topic, kind, lambda msg: self._simulation.mailbox.post(lambda: take(msg)),
-                         queue_size=10)
+        def receive(msg) -> None:
+            mailbox = self._simulation.mailbox
+            mailbox.announce(rospy.resolve_name(topic), msg)
+            mailbox.post(lambda: take(msg))
+
+        rospy.Subscriber(topic, kind, receive, queue_size=10)
 
 
 def _states(msg: ModelStates | LinkStates, rows) -> ModelStates | LinkStates:

@@ -177,8 +177,12 @@ class PluginContext(PluginScope):
 
         PluginError of a name that ROS does not allow.
         """
+        def answer(request):
+            self.services.mailbox.announce(rospy.resolve_name(name), request)
+            return handler(request)
+
         try:
-            service = rospy.Service(_legal(name), kind, handler)
+            service = rospy.Service(_legal(name), kind, answer)
         except rospy.ServiceException as error:
             log.warning("%s: service %s is not offered: %s", self.describe(), name, error)
             return

@@ -19,6 +19,7 @@ def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any],
     made = kind._response_class
 
     def answer(request):
+        mailbox.announce(rospy.resolve_name(name), request)
         response = made()
         try:
             mailbox.call(lambda: handler(request, response))

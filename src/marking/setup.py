@@ -1,0 +1,6 @@
+"""Installs the marking package through catkin."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["marking"], package_dir={"": "src"}))

@@ -1,0 +1,54 @@
+"""One case as a file: what the process that drives it has to know."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.track_file import load_track_file
+
+from evaluation.lap import LapScorer
+from evaluation.session.course_file import Course
+from marking.venues import driven
+
+CASE, REPORT, PATH_PICTURE, OUTPUT, FILM = (
+    "case.json", "report.json", "path.png", "output.txt", "film.mp4")
+
+
+@dataclass(frozen=True)
+class CaseFile:
+    """FOLDER/case.json, key by key."""
+
+    rules: str  # path
+    kind: str  # of sandbox
+    course: str
+    laps: int
+    submission: str  # folder
+    program: str  # relative to it
+    track: str  # path
+    film: bool
+    launch_args: list[str]  # for roslaunch, name:=value
+
+    def write(self, folder: Path) -> None:
+        """Into the case's folder."""
+        (folder / CASE).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
+
+    def driven(self) -> Course:
+        """The course that is driven."""
+        return driven(self.course)
+
+    def robot(self) -> str:
+        """The car's model name in the simulator."""
+        return self.driven().robot_name(tuple(self.launch_args))
+
+    def scorer(self) -> LapScorer:
+        """One that has seen nothing yet."""
+        track = build_track(load_track_file(Path(self.track)))
+        return LapScorer(track, self.laps, off_course=self.driven().off_course)
+
+
+def read_case(folder: Path) -> CaseFile:
+    """What `write` wrote."""
+    return CaseFile(**json.loads((folder / CASE).read_text(encoding="utf-8")))

@@ -1,0 +1,108 @@
+"""Brings a case's course up, and says what a submission has to do before time begins."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import xmlrpc.client
+from collections import Counter
+from pathlib import Path
+
+import rosgraph
+import rospy
+from gazebo_msgs.srv import GetWorldProperties
+
+from evaluation.session import names
+from evaluation.session.connections import Connections, look_up
+from evaluation.session.launch import MAY_FINISH, Launched
+from evaluation.session.observer import missing_connection
+from evaluation.session.processes import Child
+from marking import conduct, film
+from marking.case_files import CaseFile
+from marking.rules import Rules
+from marking.states import Tail
+
+ME = "/judge"  # never registered at the master
+STARTUP_LIMIT = 240.0  # s, wall, for the course: the machine may be busy
+LOOK_PERIOD = 0.1  # s, wall
+STEADY_TIME = 2.0  # s, wall, without a change at the master: the course is complete
+
+
+class CourseUp:
+    """A course without a driver; time stands still."""
+
+    def __init__(self, launched: Launched, case: CaseFile, folder: Path, state_log: Path):
+        """RunError if it does not come up; the simulator writes the state log."""
+        self._launched, self._case, self._course = launched, case, case.driven()
+        self._watching = {ME}  # who sees the camera and is no driver
+        self._registered: list | None = None  # at the master, since
+        self._since = 0.0  # s, wall
+        launched.start_roscore()
+        os.environ["ROS_MASTER_URI"] = launched.master_uri
+        self._master = rosgraph.Master(ME, launched.master_uri)
+        self._master.setParam("/gazebo/state_log", str(state_log))
+        launched.start("roslaunch", ["roslaunch", *self._course.launch, *case.launch_args])
+        launched.wait_for(lambda: "the course", self._is_ready, lambda _: None,
+                          STARTUP_LIMIT, LOOK_PERIOD)
+        self.film = self._start_film(folder) if case.film else None
+
+    def look_around(self, rules: Rules) -> tuple[conduct.Course, Tail]:
+        """What is there before the submission, and the master's log from here on."""
+        publishers, subscribers, services = self._master.getSystemState()
+        registered = [*publishers, *subscribers, *services]
+        master_log = Tail(self._launched.log_folder / "latest" / "master.log")
+        master_log.skip()
+        return conduct.Course(
+            frozenset(node for _, nodes in registered for node in nodes
+                      if not any(word in node for word in MAY_FINISH)),
+            frozenset(name for name, _ in [*publishers, *subscribers]),
+            frozenset(name for name, _ in services),
+            frozenset(self._master.getParamNames()),
+            frozenset([*rules.may_publish, self._course.commands]),
+            frozenset(rules.may_call), Counter([names.UNPAUSE])), master_log
+
+    def missing_link(self) -> str | None:
+        """What the submission has not done yet, before time may begin; None: nothing."""
+        try:
+            found = self._connections()
+        except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+            return "answered"
+        course = self._course
+        if not found.subscribers[course.camera] - self._watching:
+            return f"subscribed to {course.camera}"
+        if not found.publishers[course.commands]:
+            return f"advertised {course.commands}"
+        missing = missing_connection(found, ME, course)
+        # Without the nodes' names: anonymous ones differ from run to run.
+        return f"made {missing.partition(' from ')[0]}" if missing else None
+
+    def _is_ready(self) -> bool:
+        """The robot is there, and all that stands between it and a driver."""
+        try:
+            reply = rospy.ServiceProxy(names.WORLD, GetWorldProperties)()
+            found, registered = self._connections(), self._master.getSystemState()
+        except (rospy.ServiceException, OSError, xmlrpc.client.Error, rosgraph.MasterException):
+            return False
+        course = self._course
+        needed = (course.camera, course.camera_info, course.odometry, *course.lockstep)
+        if registered != self._registered:
+            self._registered, self._since = registered, time.monotonic()
+        return (self._case.robot() in reply.model_names
+                and all(found.subscribers[topic] for topic in (course.commands, *course.lockstep))
+                and all(found.publishers[topic] for topic in needed if topic != course.commands)
+                and time.monotonic() - self._since > STEADY_TIME)
+
+    def _start_film(self, folder: Path) -> Child:
+        child = self._launched.start(
+            "film", [sys.executable, "-P", "-m", film.__name__, str(folder)])
+        self._launched.wait_for(
+            lambda: "the film", lambda: film.NODE in self._connections().subscribers[
+                self._course.camera], lambda _: None, STARTUP_LIMIT, LOOK_PERIOD)
+        self._watching.add(film.NODE)
+        return child
+
+    def _connections(self) -> Connections:
+        course = self._course
+        return look_up(self._launched.master_uri, ME, (
+            course.camera, course.camera_info, course.commands, course.odometry, *course.lockstep))

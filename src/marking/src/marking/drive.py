@@ -1,0 +1,168 @@
+"""One case in a process of its own: brings the course up, starts the submission, watches, reports.
+
+Poses, contacts and calls come from the simulator's state log, a file that the sandbox does not
+show: no topic and no node's name is believed.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import socket
+import struct
+import sys
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+
+import rospy
+from std_srvs.srv import Empty
+
+from evaluation.lap import Verdict
+from evaluation.session import names
+from evaluation.session.failure import RunError
+from evaluation.session.launch import Launched
+from evaluation.session.session import Session
+from evaluation.trial.program import run_program
+from marking import conduct
+from marking.box import Box
+from marking.case_files import OUTPUT, CaseFile, read_case
+from marking.course_up import LOOK_PERIOD, CourseUp
+from marking.drive_report import write_report
+from marking.rules import Rules, load_rules
+from marking.sandbox import Kind
+from marking.states import STATE_LOG, Tail, bytes_below, sample_of
+
+SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
+ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
+FILM_TIME = 10.0  # s, wall, to finish the file
+MOST_LOGGED = 30e6  # bytes of all nodes' logs in one case
+SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
+
+
+class MarkedDrive:
+    """One submission's drive of one case."""
+
+    def __init__(self, session: Session, case: CaseFile, rules: Rules, folder: Path):
+        self._session, self._case, self._folder = session, case, folder
+        self._rules, self._limits = rules, rules.limits
+        self._robot, self._scorer = case.robot(), case.scorer()
+        self._state_log = Tail(folder / STATE_LOG)
+        self._contacts: Counter[str] = Counter()
+        self._fault, self._time_is_up = "", False
+
+    def run(self) -> dict:
+        """The case's report; RunError if the course itself could not be run."""
+        launched = self._session.launched("car", alone=self._case.kind != Kind.NONE.value)
+        self._log_folder = launched.log_folder
+        course = CourseUp(launched, self._case, self._folder, self._state_log.path)
+        there, self._master_log = course.look_around(self._rules)
+        self._conduct = conduct.Conduct(there)
+        self._state_log.skip()
+        box = Box(Kind(self._case.kind), Path(self._case.submission), Path(self._case.program),
+                  self._limits, _environment(launched.master_uri), self._folder / OUTPUT)
+        try:
+            self._drive(launched, course, box)
+            if self._conduct.violations:
+                time.sleep(SETTLE_TIME)  # all of them, whichever was seen first
+        finally:
+            box.end()
+        self._read_logs()
+        if course.film:
+            launched.end(course.film, FILM_TIME)
+        return write_report(self._folder, self._case, self._scorer, self._conduct.violations,
+                            self._fault, self._contacts)
+
+    def _drive(self, launched: Launched, course: CourseUp, box: Box) -> None:
+        began = time.monotonic()
+        while (missing := course.missing_link()) is not None:
+            if self._is_over(launched, box):
+                return
+            if time.monotonic() - began > self._limits.start_s:
+                self._fault = f"after {self._limits.start_s:g} s it had not {missing}"
+                return
+            time.sleep(LOOK_PERIOD)
+        # Beside the watching: a submission may have put a service of its own in that one's place.
+        threading.Thread(target=rospy.ServiceProxy(names.UNPAUSE, Empty), daemon=True).start()
+        began = time.monotonic()
+        while self._scorer.verdict is Verdict.DRIVING and not self._is_over(launched, box):
+            time.sleep(LOOK_PERIOD)
+            self._take_samples()
+            if self._time_is_up:
+                return
+            if time.monotonic() - began > self._limits.wall_s:
+                self._fault = f"it was not done after {self._limits.wall_s:g} s"
+
+    def _is_over(self, launched: Launched, box: Box) -> bool:
+        """Whether the submission did what ends a case, or has ended itself."""
+        self._read_logs()
+        if self._conduct.violations or self._fault:
+            return True
+        try:
+            launched.check(None)
+        except RunError as dead:
+            self._read_logs()
+            if not self._conduct.violations and "exit code 0" not in str(dead):
+                raise  # it crashed: nothing to mark by
+            self._conduct.see_end(str(dead).partition(" (")[0])
+            return True
+        if self._scorer.verdict is Verdict.DRIVING:
+            self._fault = box.fault()
+        return bool(self._fault)
+
+    def _read_logs(self) -> None:
+        self._take_samples()
+        self._conduct.see_registrations(self._master_log.lines())
+        if self._state_log.read + bytes_below(self._log_folder) > MOST_LOGGED:
+            self._fault = f"it had more than {MOST_LOGGED / 1e6:g} MB logged"
+
+    def _take_samples(self) -> None:
+        """Score the state log's new lines."""
+        for line in self._state_log.lines():
+            entry = json.loads(line)
+            self._conduct.see_state(entry)
+            if entry.get("unanswered", 0) > self._limits.unanswered:
+                self._fault = (f"it left more than {self._limits.unanswered:g} images without a "
+                               f"command within {self._limits.answer_s:g} s: answer every image")
+            sample = sample_of(entry, self._robot)
+            if sample is not None and sample.time > self._limits.simulated_s:
+                self._time_is_up = True
+            elif sample is not None and self._scorer.verdict is Verdict.DRIVING:
+                self._scorer.add(sample)
+                self._contacts.update(other for pair in entry["contacts"] if self._robot in pair
+                                      for other in pair if other != self._robot)
+
+
+def _bring_loopback_up() -> None:
+    """In a new network namespace it is down."""
+    with socket.socket() as any_socket:
+        fcntl.ioctl(any_socket, SIOCSIFFLAGS, struct.pack("16sH14x", b"lo", IFF_UP))
+
+
+def _environment(master_uri: str) -> dict[str, str]:
+    """What ROS and Python need, and nothing of the teacher's."""
+    kept = ("PYTHONPATH", "PATH", "ROS_PACKAGE_PATH", "ROS_ROOT", "ROS_DISTRO", "ROS_VERSION",
+            "ROS_ETC_DIR", "ROS_PYTHON_VERSION", "TURTLEBOT3_MODEL")
+    return {"LANG": "C.UTF-8", "ROS_MASTER_URI": master_uri, "ROS_HOSTNAME": "localhost",
+            **{name: os.environ[name] for name in kept if name in os.environ}}
+
+
+def main(folder: Path) -> int:
+    """Run the case that FOLDER/case.json describes; returns the exit code."""
+    return run_program("mark_drive", lambda: _run(folder))
+
+
+def _run(folder: Path) -> int:
+    case = read_case(folder)
+    if Kind(case.kind) is not Kind.NONE:
+        _bring_loopback_up()
+    socket.setdefaulttimeout(ANSWER_TIME)
+    with Session(folder) as session:
+        MarkedDrive(session, case, load_rules(Path(case.rules)), folder).run()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,130 @@
+"""The teacher's marking.yaml, checked: a wrong key or value is one line that names file and key."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from evaluation.session.failure import RunError
+from evaluation.session.resources import read_keys
+
+
+@dataclass(frozen=True)
+class Points:
+    """What a case is worth."""
+
+    finish: float
+    line: float
+    line_best_m: float
+    line_worst_m: float
+    speed: float
+    speed_best_m_s: float
+    speed_worst_m_s: float
+
+    @property
+    def most(self) -> float:
+        return self.finish + self.line + self.speed
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a submission may use in one case."""
+
+    start_s: float
+    simulated_s: float
+    wall_s: float
+    answer_s: float
+    unanswered: float
+    cpu_s: float
+    memory_mb: float
+    processes: float
+    disk_mb: float
+    output_mb: float
+
+
+@dataclass(frozen=True)
+class Rules:
+    """A marking.yaml, key by key."""
+
+    course: str
+    program: tuple[str, ...]
+    laps: int
+    tracks: tuple[str, ...]
+    seeds: int
+    first_seed: int
+    start_sideways_m: float
+    start_turn_deg: float
+    light: tuple[float, ...]
+    camera: tuple[int, ...]
+    points: Points
+    limits: Limits
+    may_publish: tuple[str, ...]
+    may_call: tuple[str, ...]
+
+
+def load_rules(path: Path) -> Rules:
+    """Read a marking.yaml; RunError names file and key."""
+    values = read_keys(path, [field.name for field in fields(Rules)])
+    rules = Rules(**{key: _value(path, key, kind, values[key])
+                     for key, kind in get_type_hints(Rules).items()})
+    small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
+    for wrong, what in (
+            (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],
+             "light: must be [least, most], more than 0"),
+            (len(rules.camera) not in (0, 2) or 0 in rules.camera,
+             "camera: must be [width, height] or []"),
+            (not rules.program, "program: must name a file"),
+            (rules.laps < 1, "laps: must be 1 or more"),
+            (rules.seeds < 1, "seeds: must be 1 or more"),
+            (not rules.points.most, "points: finish, line and speed are all 0"),
+            (small, f"limits.{''.join(small[:1])}: must be more than 0")):
+        if wrong:
+            raise RunError(f"{path}: {what}")
+    tracks = tuple(str((path.parent / track).resolve()) for track in rules.tracks)
+    return dataclasses.replace(rules, tracks=tracks)
+
+
+def _value(path: Path, key: str, kind: Any, value: Any) -> Any:
+    if dataclasses.is_dataclass(kind):
+        names = [field.name for field in fields(kind)]
+        given = set(value) if isinstance(value, dict) else set()
+        for what, keys in (("unknown", given - set(names)), ("missing", set(names) - given)):
+            if keys:
+                raise RunError(f"{path}: {what} key {f'{key}.{min(keys, key=str)}'!r}; "
+                               f"there are: {', '.join(names)}")
+        return kind(**{name: _value(path, f"{key}.{name}", float, value[name])
+                       for name in names})
+    wanted, fits = _KINDS[kind]
+    if not fits(value):
+        raise RunError(f"{path}: {key}: must be {wanted}, is {value!r}")
+    return tuple(value) if isinstance(value, list) else kind(value)
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float) and 0 <= value < math.inf
+
+
+def _list_of(fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, list) and all(map(fits, value))
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_whole(value: Any) -> bool:
+    return type(value) is int and 0 <= value < 10**8
+
+
+_KINDS = {
+    str: ("a text", _is_text),
+    int: ("a whole number, 0 or more", _is_whole),
+    float: ("a number, 0 or more", _is_number),
+    tuple[str, ...]: ("a list of texts", _list_of(_is_text)),
+    tuple[int, ...]: ("a list of whole numbers", _list_of(_is_whole)),
+    tuple[float, ...]: ("a list of numbers", _list_of(_is_number)),
+}

@@ -1,0 +1,106 @@
+"""The sandbox of a submission: bubblewrap, and limits of the kernel's.
+
+Inside there are the system and the workspace, read-only, the submission, and an empty home. Of
+processes it sees its own; the network is the case's own loopback (see `namespace`).
+"""
+
+from __future__ import annotations
+
+import enum
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+
+from evaluation.session.failure import RunError
+from marking.rules import Limits
+
+# What Python, ROS, OpenCV and the dynamic linker read there, and no more.
+ETC = ("alternatives", "fonts", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d",
+       "localtime", "nsswitch.conf", "passwd", "python3", "python3.11", "python3.13", "ros",
+       "ssl/openssl.cnf")
+HOME, SUBMISSION = "/home/student", "/home/submission"
+FIRST_UID = 2_000_000_000  # of users that nobody has
+OPEN_FILES = 512
+
+
+class Kind(enum.Enum):
+    """How a sandbox is made, for want of one way that works everywhere."""
+
+    ROOT = "root"  # root mounts, then gives up everything
+    USER = "user"  # a user namespace
+    NONE = "none"  # only limits: --no-sandbox
+
+
+def available() -> Kind:
+    """The kind that this machine allows; RunError if none, with what to do."""
+    kind = Kind.ROOT if os.getuid() == 0 else Kind.USER
+    if not shutil.which("bwrap"):
+        raise RunError("no sandbox: bubblewrap is not installed: apt-get install bubblewrap")
+    probe = [*namespace(kind), *sandbox(kind, Limits(*[64.0] * len(fields(Limits)))), "true"]
+    done = subprocess.run(probe, capture_output=True, text=True, timeout=60, check=False)
+    if done.returncode:
+        why = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
+        raise RunError(f"no sandbox: this machine allows no namespaces ({why[0]}); in Docker give "
+                       "--privileged; --no-sandbox runs submissions unprotected")
+    return kind
+
+
+def namespace(kind: Kind) -> list[str]:
+    """What a case's own program is started with: a network of its own, with loopback alone."""
+    if kind is Kind.NONE:
+        return []
+    return ["unshare", "--net", *(["--user", "--map-root-user"] if kind is Kind.USER else [])]
+
+
+def shown() -> list[Path]:
+    """What a submission sees besides the system: the workspace, or where it is installed."""
+    prefix = Path(sys.prefix)
+    beside = (prefix.parent / name for name in ("src", "devel"))
+    return [prefix, *(path for path in beside if path.is_dir())]
+
+
+def sandbox(kind: Kind, limits: Limits, folder: Path | None = None) -> list[str]:
+    """What a program is started with that sees this folder as SUBMISSION; the program follows."""
+    memory, disk = int(limits.memory_mb * 1e6), int(limits.disk_mb * 1e6)
+    limited = ["prlimit", f"--cpu={max(1, int(limits.cpu_s))}", f"--data={memory}",
+               f"--fsize={disk}", f"--nofile={OPEN_FILES}", "--core=0"]
+    if kind is Kind.NONE:
+        return limited
+    limited.append(f"--nproc={int(limits.processes) * 2}")  # threads, too; the rest is Box's
+    if kind is Kind.ROOT:  # the kernel counts processes by user: for each sandbox another
+        user = str(FIRST_UID + os.getpid())
+        limited = ["setpriv", "--reuid", user, "--regid", user, "--clear-groups",
+                   "--inh-caps=-all", "--no-new-privs", *limited]
+    return ["bwrap", *_namespaces(kind), *_view(limits, folder), *limited]
+
+
+def _namespaces(kind: Kind) -> list[str]:
+    user = (["--unshare-user", "--uid", "1000", "--gid", "1000"] if kind is Kind.USER else
+            ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"])  # setpriv drops these, too
+    return ["--unshare-pid", "--unshare-ipc", "--unshare-uts", "--die-with-parent",
+            "--new-session", "--cap-drop", "ALL", *user]
+
+
+def _view(limits: Limits, folder: Path | None) -> list[str]:
+    size = ["--size", str(int(limits.disk_mb * 2**20))]
+    above = {str(each): None for path in shown() for each in reversed(path.parents)}
+    return [
+        # Folders above a mount are closed to others unless they are made before it.
+        *_each(("--perms", "755", "--dir"), ["/etc", "/etc/ssl", "/home", *list(above)[1:]]),
+        "--ro-bind", "/usr", "/usr",
+        *[word for name in ("bin", "lib", "lib64", "sbin") if os.path.islink(f"/{name}")
+          for word in ("--symlink", f"usr/{name}", f"/{name}")],
+        *[word for path in (*(f"/etc/{name}" for name in ETC), *map(str, shown()))
+          for word in ("--ro-bind-try", path, path)],
+        *(["--ro-bind", str(folder), SUBMISSION] if folder else []),
+        "--proc", "/proc", "--dev", "/dev",
+        *_each(("--perms", "1777", *size, "--tmpfs"), ["/tmp", "/dev/shm", HOME]),
+        "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME,
+    ]  # fmt: skip
+
+
+def _each(options: tuple[str, ...], paths: list[str]) -> list[str]:
+    return [word for path in paths for word in (*options, path)]

@@ -1,0 +1,119 @@
+"""marks.csv, marks.html, and a page of each student that can be sent to them."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from urllib.parse import quote
+
+from marking.case_files import FILM, OUTPUT, PATH_PICTURE
+from marking.mark import Mark
+from marking.points import mean
+from marking.rules import Rules
+from marking.sandbox import Kind
+
+MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # which a spreadsheet would compute
+STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}img{max-width:32em}"
+         "td,th{text-align:left;padding:.2em 1em;border-bottom:1px solid #ccc;"
+         "vertical-align:top}pre{white-space:pre-wrap;background:#f4f4f4;padding:.5em}</style>")
+
+
+def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, out: Path) -> None:
+    """The table of all students, for a spreadsheet and for a browser."""
+    cases = sorted({mark.case for rows in marks.values() for mark in rows})
+    half = out / (MARKS + ".tmp")
+    with half.open("w", encoding="utf-8-sig", newline="") as file:  # Excel needs the mark
+        writer = csv.writer(file)
+        writer.writerow(["student", "points", "of", *cases, "sandbox",
+                         "why points were lost"])
+        for student, rows in marks.items():
+            points = {mark.case: mark.points for mark in rows}
+            writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
+                             *[points.get(case, "") for case in cases],
+                             "no" if kind is Kind.NONE else "yes", _cell(_lost(rows))])
+    half.replace(out / MARKS)
+    body = "".join(
+        f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
+        f"<td>{mean([mark.points for mark in rows]):g}</td><td>{escape(_lost(rows))}</td>"
+        f"<td>{''.join(_thumbnail(mark, out) for mark in rows)}</td></tr>\n"
+        for student, rows in marks.items())
+    warning = ("<p><b>These submissions ran without a sandbox.</b></p>" if kind is Kind.NONE
+               else "")
+    (out / PAGE).write_text(
+        _page("Marks", f"{warning}<p>Course: {escape(rules.course)}; {rules.points.most:g} points; "
+              f'<a href="{MARKS}">{MARKS}</a></p><table><tr><th>student</th><th>points</th>'
+              f"<th>why points were lost</th><th>path</th></tr>\n{body}</table>"), encoding="utf-8")
+
+
+def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: Path) -> None:
+    """students/ID/index.html and its pictures: nothing else is in that folder."""
+    for student, rows in marks.items():
+        folder = out / "students" / student
+        folder.mkdir(parents=True, exist_ok=True)
+        total = mean([mark.points for mark in rows])
+        for mark in rows:
+            for made, name in ((PATH_PICTURE, _picture(mark)), (FILM, _film(mark))):
+                if mark.folder and (out / mark.folder / made).exists():
+                    shutil.copyfile(out / mark.folder / made, folder / name)
+        parts = "".join(_case_part(mark, out, folder) for mark in rows)
+        (folder / STUDENT_PAGE).write_text(
+            _page(student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}"),
+            encoding="utf-8")
+
+
+def _picture(mark: Mark) -> str:
+    return f"{mark.case}.png"
+
+
+def _film(mark: Mark) -> str:
+    return f"{mark.case}.mp4"
+
+
+def _case_part(mark: Mark, out: Path, folder: Path) -> str:
+    lost = "".join(f"<li>{escape(each)}</li>" for each in mark.lost)
+    lost = f"<p>Lost:</p><ul>{lost}</ul>" if lost else ""
+    picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
+        folder / _picture(mark)).exists() else ""
+    film = f'<p><video src="{_film(mark)}" controls width="512"></video></p>' if (
+        folder / _film(mark)).exists() else ""
+    return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
+            f"{lost}{picture}{film}{_output(mark, out)}")
+
+
+def _output(mark: Mark, out: Path) -> str:
+    path = out / mark.folder / OUTPUT
+    if not mark.folder or not path.exists():
+        return ""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return f"<p>What the program printed:</p><pre>{escape(text)}</pre>" if text.strip() else ""
+
+
+def _thumbnail(mark: Mark, out: Path) -> str:
+    folder = f"students/{mark.student}"
+    path, film = f"{folder}/{_picture(mark)}", f"{folder}/{_film(mark)}"
+    image = f'<img style="width:8em" src="{_link(path)}" alt="">' if (out / path).exists() else ""
+    return image + (f'<br><a href="{_link(film)}">film</a>' if (out / film).exists() else "")
+
+
+def _lost(rows: Sequence[Mark]) -> str:
+    several = len(rows) > 1
+    return "; ".join(f"{mark.case}: {each}" if several else each
+                     for mark in rows for each in mark.lost)
+
+
+def _cell(text: str) -> str:
+    return f"'{text}" if text.startswith(FORMULA_STARTS) else text
+
+
+def _link(path: str) -> str:
+    return quote(path)
+
+
+def _page(title: str, body: str) -> str:
+    return ('<!DOCTYPE html>\n<html><head><meta charset="utf-8"><title>'
+            f"{escape(title)}</title>{STYLE}</head><body>\n<h1>{escape(title)}</h1>\n{body}\n"
+            "</body></html>\n")

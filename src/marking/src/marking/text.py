@@ -1,0 +1,22 @@
+"""What strangers wrote, made fit for one line of a terminal, a table or a page."""
+
+from __future__ import annotations
+
+import os
+
+
+def one_line(text: str) -> str:
+    """Without line ends, terminal codes and bytes that are no text."""
+    whole = text.encode("utf-8", "replace").decode()
+    return "".join(each if each.isprintable() else " " for each in whole).strip()
+
+
+def file_name(name: str) -> str:
+    """A file's name as text; Chinese Windows writes them in GBK."""
+    raw = os.fsencode(name)
+    for encoding in ("utf-8", "gbk"):
+        try:
+            return one_line(raw.decode(encoding))
+        except UnicodeDecodeError:
+            continue
+    return one_line(name)

@@ -1,0 +1,180 @@
+"""`make mark`: each submission drives each case in a sandbox of its own, and gets points."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import hashlib
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from racecar_description.track.closed_line import load_track
+
+from evaluation.laps.lit_drive import MODEL_PATH
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
+from evaluation.session.session import Session
+from evaluation.trial.command_line import Parser
+from evaluation.trial.protocol import REPORT, Case, Trial
+from marking.case_files import CaseFile
+from marking.course_up import STARTUP_LIMIT
+from marking.mark import Mark, by_student
+from marking.points import mean, points_of
+from marking.rules import load_rules
+from marking.sandbox import Kind, available, namespace, shown
+from marking.sheets import write_marks, write_student_pages
+from marking.submissions import find_submissions, prepare
+from marking.text import one_line
+from marking.unpacking import UnpackError
+from marking.venues import COURSES, make_scene
+
+NOT_RUN, SUBMISSION = "not run", "submission"
+TRIES = 3  # of a case in which the course itself could not be run
+
+
+@dataclass(frozen=True)
+class MarkedCase(Case):
+    """One submission on one track with one seed."""
+
+    student: str
+    track: int  # 0: the course's own
+    seed: int
+
+
+class MarkingTrial(Trial):
+    """Submissions times tracks times seeds."""
+
+    program = "mark"
+    does = "Mark a folder of submissions; each drives in a sandbox."
+    good = "every case could be run"
+    writes = "marks.csv, marks.html, report.json and a folder of each student"
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_argument("--submissions", type=Path, required=True, metavar="DIR",
+                            help="a file, folder, zip or tar of each student")
+        parser.add_argument("--rules", type=Path, metavar="YAML",
+                            help="what is driven and how it is marked (config/marking.yaml)")
+        parser.add_argument("--course", metavar="NAME",
+                            help=f"{', '.join(COURSES)}; replaces that of the rules")
+        parser.add_whole("--seeds", 0, "cases on each track; 0: as the rules say", variable="SEEDS")
+        parser.add_argument("--film", action="store_true", help="also film every drive")
+        parser.add_argument("--no-sandbox", action="store_true",
+                            help="run submissions unprotected, where the machine allows no sandbox")
+
+    def check(self, options: argparse.Namespace) -> None:
+        path = (options.rules or find_package("marking") / "config" / "marking.yaml").resolve()
+        rules = load_rules(path)
+        course = options.course or rules.course
+        if course not in COURSES:
+            given = "--course (COURSE=)" if options.course else f"{path}: course:"
+            raise RunError(f"{given} must be one of {', '.join(COURSES)}, is {course!r}")
+        for track in rules.tracks:
+            load_track(Path(track))
+        self._rules = dataclasses.replace(rules, course=course,
+                                          seeds=options.seeds or rules.seeds)
+        self._rules_path, self._out, self._film = path, options.out, options.film
+        self._rules_digest = hashlib.sha256(
+            f"{course} {path.read_text(encoding='utf-8')}".encode()).hexdigest()
+        self._submissions = {each.student: each for each in find_submissions(options.submissions)}
+        self._kind = Kind.NONE if options.no_sandbox else available()
+        self._refuse_what_the_sandbox_shows(options)
+
+    def _refuse_what_the_sandbox_shows(self, options: argparse.Namespace) -> None:
+        for what, path in (("--submissions", options.submissions), ("--out", options.out),
+                           ("--rules", options.rules)):
+            inside = path and any(map(path.resolve().is_relative_to, shown()))
+            if inside and self._kind is not Kind.NONE:
+                raise RunError(f"{what} {path}: every submission could read it there; put it "
+                               f"outside {' '.join(map(str, shown()))}")
+
+    def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
+        rules = self._rules
+        return [MarkedCase(f"{student}/{track}-{seed}", student, track, seed)
+                for student in self._submissions for track in range(1 + len(rules.tracks))
+                for seed in range(rules.first_seed, rules.first_seed + rules.seeds)]
+
+    def setup(self, session: Session, case: MarkedCase) -> None:
+        self._session, self._case, self._fault = session, case, ""
+        folder = self._folder(case)
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            program = prepare(self._submissions[case.student], folder / SUBMISSION,
+                              self._rules.program)
+        except (UnpackError, OSError) as error:
+            self._fault = one_line(str(error))
+            return
+        self._scene = scene = make_scene(
+            self._rules, case.track, case.seed, self._out / "scenes" / _case_name(case))
+        CaseFile(str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
+                 str(folder / SUBMISSION), str(program), str(scene.track), self._film,
+                 scene.launch_args).write(folder)
+
+    def run(self) -> dict:
+        """The report of the drive, or what went wrong before it."""
+        if self._fault:
+            return {"outcome": "fault", "violations": [], "fault": self._fault}
+        folder = self._folder(self._case)
+        command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
+                   str(folder)]
+        environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": "localhost"}
+        limits = self._rules.limits
+        limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
+        for _ in range(TRIES):
+            try:
+                drive = self._session.start_drive(command, folder, environment)
+                return drive.report(limit, self._case.name)
+            except RunError as error:
+                failure = str(error)
+        return {"outcome": NOT_RUN, "violations": [], "fault": failure}
+
+    def score(self, record: dict) -> Mark:
+        case = self._case
+        shutil.rmtree(self._folder(case) / SUBMISSION, ignore_errors=True)  # the teacher has it
+        points, lost = points_of(record, self._rules.points)
+        folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
+        return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
+                    tuple(map(one_line, lost)), folder)
+
+    def passed(self, results: Sequence[Mark]) -> bool:
+        return all(mark.outcome != NOT_RUN for mark in results)
+
+    def line(self, result: Mark) -> str:
+        why = f": {result.lost[0]}" if result.lost else ""
+        return f"{result.name}: {result.points:g} points, {result.outcome}{why}"
+
+    def table(self, results: Sequence[Mark]) -> str:
+        rows = [f"{mean([mark.points for mark in marks]):7.2f}  {student}"
+                for student, marks in by_student(results).items()]
+        warned = [] if self._kind is not Kind.NONE else ["without a sandbox (--no-sandbox)"]
+        return "\n".join([" points  student", *rows, *warned])
+
+    def values(self, results: Sequence[Mark]) -> dict:
+        return {"sandbox": self._kind.value, "rules_sha256": self._rules_digest,
+                "marks": [dataclasses.asdict(mark) for mark in results]}
+
+    def earlier(self, options: argparse.Namespace) -> list[Mark]:
+        """None is no mistake."""
+        return super().earlier(options) if (options.out / REPORT).exists() else []
+
+    def from_values(self, values: dict) -> list[Mark]:
+        if values["rules_sha256"] != self._rules_digest:
+            raise RunError(f"{self._out}: was marked by other rules; choose another --out")
+        return [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
+                if each["outcome"] != NOT_RUN]
+
+    def pictures(self, results: Sequence[Mark], out: Path) -> list[str]:
+        marks = by_student(results)
+        write_student_pages(marks, self._rules, out)
+        write_marks(marks, self._rules, self._kind, out)
+        return []
+
+    def _folder(self, case: MarkedCase) -> Path:
+        return self._out / "cases" / case.student / _case_name(case)
+
+
+def _case_name(case: MarkedCase) -> str:
+    return f"track{case.track}-seed{case.seed}"

@@ -1,0 +1,95 @@
+"""Where submissions drive: a course on a track, with a start and a light drawn from a seed."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from racecar_description.track.closed_line import load_track
+
+from evaluation.laps import lit_drive
+from evaluation.laps.disturbance import Disturbance
+from evaluation.session.course_file import Course, load_course
+from evaluation.session.failure import RunError
+from evaluation.session.resources import find_package
+from marking.rules import Rules
+
+# What can be driven: our launch file of that name, and the course file of evaluation's.
+COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}
+
+
+def driven(name: str) -> Course:
+    """The course file, with a launch file that starts no driver."""
+    return replace(load_course(COURSES[name]), launch=("marking", f"{name}.launch"))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a case drives on."""
+
+    track: Path  # YAML of its centre line
+    models: str  # folders of models, for the environment
+    launch_args: list[str]  # for roslaunch, name:=value
+
+
+def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
+    """The scene of a track (0: the course's own) and a seed; its files go to the folder."""
+    path = Path(rules.tracks[track - 1]) if track else None
+    world, line, models = _VENUES[rules.course](path, folder / "track")
+    draw = _draw(rules, seed)
+    lit = lit_drive.write_world(world, models, draw.light, folder / "world")
+    x, y, yaw = draw.start(load_track(line))
+    arguments = {
+        "world_name": lit, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
+        "seed": seed, "gui": "false", "paused": "true", "real_time_factor": 0,
+        "pub_clock_frequency": 30, "lockstep": ",".join(driven(rules.course).lockstep),
+        "lockstep_timeout": f"{rules.limits.answer_s:g}",
+        **dict(zip(("camera_width", "camera_height"), rules.camera, strict=False))}
+    folders = (folder / "world" / "models", models, os.environ.get(lit_drive.MODEL_PATH, ""))
+    return Scene(line, ":".join(map(str, folders)),
+                 [f"{name}:={value}" for name, value in arguments.items()])
+
+
+def _draw(rules: Rules, seed: int) -> Disturbance:
+    """Start and light of a case, evenly distributed within the rules' bounds."""
+    random = np.random.default_rng(seed)
+    most, turn = rules.start_sideways_m, math.radians(rules.start_turn_deg)
+    return Disturbance(sideways=random.uniform(-most, most), along=0.0,
+                       turn=random.uniform(-turn, turn), camera_noise=0.0,
+                       light=random.uniform(*rules.light))
+
+
+# Of each course: the world, the track's YAML, and the folder of the world's own models.
+_Venue = tuple[Path, Path, Path]
+
+
+def _course(track: Path | None, _out: Path) -> _Venue:
+    package = find_package("learning_topic")
+    world = package / "worlds" / "course.world"
+    if track is not None:
+        raise RunError("tracks: the course has its own alone, the racetrack takes others")
+    return world, load_course("course").track_path(), package / "models"
+
+
+def _race(track: Path | None, _out: Path) -> _Venue:
+    """A track of make_track: FOLDER/tracks/NAME.yaml beside FOLDER/worlds and FOLDER/models."""
+    root = find_package("racecar_description") if track is None else track.parents[1]
+    name = "racetrack" if track is None else track.stem
+    world = root / "worlds" / f"{name}.world"
+    if not world.exists():
+        raise RunError(f"{track}: there is no {world}; make it by racecar_description's make_track")
+    return world, root / "tracks" / f"{name}.yaml", root / "models"
+
+
+def _lane(track: Path | None, _out: Path) -> _Venue:
+    if track is not None:
+        raise RunError("tracks: the lane has its own alone: tracks: []")
+    root = find_package("lane_keeping")
+    return root / "worlds" / "lane_empty.world", load_course("lane_empty").track_path(), (
+        root / "models")
+
+
+_VENUES = {"course": _course, "race": _race, "lane": _lane}

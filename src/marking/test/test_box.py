@@ -1,0 +1,92 @@
+"""The sandbox alone, without ROS: what hostile programs see, use and leave behind."""
+
+import dataclasses
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import made_up
+import psutil
+import pytest
+from marking.box import Box
+from marking.rules import load_rules
+from marking.sandbox import Kind, available, namespace
+
+from evaluation.session.failure import RunError
+
+LIMIT = 30.0  # s, wall
+LIMITS = dataclasses.replace(
+    load_rules(Path(__file__).parents[1] / "config" / "marking.yaml").limits, memory_mb=300,
+    disk_mb=16, output_mb=2)
+
+
+@pytest.fixture(scope="module")
+def kind() -> Kind:
+    try:
+        return available()
+    except RunError as refused:
+        pytest.skip(str(refused))
+
+
+@pytest.fixture()
+def boxed(kind, tmp_path):
+    """Starts a program in a sandbox; afterwards nothing of it runs."""
+    boxes = []
+
+    def start(program: str) -> Box:
+        folder = tmp_path / "submission"
+        folder.mkdir()
+        (folder / "main.py").write_text(program, encoding="utf-8")
+        tmp_path.chmod(0o755)
+        boxes.append(Box(kind, folder, Path("main.py"), LIMITS,
+                         {"PATH": os.environ["PATH"]}, tmp_path / "output.txt"))
+        return boxes[-1]
+
+    yield start
+    for box in boxes:
+        box.end()
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
+
+
+def fault_of(box: Box) -> str:
+    until = time.monotonic() + LIMIT
+    while not (fault := box.fault()):
+        assert time.monotonic() < until, "it still runs"
+        time.sleep(0.05)
+    return fault
+
+
+@pytest.mark.parametrize("student", [
+    "looks_around", "much_output", "much_memory", "many_take_memory", "fills_disk", "kills_all",
+    "fork_bomb", "crash_at_once", "missing_module", "python2", "tabs"])
+def test_what_ends_is_said_in_one_line(boxed, student):
+    program, says, *_ = made_up.PROGRAMS[student]
+    fault = fault_of(boxed(program))
+    assert says in fault
+    assert "\n" not in fault
+
+
+@pytest.mark.parametrize("student", ["endless_import", "deaf_to_signals"])
+def test_what_never_ends_is_ended_with_all_it_started(boxed, student):
+    box = boxed(made_up.PROGRAMS[student][0])
+    time.sleep(1.5)
+    assert box.fault() == ""
+
+
+def test_printed_secrets_of_a_terminal_do_not_reach_the_reason(boxed):
+    assert "\x1b" not in fault_of(boxed("raise RuntimeError('\\x1b[2J red')"))
+
+
+def test_its_output_is_kept_but_bounded(boxed, tmp_path):
+    fault_of(boxed(made_up.PROGRAMS["much_output"][0]))
+    assert 0 < (tmp_path / "output.txt").stat().st_size <= 64 * 1024
+
+
+def test_a_case_has_a_network_of_its_own(kind):
+    look = "import os; print(sorted(os.listdir('/proc/self/net/dev_snmp6')), end='')"
+    done = subprocess.run([*namespace(kind), sys.executable, "-c", look], capture_output=True,
+                          text=True, check=True)
+    assert done.stdout == "['lo']"

@@ -1,0 +1,91 @@
+"""`make mark` with the real simulator: a small class, Ctrl-C, and going on."""
+
+import csv
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import made_up
+import psutil
+import pytest
+
+pytestmark = pytest.mark.processes
+SCRIPT = Path(__file__).parents[1] / "scripts" / "mark.py"
+LIMIT = 500.0  # s, wall: a lap, and three starts of the course on a busy machine
+CLASS = {"good", "sets_state", "odom", "kills_simulator", "zip_bomb.zip", "report.docx"}
+
+
+def command(folder: Path, *options: str) -> list[str]:
+    return [sys.executable, str(SCRIPT), "--submissions", str(folder / "in"), "--rules",
+            str(folder / "marking.yaml"), "--out", str(folder / "out"), *options]
+
+
+def mark(folder: Path, *options: str) -> subprocess.CompletedProcess:
+    done = subprocess.run(command(folder, *options), capture_output=True, text=True,
+                          timeout=LIMIT)
+    if "no sandbox:" in done.stderr:
+        pytest.skip(done.stderr)
+    return done
+
+
+def rows_of(folder: Path) -> dict[str, dict[str, str]]:
+    with (folder / "out" / "marks.csv").open(encoding="utf-8-sig", newline="") as file:
+        return {row["student"]: row for row in csv.DictReader(file)}
+
+
+@pytest.mark.timeout(2 * LIMIT)
+def test_a_class_is_marked_and_goes_on_where_it_was_interrupted(tmp_path):
+    expected = made_up.write(tmp_path / "in", CLASS)
+    made_up.write_rules(tmp_path / "marking.yaml", start_s=120)
+    done = mark(tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = rows_of(tmp_path)
+    assert set(rows) == set(expected)
+    for student, (says, least, most) in expected.items():
+        assert says in rows[student]["why points were lost"], student
+        assert least <= float(rows[student]["points"]) <= most, rows[student]
+    assert (tmp_path / "out/students/good/track0-seed1.png").stat().st_size > 10_000
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
+    marks = (tmp_path / "out" / "marks.csv").read_bytes()
+    (tmp_path / "out" / "marks.csv").unlink()
+    again = mark(tmp_path, "--resume")
+    assert again.returncode == 0
+    assert "[1/" not in again.stdout  # nothing drove
+    assert (tmp_path / "out" / "marks.csv").read_bytes() == marks
+
+
+@pytest.mark.timeout(LIMIT)
+def test_ctrl_c_keeps_what_is_done(tmp_path):
+    made_up.write(tmp_path / "in", {"broken.zip", "endless_import"})
+    made_up.write_rules(tmp_path / "marking.yaml", start_s=LIMIT)
+    running = subprocess.Popen(command(tmp_path), stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + LIMIT / 2
+    while not list(tmp_path.glob("out/cases/endless_import/*/output.txt")):
+        if running.poll() is not None:
+            pytest.skip(running.stderr.read())
+        assert time.monotonic() < until
+        time.sleep(0.2)
+    running.send_signal(signal.SIGINT)
+    assert running.wait(30.0) == 130
+    assert set(rows_of(tmp_path)) == {"broken"}
+    assert [each for each in psutil.Process().children(recursive=True)
+            if each.status() != psutil.STATUS_ZOMBIE] == []
+
+
+def test_a_course_that_is_not_there_is_one_line(tmp_path):
+    made_up.write(tmp_path / "in", {"good"})
+    made_up.write_rules(tmp_path / "marking.yaml")
+    done = mark(tmp_path, "--course", "moon")
+    assert done.returncode == 2
+    assert done.stderr == ("mark: --course (COURSE=) must be one of course, race, lane, "
+                           "is 'moon'\n")
+
+
+def test_rules_that_submissions_could_read_are_refused(tmp_path):
+    made_up.write(tmp_path / "in", {"good"})
+    done = mark(tmp_path, "--rules", str(made_up.RULES))
+    assert done.returncode == 2
+    assert "every submission could read it there" in done.stderr

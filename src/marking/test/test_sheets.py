@@ -1,0 +1,60 @@
+"""marks.csv, marks.html and the students' pages hold what strangers wrote without obeying it."""
+
+import csv
+
+from made_up import RULES
+from marking.case_files import OUTPUT, PATH_PICTURE
+from marking.mark import Mark, by_student
+from marking.rules import load_rules
+from marking.sandbox import Kind
+from marking.sheets import write_marks, write_student_pages
+from marking.text import file_name, one_line
+
+EVIL = "<script>alert(1)</script>"
+
+
+def write(tmp_path, kind=Kind.USER):
+    folder = tmp_path / "cases" / "张伟" / "track0-seed1"
+    folder.mkdir(parents=True)
+    (folder / OUTPUT).write_bytes(f"printed {EVIL} \xff".encode("latin-1"))
+    (folder / PATH_PICTURE).write_bytes(b"png")
+    marks = by_student([
+        Mark("b/0-1", "=cmd()", "track0-seed1", "fault", 0.0, (f"100 points: {EVIL}",), ""),
+        Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, ("9.5 points: slow",),
+             "cases/张伟/track0-seed1"),
+        Mark("a/0-2", "张伟", "track0-seed2", "closed", 80.5, (), "")])
+    write_student_pages(marks, load_rules(RULES), tmp_path)
+    write_marks(marks, load_rules(RULES), kind, tmp_path)
+
+
+def test_the_table_has_a_mean_and_each_case(tmp_path):
+    write(tmp_path)
+    with (tmp_path / "marks.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["student"] for row in rows] == ["'=cmd()", "张伟"]  # no formula
+    assert rows[1]["points"] == "85.5"
+    assert [rows[1]["track0-seed1"], rows[1]["track0-seed2"]] == ["90.5", "80.5"]
+    assert rows[1]["why points were lost"] == "track0-seed1: 9.5 points: slow"
+    assert rows[1]["sandbox"] == "yes"
+
+
+def test_without_a_sandbox_the_marks_say_so(tmp_path):
+    write(tmp_path, Kind.NONE)
+    assert "without a sandbox" in (tmp_path / "marks.html").read_text()
+    assert ",no," in (tmp_path / "marks.csv").read_text()
+
+
+def test_pages_show_what_was_printed_and_run_none_of_it(tmp_path):
+    write(tmp_path)
+    page = (tmp_path / "students" / "张伟" / "index.html").read_text()
+    assert "printed &lt;script&gt;" in page
+    assert 'src="track0-seed1.png"' in page
+    assert (tmp_path / "students" / "张伟" / "track0-seed1.png").exists()
+    for each in tmp_path.rglob("*.html"):
+        assert EVIL not in each.read_text()
+
+
+def test_what_strangers_wrote_becomes_one_line():
+    assert one_line("a\x1b[2J\nb\r") == "a [2J b"
+    assert one_line("\udcff") == "?"
+    assert file_name(b"\xd0\xa1\xb3\xb5.py".decode("utf-8", "surrogateescape")) == "小车.py"

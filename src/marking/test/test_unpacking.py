@@ -1,0 +1,57 @@
+"""Archives of strangers: what is unpacked, and what is refused in one line."""
+
+import zipfile
+
+import made_up
+import pytest
+from marking.submissions import find_submissions, prepare
+from marking.unpacking import UnpackError, unpack
+
+PATTERNS = ("follower.py", "*follow*.py", "main.py")
+REFUSED = [name for name, (_, row, *_) in made_up.ARCHIVES.items() if row]
+ACCEPTED = [name for name, (_, row, *_) in made_up.ARCHIVES.items() if not row]
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_run_is_one_line_and_leaves_nothing_outside(tmp_path, name):
+    expected = made_up.write(tmp_path / "in", {name})
+    [submission] = find_submissions(tmp_path / "in")
+    with pytest.raises(UnpackError) as refused:
+        prepare(submission, tmp_path / "out" / "here", PATTERNS)
+    assert expected[submission.student][0] in str(refused.value)
+    assert "\n" not in str(refused.value)
+    assert not list(tmp_path.glob("*.py"))
+
+
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_the_program_of_an_archive_is_found(tmp_path, name):
+    made_up.write(tmp_path / "in", {name})
+    [submission] = find_submissions(tmp_path / "in")
+    program = prepare(submission, tmp_path / "out", PATTERNS)
+    assert "follower" in program.name
+    assert (tmp_path / "out" / program).is_file()
+
+
+def test_names_that_chinese_windows_wrote_are_read(tmp_path):
+    archive = tmp_path / "a.zip"
+    with zipfile.ZipFile(archive, "w") as made:
+        made.writestr("AAAA.py", "")
+    raw = archive.read_bytes().replace(b"AAAA", "小车".encode("gbk"))
+    archive.write_bytes(raw)
+    unpack(archive, tmp_path / "out")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["小车.py"]
+
+
+def test_two_submissions_of_one_student_are_not_run(tmp_path):
+    (tmp_path / "ann.py").write_text("")
+    (tmp_path / "ann.zip").write_bytes(b"")
+    [submission] = find_submissions(tmp_path)
+    assert submission.fault == "ann.py and ann.zip are both ann's"
+
+
+def test_a_link_in_a_folder_is_refused(tmp_path):
+    (tmp_path / "in" / "ann").mkdir(parents=True)
+    (tmp_path / "in" / "ann" / "follower.py").symlink_to("/etc/passwd")
+    [submission] = find_submissions(tmp_path / "in")
+    with pytest.raises(UnpackError, match="symbolic link"):
+        prepare(submission, tmp_path / "out", PATTERNS)

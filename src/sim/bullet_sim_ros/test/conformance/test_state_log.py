@@ -1,0 +1,57 @@
+"""The state log: what a judge believes instead of topics."""
+
+import json
+
+import pytest
+from gazebo_msgs.msg import ModelState
+
+from bullet_sim.pose import Pose
+from bullet_sim_ros.state_log import StateLog
+
+BOX = """<model name="NAME"><link name="body">
+  <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+</link></model>"""
+
+
+@pytest.fixture
+def logged(bench, tmp_path):
+    """A bench, and the lines of its state log."""
+    StateLog(bench.simulation, tmp_path / "state.jsonl")
+    bench.spawn(BOX.replace("NAME", "low"), Pose((0, 0, 0.5)))
+    bench.spawn(BOX.replace("NAME", "high"), Pose((0, 0, 5)))
+    return bench, lambda: [json.loads(line)
+                           for line in (tmp_path / "state.jsonl").read_text().splitlines()]
+
+
+def test_poses_and_contacts_of_what_moves_at_25_hz(logged):
+    bench, lines = logged
+    bench.run(0.4)
+    states = lines()
+    assert [state["time"] for state in states[:3]] == pytest.approx([0.04, 0.08, 0.12])
+    assert len(states) == 10
+    assert set(states[-1]["poses"]) == {"low", "high"}  # and not the ground
+    assert states[0]["poses"]["low"] == pytest.approx([0, 0, 0.5, 0, 0, 0, 1], abs=1e-3)
+    assert states[-1]["contacts"] == [["ground_plane", "low"]]
+    assert states[-1]["unanswered"] == 0
+
+
+def test_who_acts_on_the_world_by_service_or_topic(logged):
+    bench, lines = logged
+    bench.call("/gazebo/get_model_state", model_name="low")
+    bench.call("/gazebo/pause_physics")
+    bench.call("/gazebo/unpause_physics")
+    bench.send("/gazebo/set_model_state", ModelState(model_name="low"))
+    bench.run(0.01)
+    assert [line["call"] for line in lines() if "call" in line] == [
+        "/gazebo/get_model_state", "/gazebo/pause_physics", "/gazebo/unpause_physics",
+        "/gazebo/set_model_state"]
+
+
+def test_a_plugin_s_service_is_a_call_too(logged):
+    bench, lines = logged
+    bench.spawn("""<model name="cart"><link name="base"/><plugin name="p"
+      filename="libgazebo_ros_imu.so"><bodyName>base</bodyName><topicName>turn</topicName>
+      <serviceName>turn/calibrate</serviceName></plugin></model>""")
+    bench.call("/turn/calibrate")
+    bench.run(0.01)
+    assert {"call": "/turn/calibrate", "caller": ""} in lines()
