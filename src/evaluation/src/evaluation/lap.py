@@ -86,6 +86,7 @@ class LapScorer:
     _lap_start: float = 0.0  # s
     _lap_from: float = 0.0  # m, position at which this lap began
     _position: float = 0.0  # m along the line, counted on from lap to lap
+    _first_position: float = 0.0
     _farthest: float = 0.0
     _mark: tuple[float, float] = (0.0, 0.0)  # time and position of the last progress
     _moving: bool = False
@@ -94,6 +95,11 @@ class LapScorer:
     def driven_share(self) -> float:
         """Share of the present lap, 0 to 1."""
         return min(max((self._position - self._lap_from) / self.track.length, 0.0), 1.0)
+
+    @property
+    def progress(self) -> float:
+        """m along the line since the first sample; less than 0 backwards."""
+        return self._position - self._first_position
 
     def add(self, sample: Sample) -> Verdict:
         """Score one more sample."""
@@ -111,7 +117,7 @@ class LapScorer:
 
     def _begin(self, sample: Sample, s: float) -> None:
         self._position = math.remainder(s, self.track.length)
-        self._lap_from = self._farthest = self._position
+        self._lap_from = self._farthest = self._first_position = self._position
         self._mark = (sample.time, self._position)
         self._lap_start = sample.time
 
