@@ -28,7 +28,8 @@ def policy_of(numbers, course, space, score):
     columns = np.zeros((2, 3 * (len(numbers) - 2)))
     columns[1, 1::3] = numbers[2:]
     scale = space.high.astype(float)[:, None]
-    return LinearPolicy(driving_courses.ENVIRONMENTS[f"driving_courses/{course}-v0"], "twist",
+    options = {"action": "twist"} | driving_courses.ENVIRONMENTS[f"driving_courses/{course}-v0"]
+    return LinearPolicy(options["course"], options["action"],
                         (columns * scale).tolist(), (numbers[:2] * scale[:, 0]).tolist(),
                         space.low.tolist(), space.high.tolist(), score)
 
