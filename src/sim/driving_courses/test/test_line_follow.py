@@ -99,11 +99,14 @@ def test_a_seed_gives_equal_bits_and_another_one_others():
     fresh.close()
 
 
-@pytest.mark.parametrize("context", ["fork", "spawn"])
-def test_vectors_of_processes_see_what_one_process_sees(context):
-    options = {"size": (40, 30), "randomise": TRIALS}
-    envs = gymnasium.make_vec(LINE, num_envs=2, vectorization_mode="async",
+def vector(context, **options):
+    return gymnasium.make_vec(LINE, num_envs=2, vectorization_mode="async",
                               vector_kwargs={"context": context}, **options)
+
+
+def test_vectors_of_processes_see_what_one_process_sees():
+    options = {"size": (40, 30), "randomise": TRIALS}
+    envs = vector("spawn", **options)
     actions = np.array([[0.3, 0.5], [0.2, -0.5]], np.float32)
     seen = [envs.reset(seed=[5, 6])[0], *(envs.step(actions)[0] for _ in range(5))]
     envs.close()
@@ -113,6 +116,22 @@ def test_vectors_of_processes_see_what_one_process_sees(context):
         for theirs, own in zip(seen, mine, strict=True):
             np.testing.assert_array_equal(theirs[number], own)
     env.close()
+
+
+def test_a_process_that_draws_nothing_may_be_forked_and_another_says_what_to_do():
+    code = (f"import gymnasium, driving_courses; envs = gymnasium.make_vec('{LINE}', num_envs=2, "
+            "vectorization_mode='async', vector_kwargs={'context': 'fork'}, size=(16, 12)); "
+            "print(envs.reset(seed=0)[0].shape); envs.close()")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False,
+                          timeout=200)
+    assert done.stdout.strip() == "(2, 12, 16, 3)", done.stderr
+    env = make(size=(16, 12))
+    env.reset(seed=0)
+    env.close()
+    envs = vector("fork", size=(16, 12))
+    with pytest.raises(CourseError, match="'context': 'spawn'"):
+        envs.reset(seed=0)
+    envs.close(terminate=True)
 
 
 def picture(randomise, seed=3, **options):

@@ -66,7 +66,7 @@ class Course:
 
 
 def load_course(name: str | Path) -> Course:
-    """The course of that name in courses/, or of that .yaml file; CourseError names file and key."""
+    """The course of that name in courses/, or of a .yaml file; CourseError names file and key."""
     path = FOLDER / f"{name}.yaml" if not str(name).endswith(".yaml") else Path(name)
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))

@@ -8,6 +8,9 @@ from typing import Protocol
 from xml.etree.ElementTree import Element
 
 import yaml
+from car_control.motor import Drive as MotorCommand
+from car_control.motor import MotorSettings, controller_commands
+from car_control.settings import load_settings
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
 from bullet_sim.control.controllers.diff_drive_controller import DiffDriveGeometry
@@ -22,9 +25,6 @@ from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.model import Model
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
-from car_control.motor import Drive as MotorCommand
-from car_control.motor import MotorSettings, controller_commands
-from car_control.settings import load_settings
 from driving_courses.packages import find_file
 
 

@@ -29,7 +29,8 @@ class CourseEnv(gymnasium.Env):
 
     def __init__(self, course: str | Path, observation: str = "image",
                  size: tuple[int, int] | None = None, action: str = "twist", laps: int = 1,
-                 duration: float = 300.0, render_mode: str | None = None,
+                 duration: float = 300.0, timestep: float | None = None,
+                 render_mode: str | None = None,
                  randomise: Randomisation | Mapping[str, Any] | None = None):
         """CourseError for an option that is not possible.
 
@@ -38,6 +39,7 @@ class CourseEnv(gymnasium.Env):
         size: width and height of the picture, px; (84, 84), for features as the course says.
         action: "twist", m/s and rad/s; "ackermann", m/s and rad of the front wheel; left positive.
         laps: after which an episode ends; duration: simulated s after which it is truncated.
+        timestep: s of one step of the engine, at most 0.005; None: as in ROS, 0.001.
         randomise: a `Randomisation`, or a mapping with some of its keys.
         """
         for name, value in (("observation", observation), ("action", action),
@@ -52,7 +54,9 @@ class CourseEnv(gymnasium.Env):
         self._task = open_task(self.course, _whole("laps", laps))
         size = size or (self.course.features.size if self._features else IMAGE_SIZE)
         width, height = (_whole("size", side) for side in size)
-        self._simulation = Simulation(self.course, (width, height))
+        if timestep is not None and not 0.0005 <= timestep <= 0.005:
+            raise CourseError(f"timestep: must be from 0.0005 to 0.005 s, is {timestep!r}")
+        self._simulation = Simulation(self.course, (width, height), timestep)
         self._most_steps = _whole("duration", round(duration * self._simulation.rate_hz))
         self.action_space = _actions(self.course, self._ackermann)
         self.observation_space = spaces.Box(0, 255, (height, width, 3), np.uint8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import replace
 
 import cv2
@@ -19,10 +20,13 @@ from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 from driving_courses.course import Course
 from driving_courses.drives import DRIVES
+from driving_courses.errors import CourseError
 from driving_courses.packages import find_file
 from driving_courses.randomisation import Episode
 from driving_courses.resources import package_folder, resources
 from evaluation.lap import Sample
+
+_drawing: set[int] = set()  # processes that have opened a renderer; a forked one has its parent's
 
 
 class Simulation:
@@ -31,9 +35,10 @@ class Simulation:
     The renderer is opened with the first episode: until then a process may be forked.
     """
 
-    def __init__(self, course: Course, size: tuple[int, int]):
-        """`size`: width and height of the camera's pictures, px."""
-        self._course, self._size = course, size
+    def __init__(self, course: Course, size: tuple[int, int], timestep: float | None = None):
+        """`size`: width and height of the camera's pictures, px; `timestep`: of the engine, s,
+        None: as the world says."""
+        self._course, self._size, self._timestep = course, size, timestep
         text = expand(find_file(course.robot), find_package=package_folder)
         self._urdf = parse_xml(text, course.robot)
         self._robot = load_model(text, resources(course))
@@ -49,10 +54,13 @@ class Simulation:
         """The robot stands at `start` (x, y in m, yaw in rad); go on to the first picture."""
         self._end()
         if self._renderer is None:
-            self._renderer = open_renderer()
+            self._renderer = _open_renderer()
         said = episode.start
         self._gain = max(1.0, said.light)
-        self._world = World(_disturbed(world, said.light, episode.friction), episode.seed)
+        world = _disturbed(world, said.light, episode.friction)
+        if self._timestep is not None:
+            world = replace(world, physics=replace(world.physics, max_step_size=self._timestep))
+        self._world = World(world, episode.seed)
         x, y, yaw = start
         self._model = self._world.spawn(
             _with_friction(self._robot, episode.friction),
@@ -105,6 +113,15 @@ class Simulation:
         camera = replace(sensor.cameras[0], width=self._size[0], height=self._size[1],
                          noise=Noise("gaussian", stddev=noise) if noise else Noise())
         return Camera(self._world, link, replace(sensor, cameras=(camera,)), self._renderer)
+
+
+def _open_renderer() -> Renderer:
+    """CourseError in a process that was forked from one that draws: OpenGL would wait for ever."""
+    if _drawing - {os.getpid()}:
+        raise CourseError("this process was forked from one that has drawn pictures; start it "
+                          "otherwise: vector_kwargs={'context': 'spawn'}")
+    _drawing.add(os.getpid())
+    return open_renderer()
 
 
 def _disturbed(world: WorldDescription, light: float, friction: float) -> WorldDescription:

@@ -111,15 +111,16 @@ class FollowTask:
         elapsed, self._time = drive.elapsed - self._time, drive.elapsed
         lost = drive.left_at is not None
         reward = elapsed * max(-1.0, 1 - abs(drive.errors[-1]) / score.BAND)
-        return reward + FAILED * (lost or drive.over and not drive.good), lost or drive.over
+        return reward + FAILED * (lost or (drive.over and not drive.good)), lost or drive.over
 
     def report(self) -> dict[str, Any]:
         """See Task."""
         drive, errors = self._drive, self._drive.judged_errors()
         over = drive.over or drive.left_at is not None
         return {
-            "outcome": drive.outcome if over else "driving", "error_m": drive.errors[-1], "approach_s": drive.approach,
-            "distance_m": drive.distance, "least_gap_m": drive.least_gap,
+            "outcome": drive.outcome if over else "driving", "error_m": drive.errors[-1],
+            "approach_s": drive.approach, "distance_m": drive.distance,
+            "least_gap_m": drive.least_gap,
             "rms_error_m": float(np.sqrt(np.mean(errors ** 2))) if errors.size else None,
         }
 

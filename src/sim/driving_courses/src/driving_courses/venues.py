@@ -6,6 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from racecar_description.track.from_numbers import from_seed
+from racecar_description.track.model_files import course_files, world_path
+from racecar_description.track.random_circuit import Room, random_circuit
+from racecar_description.track.track_file import load_track_file
+from racecar_description.track.wishes import Wishes
+
 from bullet_sim.description import WorldDescription
 from bullet_sim.formats import load_world
 from driving_courses.course import Course
@@ -14,11 +20,6 @@ from driving_courses.packages import find_file
 from driving_courses.resources import resources
 from evaluation.course_model import write_model
 from evaluation.track import Track, build_track, load_track
-from racecar_description.track.from_numbers import from_seed
-from racecar_description.track.model_files import course_files, world_path
-from racecar_description.track.random_circuit import Room, random_circuit
-from racecar_description.track.track_file import load_track_file
-from racecar_description.track.wishes import Wishes
 
 LEAST_RADIUS = 0.6  # m, of a random line's bends: as the line course's own
 VERGE = 0.05  # m between a lane and its next stretch
