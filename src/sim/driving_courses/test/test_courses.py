@@ -56,14 +56,14 @@ def drive(env, law, steps):
 
 @pytest.mark.parametrize(("course", "law", "least"), [("Race", race, 9.0), ("Lane", lane, 4.0)])
 def test_a_simple_law_stays_on_the_course(course, law, least):
-    total, info = drive(make(course, observation="features"), law, 300)
+    total, info = drive(make(course, observation="features", timestep=0.002), law, 300)
     assert info["outcome"] == "driving", info
     assert info["progress_m"] > least
     assert 0.5 * info["progress_m"] < total
 
 
 def test_a_simple_law_keeps_its_distance_to_the_cylinder():
-    total, info = drive(make("Track", observation="features"), track, 450)
+    total, info = drive(make("Track", observation="features", timestep=0.004), track, 450)
     assert info["outcome"] == "driving", info
     assert info["rms_error_m"] < 0.25
     assert total > 2.0

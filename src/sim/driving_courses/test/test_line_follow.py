@@ -38,7 +38,7 @@ def record(env, seed, steps=20):
 
 
 def test_a_follower_closes_the_lap_and_its_reward_is_the_way():
-    env = make(observation="features")
+    env = make(observation="features", timestep=0.004)
     features, _ = env.reset(seed=0)
     total, over = 0.0, False
     while not over:
@@ -53,7 +53,7 @@ def test_a_follower_closes_the_lap_and_its_reward_is_the_way():
 
 
 def test_who_does_not_steer_leaves_the_course():
-    env = make(observation="features")
+    env = make(observation="features", size=(32, 18), timestep=0.004)
     env.reset(seed=0)
     over = False
     while not over:
@@ -191,6 +191,7 @@ def test_random_tracks_differ_and_are_driven_from_their_line():
     ({"action": "thrust"}, "action: must be one of"),
     ({"laps": 0}, "laps: must be a whole number"),
     ({"duration": 0.0}, "duration: must be"),
+    ({"timestep": 0.1}, "timestep: must be"),
     ({"size": (0, 5)}, "size: must be a whole number"),
     ({"randomise": {"fog": (0, 1)}}, "unknown key 'fog'"),
     ({"randomise": {"light": (1.3, 0.7)}}, "light: must be"),
