@@ -14,7 +14,7 @@ import numpy as np
 from driving_courses.policy import LinearPolicy
 
 PEOPLE, ELITE = 14, 4  # candidates a generation, and how many of them are kept
-TIMESTEP = 0.004  # s of an engine step while it learns: close enough, and quick
+SCORE = ("outcome", "lap_times_s", "rms_lateral_m", "max_lateral_m", "rms_error_m")
 STARTS = {"sideways": (-0.05, 0.05), "turn": (-0.1, 0.1)}
 
 
@@ -35,8 +35,7 @@ def policy_of(numbers, course, space, score):
 
 def drive(env, policy, seed):
     """The sum of rewards, and what the environment says at the end."""
-    features, info = env.reset(seed=seed)
-    total = over = 0
+    (features, info), total, over = env.reset(seed=seed), 0.0, False
     while not over:
         features, reward, ended, late, info = env.step(np.array(policy.act(features), np.float32))
         total, over = total + reward, ended or late
@@ -47,7 +46,7 @@ def try_out(task):
     """In a process of the pool: one candidate, in that process's own environment."""
     course, seconds, numbers, seed = task
     if not hasattr(try_out, "env"):
-        try_out.env = make(course, seconds, randomise=STARTS, timestep=TIMESTEP)
+        try_out.env = make(course, seconds, randomise=STARTS, timestep=0.004)  # s, of the engine: quick
     return drive(try_out.env, policy_of(numbers, course, try_out.env.action_space, {}), seed)[0]
 
 
@@ -68,10 +67,11 @@ def main():
             scores = pool.map(try_out, tries, 1)
             best = people[np.argsort(scores)[-ELITE:]]
             mean, spread = best.mean(axis=0), best.std(axis=0) + 0.05 / (1 + generation)
+            policy_of(mean, given.course, env.action_space, {}).save(given.policy)
             print(f"generation {generation}: best {max(scores):.2f}, mean {np.mean(scores):.2f},"
                   f" {time.monotonic() - began:.0f} s", flush=True)
     _, lap = drive(env, policy_of(mean, given.course, env.action_space, {}), 0)
-    score = {key: lap[key] for key in ("outcome", "lap_times_s", "rms_lateral_m", "max_lateral_m")}
+    score = {key: value for key, value in lap.items() if key in SCORE}
     policy_of(mean, given.course, env.action_space, score).save(given.policy)
     print(f"{given.policy}: {score}")
 

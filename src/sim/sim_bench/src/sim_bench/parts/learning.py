@@ -1,9 +1,9 @@
 """The learning environment beside what gym-line-follower does with PyBullet's two renderers.
 
-Ours is all of LineFollow-v0's step: the wheels, 33 or 34 steps of the engine, the picture, the
-score. Theirs is the part of such a step that PyBullet does, of the same scene: ten engine steps of
-4 ms, getCameraImage with its fastest settings, and the picture as an array; no score. In two
-processes both count at once.
+Ours is all of LineFollow-v0's step: the wheels, 33 or 34 steps of the engine, or 8 or 9 with
+`timestep=0.004` (`coarse`), the picture, the score. Theirs is the part of such a step that PyBullet
+does, of the same scene: ten engine steps of 4 ms, getCameraImage as gym-line-follower calls it,
+and the picture as an array; no score. In two processes both count at once.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from sim_bench.pybullet_drawing import PybulletDrawing
 from sim_bench.settings import Settings
 
 SIZES = ((84, 84), (320, 240))  # px
+COARSE = "coarse"
 RUNS, SECONDS = 5, 2.0  # turns; s of each
 SUB_STEPS, SUB_STEP = 10, 0.004  # of gym-line-follower, s
 SPEED, TURN = 0.15, 0.1  # m/s, rad/s
@@ -45,7 +46,7 @@ def measure(settings: Settings) -> list[Figure]:
     found = []
     for processes in (1, 2):
         pools = {kind: ProcessPoolExecutor(processes, multiprocessing.get_context("spawn"))
-                 for kind in (OURS, TINY, PLUGIN)}
+                 for kind in (OURS, COARSE, TINY, PLUGIN)}
         try:
             for size in SIZES:
                 settings.say(f"environment steps at {size[0]}x{size[1]}, {processes} at once")
@@ -74,8 +75,9 @@ def _rates(pools: dict[str, ProcessPoolExecutor], size: tuple[int, int], process
                 rates[kind].append(total)
     name = f"{size[0]}x{size[1]}.{processes}"
     found = [figure(f"steps.{kind}.{name}", "1/s", values) for kind, values in rates.items()]
-    return found + [ratio(f"ratio.{kind}.{name}", rates[OURS], rates[kind])
-                    for kind in (TINY, PLUGIN) if kind in rates and OURS in rates]
+    return found + [ratio(f"ratio.{ours}.{kind}.{name}", rates[ours], rates[kind])
+                    for ours in (OURS, COARSE) for kind in (TINY, PLUGIN)
+                    if kind in rates and ours in rates]
 
 
 def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
@@ -90,14 +92,16 @@ def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
 
 @lru_cache
 def _open(kind: str, size: tuple[int, int]) -> Callable[[], object]:
-    return _our_step(size) if kind == OURS else _their_step(kind, size)
+    if kind in (OURS, COARSE):
+        return _our_step(size, 0.004 if kind == COARSE else None)
+    return _their_step(kind, size)
 
 
-def _our_step(size: tuple[int, int]) -> Callable[[], object]:
+def _our_step(size: tuple[int, int], timestep: float | None) -> Callable[[], object]:
     import driving_courses  # noqa: F401  (names the environments)
     import gymnasium
 
-    env = gymnasium.make("driving_courses/LineFollow-v0", size=size)
+    env = gymnasium.make("driving_courses/LineFollow-v0", size=size, timestep=timestep)
     env.reset(seed=0)
     action = np.array([SPEED, TURN], np.float32)
 
@@ -119,7 +123,8 @@ def _their_step(kind: str, size: tuple[int, int]) -> Callable[[], object]:
     waffle = course.spawn_waffle()
     drive = drive_of(waffle)
     drive.command(SPEED, TURN)
-    drawing = PybulletDrawing(course.world.update_scene(), plugin=kind == PLUGIN)
+    drawing = PybulletDrawing(course.world.update_scene(), plugin=kind == PLUGIN,
+                              fastest=False)
 
     def step() -> np.ndarray:
         drive.update(SUB_STEPS * SUB_STEP)
