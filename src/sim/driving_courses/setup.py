@@ -9,8 +9,8 @@ from setuptools import find_packages, setup
 from setuptools.command.build_py import build_py
 
 HERE = Path(__file__).resolve().parent
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "test", "src", "scripts", "images", "launch",
-                                  "maps", "rviz", "*.md", "*.onnx", "CATKIN_IGNORE")
+COPIED = ("config", "courses", "meshes", "models", "tracks", "urdf", "worlds")  # folders
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.onnx")
 
 
 class BuildWithCourses(build_py):
@@ -18,12 +18,17 @@ class BuildWithCourses(build_py):
 
     def run(self):
         super().run()
+        if "install" in sys.argv:  # catkin: the packages lie in share/
+            return
         sys.path.insert(0, str(HERE / "src"))
         from driving_courses.packages import FOLDERS
 
         for name, folder in FOLDERS.items():
+            package = HERE.parents[1] / folder
             copy = Path(self.build_lib, "driving_courses", "packages", name)
-            shutil.copytree(HERE.parents[1] / folder, copy, ignore=LEFT_OUT, dirs_exist_ok=True)
+            for part in filter(Path.is_dir, (package / part for part in COPIED)):
+                shutil.copytree(part, copy / part.name, ignore=LEFT_OUT, dirs_exist_ok=True)
+            shutil.copy(package / "package.xml", copy)
 
 
 setup(

@@ -46,7 +46,7 @@ def try_out(task):
     """In a process of the pool: one candidate, in that process's own environment."""
     course, seconds, numbers, seed = task
     if not hasattr(try_out, "env"):
-        try_out.env = make(course, seconds, randomise=STARTS, timestep=0.004)  # s, of the engine: quick
+        try_out.env = make(course, seconds, randomise=STARTS, timestep=0.004)
     return drive(try_out.env, policy_of(numbers, course, try_out.env.action_space, {}), seed)[0]
 
 

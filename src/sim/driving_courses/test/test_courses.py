@@ -1,6 +1,7 @@
 """Race-v0, Lane-v0 and Track-v0, the files that describe them, and the examples."""
 
 import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -38,7 +39,7 @@ def lane(features, _info):
 
 def track(features, info):
     """Turns to the cylinder and keeps away from it what the environment says."""
-    return max(0.0, 0.3 + 1.5 * info["error_m"]), -2.0 * features[1]
+    return 2.5 * info["error_m"], -2.5 * features[1]
 
 
 def drive(env, law, steps):
@@ -121,9 +122,10 @@ def test_every_course_is_named_and_every_package_found():
 
 
 @pytest.mark.parametrize(("old", "new", "said"), [
-    ("speed:", "spede:", "unknown key 'spede'"),
+    ("turn:", "trun:", "unknown key 'trun'"),
     ("task: lap", "task: fly", "task: must be one of"),
-    ("speed: 0.4", "speed: -1", "speed: must be a number above 0"),
+    ("turn: 1.5", "turn: -1", "turn: must be a number above 0"),
+    ("speeds: [0, 0.4]", "speeds: [0.1, 0.4]", "speeds: must be"),
     ("size: [160, 90]", "size: [160]", "size: must be two whole numbers"),
     ("halves: false", "halves: no way", "halves: must be true or false"),
     ("[0.66, 0.68]", "[0.68, 0.66]", "bands: must be"),
@@ -135,6 +137,31 @@ def test_a_mistake_in_a_course_file_names_file_and_key(tmp_path, old, new, said)
     path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(CourseError, match=f"{path}: .*{said}" if ":" not in said else said):
         load_course(path)
+
+
+def test_a_wheel_has_the_files_of_every_course(tmp_path):
+    """Without ROS there is no checkout round the modules."""
+    built = subprocess.run(
+        [sys.executable, "setup.py", "-q", "build", "--build-base", tmp_path], cwd=HERE,
+        capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    code = """
+import gymnasium, driving_courses, numpy as np
+from driving_courses.randomisation import Randomisation, draw
+for name in driving_courses.ENVIRONMENTS:
+    env = gymnasium.make(name).unwrapped
+    world, _ = env._task.begin(draw(Randomisation(), np.random.default_rng(0)))
+    print(len(world.models) > 0, env.course.robot)
+print(driving_courses.__file__)
+"""
+    paths = [str(tmp_path / "lib"), *(path for path in sys.path if path)]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)})
+    assert done.returncode == 0 and not done.stderr, done.stderr  # no file was missed
+    *courses, where = done.stdout.splitlines()
+    assert len(courses) == 4 and all(line.startswith("True") for line in courses)
+    assert where.startswith(str(tmp_path))
 
 
 def test_features_say_where_the_colour_is():

@@ -43,7 +43,7 @@ class Course:
     model: str
     drive: str
     settings: str
-    speed: float
+    speeds: tuple[float, float]
     turn: float
     steering_angle: float
     wheelbase: float
@@ -105,6 +105,9 @@ def _fill(kind: type, values: Any, place: str) -> Any:
 def _fits(value: Any, wanted: str) -> bool:
     if wanted == "float":
         return type(value) in (int, float) and value > 0
+    if wanted == "tuple[float, float]":
+        return (isinstance(value, list) and len(value) == 2
+                and all(type(end) in (int, float) for end in value) and value[0] <= 0 < value[1])
     if wanted in ("str", "bool"):
         return type(value).__name__ == wanted
     if not isinstance(value, list):
@@ -120,7 +123,8 @@ def _fits(value: Any, wanted: str) -> bool:
             and all(type(each) is int and each >= 0 for each in value))
 
 
-_WANTED = {"float": "a number above 0", "str": "a text", "bool": "true or false",
+_WANTED = {"float": "a number above 0", "tuple[float, float]": "[0 or less, above 0]",
+           "str": "a text", "bool": "true or false",
            "tuple[str, ...]": "a list of texts", "tuple[int, int]": "two whole numbers",
            "tuple[int, int, int]": "three whole numbers",
            "tuple[tuple[float, float], ...]": "a list of [from, to], each within 0..1"}

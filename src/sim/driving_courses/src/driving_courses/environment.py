@@ -101,8 +101,9 @@ class CourseEnv(gymnasium.Env):
 
 def _actions(course: Course, ackermann: bool) -> spaces.Box:
     most = course.steering_angle if ackermann else course.turn
-    return spaces.Box(np.array([0.0, -most], np.float32),
-                      np.array([course.speed, most], np.float32))
+    slowest, fastest = course.speeds
+    return spaces.Box(np.array([slowest, -most], np.float32),
+                      np.array([fastest, most], np.float32))
 
 
 def _whole(name: str, value: Any) -> int:
