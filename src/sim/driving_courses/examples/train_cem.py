@@ -25,12 +25,12 @@ def make(course, s, **more):
 
 def policy_of(numbers, course, space, score):
     """Numbers: a speed, a turn, and how much each band's column turns it; 1 is the most."""
-    columns = np.zeros((2, 3 * (len(numbers) - 2)))
-    columns[1, 1::3], scale = numbers[2:], space.high.astype(float)
+    columns = np.stack([np.zeros(3 * (len(numbers) - 2)), np.kron(numbers[2:], [0, 1, 0])])
+    low, high = (bound.astype(float).round(6) for bound in (space.low, space.high))
     made = {"action": "twist"} | driving_courses.ENVIRONMENTS[f"driving_courses/{course}-v0"]
-    return LinearPolicy(made["course"], made["action"], (columns * scale[:, None]).tolist(),
-                        (numbers[:2] * scale).tolist(), space.low.tolist(), space.high.tolist(),
-                        score)
+    return LinearPolicy(made["course"], made["action"], (columns * high[:, None]).tolist(),
+                        (numbers[:2] * high).tolist(), low.tolist(), high.tolist(), score)
+
 
 
 def drive(env, policy, seed):
