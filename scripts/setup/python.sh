@@ -24,7 +24,8 @@ python_packages() {
   local file target
   for file in requirements.txt requirements-source.txt requirements-rosdep.txt \
     $([ "$tests" = no ] || echo requirements-test.txt) \
-    $([ "$workers" = no ] || echo requirements-workers.txt); do
+    $([ "$workers" = no ] || echo requirements-workers.txt) \
+    $([ "$learning" = no ] || echo requirements-learning.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"
     if [ "$file" = requirements-source.txt ]; then

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import rospkg
-from course_model import write_model
+from racecar_description.track.course_model import write_model
 from racecar_description.track.errors import TrackError
 from racecar_description.track.track_file import load_track_file
 

@@ -8,7 +8,7 @@ import pytest
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "scripts"
-sys.path[:0] = [str(HERE), str(HERE.parent / "course_maker")]
+sys.path.insert(0, str(HERE))
 
 
 @pytest.fixture(scope="session")

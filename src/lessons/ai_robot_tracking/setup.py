@@ -1,7 +1,12 @@
-"""Tells catkin where the Python packages are."""
+"""Installs the package's modules with plain pip as well as through catkin."""
 
-from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import setup
+from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(
-    packages=["ai_robot_tracking", "ai_robot_tracking.detection"], package_dir={"": "src"}))
+setup(
+    name="ai_robot_tracking",
+    version="0.1.0",
+    package_dir={"": "src"},
+    packages=find_packages("src", exclude=["ai_robot_tracking.training*"]),
+    python_requires=">=3.11",
+    install_requires=["numpy", "opencv-python-headless", "PyYAML"],
+)

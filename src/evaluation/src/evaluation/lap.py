@@ -85,6 +85,7 @@ class LapScorer:
     _lap_start: float = 0.0  # s
     _lap_from: float = 0.0  # m, position at which this lap began
     _position: float = 0.0  # m along the line, counted on from lap to lap
+    _first_position: float = 0.0
     _farthest: float = 0.0
     _mark: tuple[float, float] = (0.0, 0.0)  # time and position of the last progress
     _moving: bool = False
@@ -98,6 +99,11 @@ class LapScorer:
     def present_lap(self) -> int:
         """From 1."""
         return min(len(self.laps) + 1, self.wanted_laps)
+
+    @property
+    def progress(self) -> float:
+        """m along the line since the first sample; less than 0 backwards."""
+        return self._position - self._first_position
 
     def add(self, sample: Sample) -> Verdict:
         """Score one more sample."""
@@ -115,7 +121,7 @@ class LapScorer:
 
     def _begin(self, sample: Sample, s: float) -> None:
         self._position = math.remainder(s, self.track.length)
-        self._lap_from = self._farthest = self._position
+        self._lap_from = self._farthest = self._first_position = self._position
         self._mark = (sample.time, self._position)
         self._lap_start = sample.time
 

@@ -9,6 +9,9 @@ from pathlib import Path
 
 import numpy as np
 from racecar_description.track.closed_line import load_track
+from racecar_description.track.course_model import write_model
+from racecar_description.track.errors import TrackError
+from racecar_description.track.track_file import load_track_file
 
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
@@ -66,12 +69,16 @@ def _draw(rules: Rules, seed: int) -> Disturbance:
 _Venue = tuple[Path, Path, Path]
 
 
-def _course(track: Path | None, _out: Path) -> _Venue:
+def _course(track: Path | None, out: Path) -> _Venue:
     package = find_package("learning_topic")
     world = package / "worlds" / "course.world"
-    if track is not None:
-        raise RunError("tracks: the course has its own alone, the racetrack takes others")
-    return world, load_course("course").track_path(), package / "models"
+    if track is None:
+        return world, load_course("course").track_path(), package / "models"
+    try:
+        write_model(load_track_file(track), out / "turtlebot3_autorace" / "course")
+    except TrackError as error:
+        raise RunError(str(error)) from error
+    return world, track, out
 
 
 def _race(track: Path | None, _out: Path) -> _Venue:

@@ -38,6 +38,11 @@ class Bounds:
     light: tuple[float, float]
 
 
+# Of race-trials, and of learning environments that ask for the trials' disturbances.
+RACE = Bounds(sideways=0.2, along=0.2, turn=math.radians(10), camera_noise=(0.01, 0.03),
+              light=(0.7, 1.3))
+
+
 def draw(seed: int, bounds: Bounds) -> Disturbance:
     """The seed's disturbance, evenly distributed between the bounds."""
     random = np.random.default_rng(seed)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from evaluation.laps.disturbance import Bounds, draw
+from evaluation.laps.disturbance import RACE, draw
 from evaluation.laps.lap_drive import from_json, seen, to_json
 from evaluation.laps.lap_trial import LapTrial, Outing
 from evaluation.race_trials.chart import write_chart
@@ -23,8 +22,6 @@ from evaluation.trial.protocol import Case
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
-BOUNDS = Bounds(sideways=0.2, along=0.2, turn=math.radians(10), camera_noise=(0.01, 0.03),
-                light=(0.7, 1.3))
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ class RaceTrial(LapTrial):
         self._out, folder = out, out / "laps" / f"{venue.name}-{case.seed}"
         return Outing(f"{case.follower} on {venue.name}, seed {case.seed}", "race", case.follower,
                       venue.track, venue.world, venue.models, folder,
-                      folder / Path(case.follower).stem, draw(case.seed, BOUNDS), LONGEST_LAP)
+                      folder / Path(case.follower).stem, draw(case.seed, RACE), LONGEST_LAP)
 
     def score(self, record: dict) -> Lap:
         case, outing = self._case, self._outing

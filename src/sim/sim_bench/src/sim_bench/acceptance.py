@@ -72,6 +72,10 @@ CRITERIA = (
     Criterion("ten robots by a launch file", "robots/launched.spawned", at_most=5),
     Criterion("memory after 1000 spawns", "respawn/memory.growth", at_most=5),
     Criterion("step after 1000 spawns", "respawn/step.last_to_first", at_most=1.05),
+    *(Criterion(f"coarse environment against {name}, {size}, {processes} at once",
+                f"learning/ratio.coarse.{kind}.{size}.{processes}", at_least=bound)
+      for kind, name, bound in (("tiny", "TinyRenderer", 20), ("plugin", "EGL plugin", 3))
+      for size in ("84x84", "320x240") for processes in (1, 2)),
 )
 
 

@@ -9,7 +9,7 @@ from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
 
 PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
-         "memory")
+         "learning", "memory")
 DEFAULT_MEMORY_S = 300.0
 LEAST_MEMORY_S = 20.0  # below that there are too few samples for a growth
 

@@ -30,14 +30,17 @@ RECESS = 0.002
 class PybulletDrawing:
     """One PyBullet client that shows a scene and never steps."""
 
-    def __init__(self, scene: Scene, plugin: bool):
+    def __init__(self, scene: Scene, plugin: bool, fastest: bool = True):
+        """`fastest`: with the settings above, else with those that getCameraImage has by itself."""
         self._client = pybullet.connect(pybullet.DIRECT)
         self._renderer = pybullet.ER_TINY_RENDERER
         if plugin:
             self._load_plugin()
             self._renderer = pybullet.ER_BULLET_HARDWARE_OPENGL
         self._ranks = scene.plane_ranks()
-        self._light = _light_direction(scene)
+        self._settings = {
+            "shadow": 0, "lightDirection": _light_direction(scene),
+            "flags": pybullet.ER_NO_SEGMENTATION_MASK} if fastest else {}
         self._bodies: list[tuple[Node, int]] = []
         with tempfile.TemporaryDirectory(prefix="bench-") as folder, quiet(STDOUT, STDERR):
             for node in scene.nodes.values():
@@ -62,11 +65,9 @@ class PybulletDrawing:
             view.height,
             view_matrix(view.pose).T.ravel().tolist(),
             projection_matrix(view).T.ravel().tolist(),
-            shadow=0,
-            lightDirection=self._light,
-            flags=pybullet.ER_NO_SEGMENTATION_MASK,
             renderer=self._renderer,
             physicsClientId=self._client,
+            **self._settings,
         )
         return np.reshape(pixels, (view.height, view.width, 4))
 

@@ -7,13 +7,19 @@ import cv2
 import numpy as np
 import pytest
 import rospkg
-from course_model import BACKGROUND, WHITE, YELLOW, encode_png, write_model
 from racecar_description.track.closed_line import load_track
+from racecar_description.track.course_model import (
+    BACKGROUND,
+    WHITE,
+    YELLOW,
+    encode_png,
+    write_model,
+)
 from racecar_description.track.track_file import load_track_file
 
-PACKAGE = Path(__file__).parent.parent
-TRACK = Path(rospkg.RosPack().get_path("evaluation")) / "tracks" / "course.yaml"
-COMMITTED = PACKAGE / "models" / "turtlebot3_autorace" / "course"
+PACKAGES = rospkg.RosPack()
+TRACK = Path(PACKAGES.get_path("evaluation")) / "tracks" / "course.yaml"
+COMMITTED = Path(PACKAGES.get_path("learning_topic")) / "models" / "turtlebot3_autorace" / "course"
 WORLD_YAW = -1.54  # rad, of the model in the lesson's course.world
 
 

@@ -8,6 +8,7 @@ import zlib
 from pathlib import Path
 
 import numpy as np
+
 from racecar_description.track.centre_line import Piece
 from racecar_description.track.closed_line import Track, build_track
 from racecar_description.track.errors import TrackError

@@ -1,0 +1,162 @@
+"""How a robot's wheels are driven: what the simulator's plugins and controllers do, without ROS."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Protocol
+from xml.etree.ElementTree import Element
+
+import yaml
+from car_control.motor import Drive as MotorCommand
+from car_control.motor import MotorSettings, controller_commands
+from car_control.settings import load_settings
+
+from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
+from bullet_sim.control.controllers.diff_drive_controller import DiffDriveGeometry
+from bullet_sim.control.controllers.mobile_base import BaseOptions
+from bullet_sim.control.controllers.servo import PositionServo, VelocityServo
+from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
+from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.control.pid import Pid, PidGains
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
+from bullet_sim.formats.urdf.facts import RobotFacts
+from bullet_sim.formats.urdf.transmission import read_transmissions
+from bullet_sim.model import Model
+from bullet_sim.tick_rate import TickRate
+from bullet_sim.world import World
+from driving_courses.packages import find_file
+
+
+class Drive(Protocol):
+    """A robot's wheels."""
+
+    steers: bool  # whether it takes a steering angle (rad) instead of a rate of yaw (rad/s)
+
+    def command(self, speed: float, turn: float) -> None:
+        """m/s, and what it turns by; held until the next command."""
+
+    def run(self, until: int) -> None:
+        """Step the world up to that tick."""
+
+
+class GazeboDiffDrive:
+    """As bullet_sim_ros has libgazebo_ros_diff_drive.so, from the tags in the robot's file."""
+
+    steers = False
+
+    def __init__(self, world: World, robot: Model, _urdf: Element, _settings: Path | None):
+        tags = next(plugin.element for plugin in robot.description.plugins
+                    if plugin.filename == "libgazebo_ros_diff_drive.so")
+        joints = (robot.joint(tags.findtext(tag)) for tag in ("leftJoint", "rightJoint"))
+        numbers = (float(tags.findtext(tag)) for tag in (
+            "wheelSeparation", "wheelDiameter", "wheelAcceleration", "wheelTorque"))
+        self._drive = DiffDrive(*joints, DiffDriveParameters(*numbers))
+        self._world, self._updated = world, world.time
+        self._rate = TickRate(float(tags.findtext("updateRate")), world.timestep, world.tick)
+        self.command = self._drive.command
+
+    def run(self, until: int) -> None:
+        """The wheels take the command at the plugin's own rate."""
+        world = self._world
+        while world.tick < until:
+            due = self._rate.next_tick(world.tick)
+            world.step(min(due, until) - world.tick)
+            if world.tick == due:
+                self._drive.update(world.time - self._updated)
+                self._updated = world.time
+
+
+class ControlledDrive:
+    """What ros_control does at each step: read, let controllers command, write."""
+
+    steers = False
+
+    def __init__(self, world: World, robot: Model, urdf: Element):
+        self._world, self._facts = world, RobotFacts(urdf)
+        transmissions = read_transmissions(urdf)
+        limits = {each.joint: self._facts.limits(each.joint) for each in transmissions}
+        self._hardware = RobotHardware(robot, transmissions, limits, {})
+        world.each_step.append(self._step)
+
+    def run(self, until: int) -> None:
+        """Controllers work at every step."""
+        self._world.step(until - self._world.tick)
+
+    def _step(self) -> None:
+        period = self._world.timestep
+        self._hardware.read()
+        self._update(self._world.time, period)
+        self._hardware.write(period)
+
+    def _update(self, time: float, period: float) -> None:
+        raise NotImplementedError
+
+
+class DiffDriveController(ControlledDrive):
+    """diff_drive_controller with the parameters of a lesson's YAML file."""
+
+    def __init__(self, world: World, robot: Model, urdf: Element, settings: Path):
+        super().__init__(world, robot, urdf)
+        tables = yaml.safe_load(settings.read_text(encoding="utf-8")).values()
+        p = next(t for t in tables if t["type"] == "diff_drive_controller/DiffDriveController")
+        left, right, facts = p["left_wheel"], p["right_wheel"], self._facts
+        separation = p.get("wheel_separation") or math.dist(
+            facts.pose(left).position, facts.pose(right).position)
+        radius = p.get("wheel_radius") or facts.wheel_radius(left)
+        handles = ([self._hardware.command_handle("velocity", name)] for name in (left, right))
+        self._base = ControllerDrive(
+            *handles, DiffDriveGeometry(separation, radius, radius),
+            BaseOptions(_limits(p["linear"]["x"]), _limits(p["angular"]["z"]),
+                        p["cmd_vel_timeout"]))
+        self._base.start(world.time)
+        self._update = self._base.update
+
+    def command(self, speed: float, turn: float) -> None:
+        """m/s and rad/s."""
+        self._base.command(self._world.time, speed, turn)
+
+
+class RacecarDrive(ControlledDrive):
+    """The racecar's six joint controllers, told what car_control's motor_control tells them."""
+
+    steers = True
+
+    def __init__(self, world: World, robot: Model, urdf: Element, settings: Path):
+        super().__init__(world, robot, urdf)
+        tables = yaml.safe_load(settings.read_text(encoding="utf-8"))["racecar"]
+        self._servos = {name: self._servo(table) for name, table in tables.items()
+                        if "pid" in table}
+        self._motor = load_settings(
+            MotorSettings, find_file("car_control/config/car_control.yaml"), "motor_control")
+        self.command(0.0, 0.0)
+
+    def _servo(self, table: dict) -> VelocityServo | PositionServo:
+        kind = VelocityServo if table["type"].endswith("VelocityController") else PositionServo
+        gains = {key: table["pid"][key] for key in ("p", "i", "d")}
+        return kind(self._hardware.command_handle("effort", table["joint"]), Pid(PidGains(**gains)))
+
+    def command(self, speed: float, turn: float) -> None:
+        """m/s and rad of the bicycle's front wheel, within motor_control's bounds."""
+        most = self._motor.max_speed, self._motor.max_steering_angle
+        speed, turn = (max(-m, min(m, value)) for m, value in zip(most, (speed, turn), strict=True))
+        self._targets = controller_commands(self._motor, MotorCommand(speed, turn))
+
+    def _update(self, _time: float, period: float) -> None:
+        for name, servo in self._servos.items():
+            servo.update(self._targets[name], period)
+
+
+DRIVES = {"gazebo_diff_drive": GazeboDiffDrive, "diff_drive_controller": DiffDriveController,
+          "racecar": RacecarDrive}
+
+
+def _limits(table: dict) -> SpeedLimits:
+    """Of a speed, by diff_drive_controller's names."""
+    def bounds(quantity: str) -> tuple[float, float]:
+        if not table.get(f"has_{quantity}_limits"):
+            return UNBOUNDED
+        most = table[f"max_{quantity}"]
+        return table.get(f"min_{quantity}", -most), most
+
+    return SpeedLimits(bounds("velocity"), bounds("acceleration"), bounds("jerk"))

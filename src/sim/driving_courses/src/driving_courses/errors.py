@@ -1,0 +1,5 @@
+"""What can be wrong with courses and options."""
+
+
+class CourseError(ValueError):
+    """One line that says what is wrong and what there is instead."""

@@ -1,0 +1,130 @@
+"""What is asked for in an episode: reward and end as evaluation's trials score a drive."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Protocol
+
+import numpy as np
+import yaml
+from ai_robot_tracking.scenes.scene import draw_scene
+from ai_robot_tracking.scenes.start import draw_start
+from ai_robot_tracking.scenes.world_file import world_text
+
+from bullet_sim.description import WorldDescription
+from bullet_sim.formats import load_world
+from driving_courses.course import Course
+from driving_courses.packages import find_file
+from driving_courses.randomisation import Episode
+from driving_courses.resources import resources
+from driving_courses.venues import Venues
+from evaluation.lap import LapScorer, Sample, Verdict
+from evaluation.tracking import score
+from evaluation.tracking.score import TrackScorer
+
+FAILED = -1.0  # reward for leaving the course, stalling or driving the wrong way
+
+Start = tuple[float, float, float]  # x, y (m), yaw (rad)
+
+
+class Task(Protocol):
+    """One episode after the other."""
+
+    def begin(self, episode: Episode) -> tuple[WorldDescription, Start]:
+        """A new episode: its world, and where the robot starts."""
+
+    def score(self, sample: Sample) -> tuple[float, bool]:
+        """Reward for the way since the last sample, and whether the episode has ended."""
+
+    def report(self) -> dict[str, Any]:
+        """How the drive stands, in the words of the trials' report.json."""
+
+
+class LapTask:
+    """Laps along a line: a metre of progress is worth 1 on the line, nothing at the course's edge.
+
+    A drive ends as `make course` ends it: laps closed, off the course, stalled, the wrong way.
+    """
+
+    def __init__(self, course: Course, laps: int):
+        self._venues, self._off_course, self._laps = Venues(course), course.off_course, laps
+
+    def begin(self, episode: Episode) -> tuple[WorldDescription, Start]:
+        """See Task."""
+        venue = self._venues.get(episode.track)
+        self._drive = LapScorer(venue.track, self._laps, self._off_course)
+        self._progress = 0.0
+        return venue.world, episode.start.start(venue.track)
+
+    def score(self, sample: Sample) -> tuple[float, bool]:
+        """See Task."""
+        drive = self._drive
+        verdict = drive.add(sample)
+        way, self._progress = drive.progress - self._progress, drive.progress
+        reward = way * max(0.0, 1 - abs(drive.lateral) / drive.off_course)
+        failed = verdict not in (Verdict.DRIVING, Verdict.CLOSED)
+        return reward + FAILED * failed, verdict is not Verdict.DRIVING
+
+    def report(self) -> dict[str, Any]:
+        """See Task."""
+        drive = self._drive
+        return {
+            "outcome": drive.verdict.value, "why": drive.why, "progress_m": drive.progress,
+            "lateral_m": drive.lateral, "lap_times_s": [lap.time for lap in drive.laps],
+            "distance_m": drive.total.distance, "rms_lateral_m": drive.total.rms_lateral,
+            "max_lateral_m": drive.total.max_lateral,
+        }
+
+
+class FollowTask:
+    """Keeping a distance to what walks: each second is worth 1 at that distance, 0 at the edge of
+    the band that still counts as kept, -1 at worst. It ends as `make track` ends it, and where the
+    distance was not kept."""
+
+    def __init__(self, course: Course):
+        self._course = course
+        settings = find_file("ai_robot_tracking/config/tracking_params.yaml")
+        self._wanted = float(yaml.safe_load(settings.read_text(encoding="utf-8"))[
+            "visual_tracker_pid"]["wanted_distance"])
+
+    def begin(self, episode: Episode) -> tuple[WorldDescription, Start]:
+        """See Task."""
+        seed = episode.track or 0
+        scene = draw_scene(self._course.course, seed)
+        self._drive = TrackScorer(score.Task(scene.way, scene.hidden, self._wanted))
+        self._time = 0.0
+        with TemporaryDirectory(prefix="driving_courses-") as folder:
+            path = Path(folder) / "scene.world"
+            path.write_text(world_text(scene), encoding="utf-8")
+            world = load_world(path, resources(self._course))
+        start, said = draw_start(self._course.course, seed), episode.start
+        cos, sin = math.cos(start.yaw), math.sin(start.yaw)
+        return world, (start.x + said.along * cos - said.sideways * sin,
+                       start.y + said.along * sin + said.sideways * cos, start.yaw + said.turn)
+
+    def score(self, sample: Sample) -> tuple[float, bool]:
+        """See Task."""
+        drive = self._drive
+        drive.add(sample)
+        elapsed, self._time = drive.elapsed - self._time, drive.elapsed
+        lost = drive.left_at is not None
+        reward = elapsed * max(-1.0, 1 - abs(drive.errors[-1]) / score.BAND)
+        return reward + FAILED * (lost or (drive.over and not drive.good)), lost or drive.over
+
+    def report(self) -> dict[str, Any]:
+        """See Task."""
+        drive, errors = self._drive, self._drive.judged_errors()
+        over = drive.over or drive.left_at is not None
+        return {
+            "outcome": drive.outcome if over else "driving", "error_m": drive.errors[-1],
+            "approach_s": drive.approach, "distance_m": drive.distance,
+            "least_gap_m": drive.least_gap,
+            "rms_error_m": float(np.sqrt(np.mean(errors ** 2))) if errors.size else None,
+        }
+
+
+def open_task(course: Course, laps: int) -> Task:
+    """What the course's file says."""
+    return LapTask(course, laps) if course.task == "lap" else FollowTask(course)
