@@ -297,7 +297,7 @@ def test_commands_run_once_and_files_are_read_once(check, tmp_path):
     ('<param name="a" textfile="{}/pipe"/>', "/pipe cannot be read: it is a pipe or device"),
     ('<param name="a" textfile="/dev/zero"/>', "/dev/zero cannot be read: it is a pipe or device"),
     ('<param name="a" value="$(eval 2**2**40)"/>', "takes more than 3 s or 1 GiB; look at its $("),
-    ('<include file="{}/a.launch"/>', "a.launch includes itself without end; take the <include>"),
+    ('<include file="{}/a.launch"/>', "a.launch includes itself without end; remove the <include>"),
     ('<include file="{}/b.launch"/>', "a.launch includes itself by way of "),
     ("<group>" * 1500 + "</group>" * 1500, "elements are nested too deep"),
 ])
@@ -344,7 +344,7 @@ def test_a_command_that_waits_is_ended(check, tmp_path, monkeypatch):
 
 
 def test_memory_that_runs_out_is_said_as_such():
-    assert "1 GiB; look at its $(eval" in launch_files._said(MemoryError())
+    assert "1 GiB; look at its $(eval" in launch_files._error_line(MemoryError())
 
 
 def test_files_that_are_not_utf8(check, tmp_path):
