@@ -92,7 +92,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=3, help="files with processes at a time (3)")
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one of these files")
-    parser.add_argument("--pytest-limit", type=float, default=1200.0, help="seconds for pytest")
+    parser.add_argument("--pytest-limit", type=float, default=1500.0, help="seconds for pytest")
     args = parser.parse_args()
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(name, processes.stop)

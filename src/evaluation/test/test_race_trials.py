@@ -13,14 +13,14 @@ import cv2
 import numpy as np
 import pytest
 
-from evaluation.laps.disturbance import Disturbance, draw
+from evaluation.laps.disturbance import RACE, Disturbance, draw
 from evaluation.race_trials.path_sheet import write_path_sheet
 from evaluation.race_trials.results import (
     Lap,
     summarize,
     summary_table,
 )
-from evaluation.race_trials.trial import BOUNDS, RaceTrial
+from evaluation.race_trials.trial import RaceTrial
 from evaluation.session.failure import RunError
 from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
@@ -129,7 +129,7 @@ def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
         def score(self, record):
             case = self._case
             return replace(record, set=case.set, seed=case.seed, follower=case.follower,
-                           disturbance=draw(case.seed, BOUNDS))
+                           disturbance=draw(case.seed, RACE))
 
     return run_trial(Driven(), ["--tracks", "0", "--out", str(tmp_path / "out"), *options])
 
@@ -141,7 +141,7 @@ def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
     assert "[1/2] lane_follow.py racetrack seed 0" in capsys.readouterr().out
     values = json.loads((tmp_path / "out" / "report.json").read_text())
     assert [each["within_limits"] for each in values["laps"]] == [False, True]
-    assert values["laps"][0]["disturbance"]["light"] == draw(0, BOUNDS).light
+    assert values["laps"][0]["disturbance"]["light"] == draw(0, RACE).light
     assert (tmp_path / "out" / "paths_lane_follow_p.png").exists()
 
 
@@ -172,7 +172,7 @@ def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
     found = RaceTrial().from_values(values)
     assert [each.mean_speed for each in found] == [1.7, 2.0, 2.0, 2.0]
     assert [(each.seed, each.disturbance) for each in found[1:3]] == [
-        (seed, draw(seed, BOUNDS)) for seed in (0, 1)]
+        (seed, draw(seed, RACE)) for seed in (0, 1)]
 
 
 @pytest.mark.parametrize(("text", "said"), [(None, "nothing to go on with"), ("{}", "no report"),

@@ -25,11 +25,10 @@ from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.world import World
 from evaluation.course_run.main import CourseRun
-from evaluation.laps.disturbance import Disturbance, draw
+from evaluation.laps.disturbance import RACE, Disturbance, draw
 from evaluation.laps.light import write_lit_world
 from evaluation.race_trials import trial as trial_module
 from evaluation.race_trials.results import Lap
-from evaluation.race_trials.trial import BOUNDS
 from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.session.failure import RunError
 from evaluation.session.session import Session
@@ -43,14 +42,14 @@ PACKAGES = rospkg.RosPack()
 
 
 def test_a_seed_is_always_the_same_disturbance():
-    assert draw(3, BOUNDS) == draw(3, BOUNDS)
-    assert draw(3, BOUNDS) != draw(4, BOUNDS)
+    assert draw(3, RACE) == draw(3, RACE)
+    assert draw(3, RACE) != draw(4, RACE)
 
 
 def test_disturbances_fill_their_bounds():
-    found = [draw(seed, BOUNDS) for seed in range(400)]
-    bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": BOUNDS.camera_noise,
-              "light": BOUNDS.light, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
+    found = [draw(seed, RACE) for seed in range(400)]
+    bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": RACE.camera_noise,
+              "light": RACE.light, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
     for name, (low, high) in bounds.items():
         values = [getattr(each, name) for each in found]
         tenth = (high - low) / 10
@@ -143,7 +142,7 @@ def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know
     given = dict(argument.split(":=") for argument in found.launch_args)
     assert set(given) <= known
     assert given["world_name"] == "/w.world"
-    assert float(given["camera_noise"]) == pytest.approx(draw(5, BOUNDS).camera_noise, abs=1e-6)
+    assert float(given["camera_noise"]) == pytest.approx(draw(5, RACE).camera_noise, abs=1e-6)
 
 
 def test_the_launch_file_hands_the_noise_to_the_camera():
@@ -188,7 +187,7 @@ def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):
     found = drive(tmp_path)
     assert (found.outcome, found.time, found.mean_speed) == ("closed", 18.0, 2.0)
     assert found.rms_lateral == 0.02  # of the whole drive
-    assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4, BOUNDS))
+    assert (found.set, found.seed, found.disturbance) == ("racetrack", 4, draw(4, RACE))
     assert found.folder == "laps/racetrack-4/lane_follow"
 
 
