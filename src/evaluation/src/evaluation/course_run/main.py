@@ -30,7 +30,6 @@ class CourseRun(CarDrive):
     ends = "0 laps closed, 1 left the course or stalled"
     usual_out = "out/ and the course's name"
     writes = ("path.png", "run.mp4", "report.json")
-    timeouts = (60, 20)
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:

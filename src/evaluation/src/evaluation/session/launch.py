@@ -18,7 +18,7 @@ from evaluation.session.failure import RunError
 from evaluation.session.processes import INTERRUPT_TIME, Child, Family
 
 USUAL_PORT = 11311
-ROSCORE_TIME = 60.0  # s, wall
+ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
 MAY_FINISH = ("spawn",)  # a node so named has done its work when it ends with exit code 0
 DIED = re.compile(r"\[([\w/.-]+)\] process has died \[(?:pid \d+, )?exit code (-?\d+)")
 REQUIRED = re.compile(r"REQUIRED process \[([\w/.-]+)\] has died!")

@@ -20,6 +20,8 @@ from evaluation.trial.command_line import Parser
 from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 
 Outcome = tuple[str, str]  # a word, and why
+# s, wall; an emulated ARM processor takes minutes to start, and seconds for its first picture
+STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
 
 
 class LiveDrive(ABC):
@@ -30,7 +32,6 @@ class LiveDrive(ABC):
     ends: ClassVar[str]  # what the exit codes mean
     usual_out: ClassVar[str]  # where results go, for --help
     writes: ClassVar[Sequence[str]]  # files in `out`
-    timeouts: ClassVar[tuple[int, int]] = (90, 30)  # s, wall: until it begins; of standing time
     vehicle: ClassVar[str] = "car"
     logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
     driver = ""  # the script that drives, for messages
@@ -58,14 +59,14 @@ class LiveDrive(ABC):
         parser = Parser(prog=f"{cls.program}.py", description=cls.does,
                         epilog=f"Exit code: {cls.ends}, 2 could not run.")
         cls.add_options(parser)
-        add, (startup, stuck) = parser.add_argument, cls.timeouts
+        add = parser.add_argument
         add("--out", type=Path, metavar="DIR",
             help=f"where {', '.join(cls.writes)} and log/ go ({cls.usual_out})")
         add("--no-video", dest="video", action="store_false", help="write no run.mp4")
-        add("--startup-timeout", type=float, default=float(startup), metavar="S",
-            help=f"wall seconds for what is started to be there ({startup})")
-        add("--stuck-timeout", type=float, default=float(stuck), metavar="S",
-            help=f"wall seconds that simulated time may stand still ({stuck})")
+        add("--startup-timeout", type=float, default=STARTUP_TIMEOUT, metavar="S",
+            help=f"wall seconds for what is started to be there ({STARTUP_TIMEOUT:g})")
+        add("--stuck-timeout", type=float, default=STUCK_TIMEOUT, metavar="S",
+            help=f"wall seconds that simulated time may stand still ({STUCK_TIMEOUT:g})")
         options = cls.check(parser.parse_args(arguments))
         options.out = (options.out or Path(cls.usual_out)).resolve()
         return options
