@@ -18,7 +18,9 @@ from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro import substitutions
 from bullet_sim.formats.xacro.bounds import Budget, TooLarge, noted_eval
 from bullet_sim.formats.xacro.errors import located, one_line, place, root_of
-from bullet_sim.formats.xacro.nodes import Siblings, safe_eval
+from bullet_sim.formats.xacro.expressions import (
+    evaluate, evaluate_substitution, restricted)
+from bullet_sim.formats.xacro.nodes import Siblings
 from bullet_sim.formats.xacro.opening import load_yaml, parse
 
 FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
@@ -145,18 +147,18 @@ def _private_state(
         "print_location": lambda: None, "verbosity": 1, "all_includes": [],  # each line has a place
         "filestack": None, "macrostack": None, "substitution_args_context": {"filename": ""},
         "parse": parse, "LEXER": substitutions.LEXER, "replace_node": budget.replace_node,
-        "safe_eval": noted_eval(safe_eval), "eval_text": budget.eval_text,
+        "safe_eval": noted_eval(evaluate), "eval_text": budget.eval_text,
         "load_yaml": load_yaml, **replacements,
     }
     commands = {"_eval_find": _finder(find_package), "_eval_dirname": substitutions.directory,
                 "resolve_args": substitutions.resolver(substitution_args.resolve_args),
-                "eval": substitutions.guarded_eval}
+                "eval": evaluate_substitution}
     depth = sys.getrecursionlimit()
     sys.setrecursionlimit(max(depth, DEEPEST))
     try:
         with (
             _swapped(vars(xacro), fresh),
-            _swapped(vars(xacro), {"_global_symbols": xacro.create_global_symbols()}),
+            _swapped(vars(xacro), {"_global_symbols": restricted(xacro.create_global_symbols())}),
             _swapped(vars(substitution_args), commands),
             _swapped(vars(minidom), {"NodeList": Siblings}),
             _swapped(substitution_args._eval_dict, {"find": commands["_eval_find"]}),

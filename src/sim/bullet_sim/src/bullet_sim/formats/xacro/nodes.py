@@ -1,12 +1,7 @@
 """xacro's work on its document, in time that grows with the size and not with its square."""
 
-import functools
 import itertools
-from types import CodeType
-from typing import Any
 from xml.dom import minidom
-
-import xacro
 
 NEAR = 50  # children
 
@@ -57,20 +52,3 @@ def replace_node(
     for one in new:
         one.parentNode = parent
     node.parentNode = node.previousSibling = node.nextSibling = None
-
-
-@functools.lru_cache(maxsize=1024)
-def _compiled(expression: str) -> CodeType:
-    return compile(expression.strip(), "<expression>", "eval")
-
-
-def safe_eval(expression: str, symbols: dict, local: dict | None = None) -> Any:
-    """Replaces xacro's: a macro's expressions are compiled once and not for each call.
-
-    XacroException of a name that may not be used.
-    """
-    code = _compiled(expression)
-    if invalid := [name for name in code.co_names if name.startswith("__")]:
-        raise xacro.XacroException("Use of invalid name(s): ", ", ".join(invalid))
-    symbols.update(__builtins__={})
-    return eval(code, symbols, local)

@@ -34,14 +34,6 @@ class Arguments(dict):
         raise NoSuchArgument(name)
 
 
-def guarded_eval(expression: str, _symbols: dict, local: Any) -> Any:
-    """Python's `eval` for `$(eval …)`, with the builtins of xacro's own expressions alone.
-
-    PyPI's hands over all of them, and a file could open others and write them.
-    """
-    return eval(expression, {"__builtins__": dict(xacro._global_symbols["python"])}, local)
-
-
 def directory(_filename: str) -> str:
     """`$(dirname)`: the folder of the file being read."""
     return os.path.abspath(os.path.dirname(xacro.filestack[-1]))
