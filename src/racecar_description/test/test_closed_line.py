@@ -1,6 +1,7 @@
 """The track's geometry against known answers, the shipped tracks, and broken track files."""
 
 import math
+import time
 from pathlib import Path
 
 import pytest
@@ -130,3 +131,16 @@ def test_a_track_file_that_is_no_text_is_named(tmp_path):
     (tmp_path / "picture.yaml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(TrackError, match=r"picture\.yaml: no text file"):
         load_track(tmp_path / "picture.yaml")
+
+
+@pytest.mark.parametrize("key", ["name", "size", "start"])
+def test_a_list_of_aliases_is_named_and_not_spelt_out(tmp_path, key):
+    bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))
+    lines = (HERE / "broken_tracks" / "negative_width.yaml").read_text().splitlines()
+    path = tmp_path / "track.yaml"
+    path.write_text("\n".join(f"{key}: [{bomb}]" if line.startswith(f"{key}:") else line
+                              for line in lines))
+    began = time.process_time()
+    with pytest.raises(TrackError, match=f"{key}: must be "):
+        load_track(path)
+    assert time.process_time() - began < 2

@@ -1,5 +1,7 @@
 """Map files: what every pixel becomes, what is written, and what is said of each mistake."""
 
+import time
+
 import cv2
 import numpy as np
 import pytest
@@ -240,3 +242,11 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(MapFileError, match=r"map\.pgm: cannot be written: No space left"):
         write_map(tmp_path / "map", grid_of([[100]]))
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_list_of_aliases_is_named_and_not_spelt_out(tmp_path):
+    bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))
+    began = time.process_time()
+    with pytest.raises(MapMetadataError, match=r"resolution is .*, but must be a number"):
+        read_map(write(tmp_path, greys(GREYS), resolution=f"[{bomb}]"))
+    assert time.process_time() - began < 2

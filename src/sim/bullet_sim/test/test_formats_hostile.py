@@ -1,11 +1,13 @@
 """Texts that are broken on purpose: one clear line each, and little memory."""
 
+import time
 import tracemalloc
 
 import pytest
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model, load_world, xml_text
+from bullet_sim.formats.ogre import parse_script
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.formats.xml_text import LARGEST_TEXT
 
@@ -49,6 +51,13 @@ def test_a_number_that_is_none_is_one_short_error_line(text, message, caplog):
     (record,) = caplog.records
     assert message in record.getMessage() and "is used instead" in record.getMessage()
     assert "\n" not in record.getMessage() and len(record.getMessage()) < 500
+
+
+def test_comments_that_never_end_are_read_once():
+    text = "material A { technique { pass { diffuse 1 0 0 } } }\n" + "/* " * 1_300_000
+    began = time.process_time()
+    assert list(parse_script(text)) == ["A"]
+    assert time.process_time() - began < 5  # hours, were each /* looked after
 
 
 def test_a_name_of_a_million_letters_is_one_short_line():

@@ -207,6 +207,7 @@ def test_obj_without_its_material_library_still_loads(tmp_path):
     ("cut_text.stl", b"solid x\nvertex 0 0 0\nvertex 1 0 0\n", "'x' has a facet without three"),
     ("word.stl", b"solid\nvertex 0 0 zero\n", "could not convert string to float: 'zero'"),
     ("cut.dae", b"<COLLADA", "XML Parsing Error"),
+    ("archive.dae", b"PK\3\4" + bytes(60), "it is a ZIP archive; unpack it"),
     ("text.obj", b"hello", "no triangles"),
     ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "asks for v number 7, there are 2"),
     ("shape.step", b"ISO-10303", "unknown kind '.step'; there are: .dae, .glb, .gltf, .obj,"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import reprlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -104,7 +105,7 @@ class _Keys:
 
     def wrong(self, key: str, what: str) -> MapMetadataError:
         """The error for a key's value."""
-        value = repr(self.values[key])[:80]
+        value = reprlib.repr(self.values[key])[:80]  # a YAML alias can repeat itself 10^9 times
         return MapMetadataError(f"{self.path}: {key} is {value}, but {what}; write for example "
                                 f"{EXAMPLES[key]}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -59,9 +60,9 @@ def _track_file(values: object) -> TrackFile:
         raise TrackError("corners: at least three are needed, as a list")
     start = values["start"]
     if not isinstance(start, list) or len(start) != 2:
-        raise TrackError(f"start: must be [x, y], is {start!r}")
+        raise TrackError(f"start: must be [x, y], is {_shown(start)}")
     return TrackFile(
-        name=str(values["name"]),
+        name=_name(values["name"]),
         size=_number("size", values["size"], positive=True),
         model_yaw=_number("model_yaw", values["model_yaw"]),
         line_width=_number("line_width", values["line_width"], positive=True),
@@ -69,6 +70,17 @@ def _track_file(values: object) -> TrackFile:
         start=(_number("start[0]", start[0]), _number("start[1]", start[1])),
         corners=tuple(_corner(f"corners[{i}]", item) for i, item in enumerate(corners)),
     )
+
+
+def _name(value: object) -> str:
+    if isinstance(value, list | dict):
+        raise TrackError(f"name: must be text, is {_shown(value)}")
+    return str(value)
+
+
+def _shown(value: object) -> str:
+    """For a message; a list of YAML's aliases can be a billion times as long as its file."""
+    return reprlib.repr(value)[:80]
 
 
 def _check_start(track: TrackFile, line: CentreLine) -> None:
@@ -96,7 +108,7 @@ def _check_keys(place: str, values: object, schema: type) -> None:
         raise TrackError(f"{where}must have the keys {', '.join(expected)}")
     for key in values:
         if key not in expected:
-            raise TrackError(f"{where}unknown key {key!r}; there are: {', '.join(expected)}")
+            raise TrackError(f"{where}unknown key {_shown(key)}; there are: {', '.join(expected)}")
     for key in expected:
         if key not in values:
             raise TrackError(f"{where}key {key!r} is missing")
@@ -104,9 +116,9 @@ def _check_keys(place: str, values: object, schema: type) -> None:
 
 def _number(place: str, value: object, positive: bool = False) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise TrackError(f"{place}: must be a number, is {value!r}")
+        raise TrackError(f"{place}: must be a number, is {_shown(value)}")
     if positive and value <= 0:
-        raise TrackError(f"{place}: must be more than 0, is {value!r}")
+        raise TrackError(f"{place}: must be more than 0, is {_shown(value)}")
     return float(value)
 
 

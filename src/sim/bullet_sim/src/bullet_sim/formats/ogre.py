@@ -8,7 +8,8 @@ from types import MappingProxyType
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
 
-COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+# A comment without an end is the rest of the file: else each /* in it would be tried again.
+COMMENT = re.compile(r"//[^\n]*|/\*(?:.*?\*/|.*\Z)", re.DOTALL)
 WORD = re.compile(r'"([^"]*)"|(\S+)')
 SECTIONS = ("technique", "pass", "texture_unit")  # of each, only the first counts
 

@@ -20,6 +20,7 @@ from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
 
 _log = logging.getLogger(__name__)
 
+ZIP = b"PK"
 MOST_NODES = 20_000  # counted as often as they are instanced: ten lines can ask for millions
 MOST_TRIANGLES = 4_000_000
 
@@ -27,10 +28,13 @@ MOST_TRIANGLES = 4_000_000
 def read_collada(path: Path, split: bool) -> list[NamedPart]:
     """One part per primitive, named after its scene node.
 
-    FormatError for more than MOST_NODES nodes or MOST_TRIANGLES triangles.
+    FormatError for more than MOST_NODES nodes or MOST_TRIANGLES triangles, and for an archive.
     """
     import collada
 
+    with path.open("rb") as file:
+        if file.read(len(ZIP)) == ZIP:  # pycollada would unpack it, whatever its size
+            raise FormatError("it is a ZIP archive; unpack it and name the .dae inside")
     ignored = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
     document = collada.Collada(str(path), ignore=ignored)
     if document.scene is None:

@@ -18,8 +18,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.formats.xacro import substitutions
 from bullet_sim.formats.xacro.bounds import Budget, TooLarge, noted_eval
 from bullet_sim.formats.xacro.errors import located, one_line, place, root_of
-from bullet_sim.formats.xacro.expressions import (
-    evaluate, evaluate_substitution, restricted)
+from bullet_sim.formats.xacro.expressions import evaluate, evaluate_substitution, restricted
 from bullet_sim.formats.xacro.nodes import Siblings
 from bullet_sim.formats.xacro.opening import load_yaml, parse
 

@@ -80,7 +80,7 @@ def _compiled(expression: str) -> CodeType:
 class _Attributes(ast.NodeTransformer):
     """Has `value.name` ask `_attribute`."""
 
-    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # noqa: N802, ast's name
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         value = self.visit(node.value)
         return ast.copy_location(ast.Call(
             ast.Name(_ATTRIBUTE, ast.Load()), [value, ast.Constant(node.attr)], []), node)
