@@ -288,9 +288,45 @@ def test_arguments_in_quotation_marks(check, tmp_path):
 def test_commands_run_once_and_files_are_read_once(check, tmp_path):
     runs = tmp_path / "runs"
     again = f'<param name="{{}}" command="bash -c \'echo x >> {runs}; echo made\'"/>'
-    code, said = check("a.launch", f"<launch>{again.format('a')}{again.format('b')}</launch>")
+    text = f"<launch>{again.format('a')}{again.format('b')}</launch>"
+    code, said = check("a.launch", text, "--run-commands")
     assert code == 0, said
     assert runs.read_text() == "x\n"
+
+
+@pytest.mark.parametrize("command", [
+    "touch {}", "bash -c 'touch {}'", "cat {} --help", "xacro -o {} {}", "rosrun xacro other {}",
+    "python3 -c 'open(&quot;{}&quot;, &quot;w&quot;)'",
+])
+def test_what_is_looked_at_is_not_run(check, tmp_path, command):
+    made = tmp_path / "made"
+    command = command.replace("{}", str(made))
+    node = '<node pkg="gazebo_ros" type="spawn_model" name="s" args="-urdf -param r -model m"/>'
+    code, said = check("a.launch", f'<launch><param name="r" command="{command}"/>{node}</launch>')
+    assert not made.exists()
+    assert code == 0 and "not checked   parameter /r: its command is not run: " in said
+    assert "--run-commands runs it" in said
+
+
+def test_eval_writes_no_file(check, tmp_path):
+    made = tmp_path / "made"
+    code, said = check("a.launch",
+                       f"<launch><arg name='a' default=\"$(eval open('{made}', 'w'))\"/></launch>")
+    assert code == 1 and "'open' is not defined" in said
+    assert not made.exists()
+
+
+@pytest.mark.parametrize("command, works", [
+    ("xacro {} name:=car", True), ("$(find xacro)/xacro --inorder {}", True),
+    ("rosrun xacro xacro.py {}", True), ("cat {}", True), ("xacro {}.not_there", False),
+])
+def test_xacro_and_cat_are_done_without_running_them(check, tmp_path, command, works):
+    (tmp_path / "car.urdf").write_text(ROBOT)
+    node = '<node pkg="gazebo_ros" type="spawn_model" name="s" args="-urdf -param r -model m"/>'
+    command = command.replace("{}", str(tmp_path / "car.urdf"))
+    code, said = check("a.launch", f'<launch><param name="r" command="{command}"/>{node}</launch>')
+    assert ("parameter /r\n  works         model" in said) is works, said
+    assert (code == 0) is works
 
 
 @pytest.mark.parametrize("inside, words", [
@@ -330,7 +366,7 @@ def test_a_command_that_waits_is_ended(check, tmp_path, monkeypatch):
     monkeypatch.setattr(launch_files, "LONGEST_WAIT", 8)  # roslaunch runs one of its own first
     pid = tmp_path / "pid"
     code, said = check("a.launch", '<launch><param name="a" command="bash -c \'echo $$ > '
-                       f'{pid}; exec sleep 100\'"/></launch>')
+                       f'{pid}; exec sleep 100\'"/></launch>', "--run-commands")
     assert code == 1 and "its command has not ended after 8 s: bash -c 'echo $$" in said
     stat = Path(f"/proc/{int(pid.read_text())}/stat")
     for _ in range(100):

@@ -43,12 +43,15 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("launch", nargs="?", help="launch file of the package")
     parser.add_argument("arguments", nargs="*", metavar="name:=value", help="for xacro or launch")
     parser.add_argument("--all", action="store_true", help="also list accepted tags without effect")
+    parser.add_argument("--run-commands", action="store_true",
+                        help="run the commands of a launch file's parameters; without it xacro "
+                             "and cat are done here, and others are named")
     args = parser.parse_args(argv)
     if args.launch and ":=" in args.launch:
         args.arguments.insert(0, args.launch)
         args.launch = None
     try:
-        findings = Check(args.arguments).run(args.what, args.launch)
+        findings = Check(args.arguments, args.run_commands).run(args.what, args.launch)
     except WorkspaceError as error:
         print(f"check: {error}", file=sys.stderr)
         return 2
@@ -73,12 +76,12 @@ def main(argv: list[str] | None = None) -> int:
 class Check:
     """What a file or package holds, looked through."""
 
-    def __init__(self, arguments: list[str]):
+    def __init__(self, arguments: list[str], run_commands: bool):
         self._arguments = arguments
         resources = open_resources()
         rows = rows_by_name(read_interface())
         self._texts = TextChecker(rows, resources)
-        self._launches = LaunchChecker(rows, self._texts, resources)
+        self._launches = LaunchChecker(rows, self._texts, resources, run_commands)
 
     def run(self, what: str, launch: str | None) -> list[Finding] | None:
         """None if there is no such thing; WorkspaceError for a folder without packages."""

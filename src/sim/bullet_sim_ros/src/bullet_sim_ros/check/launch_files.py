@@ -3,11 +3,11 @@
 import multiprocessing
 import os
 import re
-import resource
 import signal
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from xml.etree.ElementTree import ParseError, parse
@@ -15,6 +15,7 @@ from xml.etree.ElementTree import ParseError, parse
 import roslaunch.config
 import roslaunch.core
 import roslaunch.loader
+import roslaunch.substitution_args
 import roslaunch.xmlloader
 import rospkg
 import yaml
@@ -22,6 +23,10 @@ from roslaunch.substitution_args import SubstitutionException
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.files import check_file
+from bullet_sim.formats.resources import FindPackage
+from bullet_sim.formats.xacro.bounds import limit_memory
+from bullet_sim.formats.xacro.expressions import evaluate_substitution
+from bullet_sim_ros.check.parameter_commands import NotRun, output_of
 
 ERRORS = (roslaunch.core.RLException, roslaunch.xmlloader.XmlParseException,
           SubstitutionException, rospkg.ResourceNotFound, yaml.YAMLError, OSError, ValueError,
@@ -29,7 +34,6 @@ ERRORS = (roslaunch.core.RLException, roslaunch.xmlloader.XmlParseException,
           MemoryError, SimulationError)
 LONGEST = 3.0  # s of processor time to read a launch file, without the commands that it runs
 LONGEST_WAIT = 30  # s, for all its commands
-MOST_MEMORY = 1 << 30  # bytes
 LARGEST_FILE = 32 * 2**20  # bytes of a parameter's file
 LONGEST_LINE = 500  # characters of an error
 TOO_MUCH = (f"to read it takes more than {LONGEST:g} s or 1 GiB; look at its $(eval …), and how "
@@ -56,17 +60,20 @@ class Launch:
     """What a launch file comes to."""
 
     nodes: tuple[LaunchedNode, ...]
-    parameters: dict[str, object]  # by full name
+    parameters: dict[str, object]  # by full name; NotRun for the output of an unknown command
 
 
-def read_launch(path: Path, arguments: list[str]) -> Launch:
+def read_launch(path: Path, arguments: list[str], find_package: FindPackage,
+                run_commands: bool = False) -> Launch:
     """As roslaunch reads it; SimulationError says in one line why it cannot.
 
-    In a process of its own: `$(eval …)` may want any time or memory, and commands may wait.
+    In a process of its own: `$(eval …)` may want any time or memory, and commands may wait. They
+    are run only with `run_commands`: else xacro and cat are done here, and others are NotRun.
     """
+    output = None if run_commands else partial(output_of, find_package=find_package)
     receiver, sender = multiprocessing.Pipe(duplex=False)
     reader = multiprocessing.get_context("fork").Process(
-        target=_read, args=(path, arguments, sender), daemon=False)
+        target=_read, args=(path, arguments, output, sender), daemon=False)
     reader.start()
     sender.close()
     running = ""
@@ -101,17 +108,18 @@ def _why_ended(exit_code: int | None, command: str) -> str:
     return TOO_MUCH
 
 
-def _read(path: Path, arguments: list[str], sender: Connection) -> None:
+def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
+          sender: Connection) -> None:
     os.setpgrp()  # so that its commands can be ended with it
     # Timers and not RLIMIT_CPU, which each command would inherit.
     for number in (signal.SIGPROF, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)  # which ends the process, whatever the parent does
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
     signal.alarm(LONGEST_WAIT)
-    limit = _data_size() + MOST_MEMORY  # on top of what the parent has
-    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+    limit_memory()
     loader = roslaunch.loader.Loader
-    loader.param_value = _remembered(loader.param_value, sender)
+    loader.param_value = _remembered(loader.param_value, output, sender)
+    roslaunch.substitution_args.eval = evaluate_substitution
     _watch_includes(roslaunch.xmlloader.XmlLoader)
     try:
         config = roslaunch.config.load_config_default(
@@ -123,11 +131,6 @@ def _read(path: Path, arguments: list[str], sender: Connection) -> None:
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
               for node in config.nodes),
         {name: parameter.value for name, parameter in config.params.items()}))
-
-
-def _data_size() -> int:
-    """Bytes of this process that RLIMIT_DATA counts."""
-    return int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
 
 
 def _error_line(error: Exception) -> str:
@@ -164,8 +167,12 @@ def _watch_includes(loader: type) -> None:
     loader._parse_launch, loader._include_tag = parse_and_count, include
 
 
-def _remembered(param_value: Callable, sender: Connection) -> Callable:
-    """roslaunch's, which runs each command and reads each file once, however many ask for it."""
+def _remembered(param_value: Callable, output: Callable[[str], str] | None,
+                sender: Connection) -> Callable:
+    """roslaunch's, which reads each file once and has each command once, however many ask for it.
+
+    `output` gives what a command prints; None: it is run.
+    """
     values: dict[tuple, object] = {}
 
     def remembered(loader, verbose, name, ptype, value, textfile, binfile, command):
@@ -175,6 +182,11 @@ def _remembered(param_value: Callable, sender: Connection) -> Callable:
         if what not in values:
             if file := textfile or binfile:
                 check_file(file, LARGEST_FILE)
+            if command and output is not None:
+                text = output(command)
+                values[what] = (text if isinstance(text, NotRun) else
+                                roslaunch.loader.convert_value(text, ptype))
+                return values[what]
             sender.send(_Running(command or ""))
             values[what] = param_value(loader, verbose, name, ptype, None, *what[1:])
             sender.send(_Running(""))

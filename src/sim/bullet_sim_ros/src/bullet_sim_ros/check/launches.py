@@ -20,6 +20,7 @@ from bullet_sim_ros.check.launch_files import (
     missing_arguments,
     read_launch,
 )
+from bullet_sim_ros.check.parameter_commands import NotRun
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.interface import Row
 
@@ -41,8 +42,10 @@ def _words(node: LaunchedNode) -> list[str]:
 class LaunchChecker:
     """One launch file at a time."""
 
-    def __init__(self, rows: dict[str, Row], texts: TextChecker, resources: Resources):
+    def __init__(self, rows: dict[str, Row], texts: TextChecker, resources: Resources,
+                 run_commands: bool):
         self._rows = rows
+        self._run_commands = run_commands
         self._texts = texts
         self._resources = resources
 
@@ -57,10 +60,13 @@ class LaunchChecker:
             return [Finding(where, "launch file", PROBLEM if alone else UNCHECKED,
                             f"it needs {words}; rosrun bullet_sim_ros check {path} {words}")]
         try:
-            launch = read_launch(path, arguments)
+            launch = read_launch(path, arguments, self._texts.find_package, self._run_commands)
         except SimulationError as error:
             return [problem(where, "launch file", error)]
         found = [Finding(where, f"launch file ({len(launch.nodes)} nodes)", WORKS)]
+        found += [Finding(where, f"parameter {name}", UNCHECKED,
+                          f"its command is not run: {value}; --run-commands runs it")
+                  for name, value in launch.parameters.items() if isinstance(value, NotRun)]
         for node in launch.nodes:
             found += self._node(node, launch, where)
         spawned = {word for node in launch.nodes if node.package == "controller_manager"
@@ -120,8 +126,11 @@ class LaunchChecker:
         full = name if name.startswith("/") else f"{node.namespace}{name}"
         for candidate in (full, "/" + name.lstrip("/")):
             if candidate in launch.parameters:
+                value = launch.parameters[candidate]
+                if isinstance(value, NotRun):
+                    return []
                 return self._texts.model_text(
-                    str(launch.parameters[candidate]), f"{where}, parameter {candidate}",
+                    str(value), f"{where}, parameter {candidate}",
                     launch.parameters, namespace)
         return [problem(where, f"spawn_model -param {name}",
                         f"no parameter {full}; a <param name=\"{name}\"> has to stand before it")]

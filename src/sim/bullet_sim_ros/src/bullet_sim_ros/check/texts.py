@@ -1,19 +1,17 @@
 """Checks robot and world texts: reads and spawns them as the simulator would, and listens."""
 
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from xml.etree.ElementTree import ParseError, fromstring
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
-from bullet_sim.formats.xacro.bounds import run_bounded
-from bullet_sim.formats.xacro.files import expand_file
 from bullet_sim.formats.xml_text import read_bytes
 from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
 from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.check.included import included
+from bullet_sim_ros.check.parameter_commands import expanded
 from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
 
 NEEDS_MASS = "an <inertial>"  # the end of what a robot without any is refused with
@@ -34,7 +32,7 @@ class TextChecker:
         """
         where = str(path)
         try:
-            text = (self._expanded(path, arguments) if path.suffix == ".xacro"
+            text = (expanded(path, arguments, self.find_package) if path.suffix == ".xacro"
                     else _utf8(path))
         except SimulationError as error:
             return [problem(where, "robot", error)]
@@ -44,28 +42,8 @@ class TextChecker:
             return [Finding(where, "robot", APPROXIMATED, how)]
         return found
 
-    def _expanded(self, path: Path, arguments: dict[str, str]) -> str:
-        """The URDF of a xacro file; its expressions may want any time or memory."""
-        with tempfile.TemporaryDirectory(prefix="check-") as folder:
-            result = Path(folder) / "result"
-
-            def expand_into_file() -> int:
-                try:
-                    text = expand_file(path, arguments, find_package=self._find_package).text
-                except SimulationError as error:
-                    result.write_text(str(error), encoding="utf-8")
-                    return 1
-                result.write_text(text, encoding="utf-8")
-                return 0
-
-            with listening():
-                code = run_bounded(expand_into_file, str(path))
-            output = result.read_text(encoding="utf-8") if result.exists() else "it failed"
-        if code:
-            raise FormatError(output)
-        return output
-
-    def _find_package(self, name: str) -> str:
+    def find_package(self, name: str) -> str:
+        """The package's folder. ResourceNotFound if there is none."""
         return str(self._resources.package_folder(name))
 
     def model_text(self, text: str, where: str, parameters: Mapping[str, object] | None = None,

@@ -9,6 +9,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import xacro
@@ -89,7 +90,7 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
             gc.disable()  # it would walk through the growing document again and again
             signal.signal(signal.SIGPROF, signal.SIG_DFL)  # which ends the process
             signal.setitimer(signal.ITIMER_PROF, seconds)
-            resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+            limit_memory()
             code = work()
             sys.stdout.flush()
         except MemoryError:
@@ -109,6 +110,12 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
     if os.WTERMSIG(status) == signal.SIGPROF:
         raise TooLarge(f"{where} takes longer than {seconds:g} s of processor time; simplify it")
     raise TooLarge(f"{where} was ended by signal {os.WTERMSIG(status)}")
+
+
+def limit_memory() -> None:
+    """Lets this process have MOST_BYTES on top of what it has from its parent."""
+    held = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_DATA, (held + MOST_BYTES, held + MOST_BYTES))
 
 
 def _what_took(long: float, file: str) -> str:

@@ -14,6 +14,8 @@ from typing import Any
 
 import xacro
 
+from bullet_sim.errors import FormatError
+
 ALLOWED = (
     ast.Expression, ast.Constant, ast.Name, ast.Load, ast.Store, ast.Starred,
     ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp,
@@ -46,15 +48,18 @@ _ATTRIBUTE = "<attribute>"  # no name that a file could write
 def evaluate(expression: str, symbols: dict, local: Mapping | None = None) -> Any:
     """The value of an expression; stands for xacro's `safe_eval`, and in `$(eval …)` for `eval`.
 
-    XacroException names what is not allowed; else whatever the expression raises.
+    FormatError names what is not allowed; else whatever the expression raises.
     """
     symbols.update(__builtins__=_BUILTINS)
     return eval(_compiled(expression.strip()), symbols, local)
 
 
 def evaluate_substitution(expression: str, _symbols: dict, local: Mapping) -> Any:
-    """`$(eval …)`: with the builtins of `${…}`, whose namespace `python` holds them."""
-    return evaluate(expression, dict(xacro._global_symbols["python"]), local)
+    """Stands for `eval` in `$(eval …)` of xacro and of roslaunch: with the builtins of `${…}`.
+
+    FormatError names what is not allowed; else whatever the expression raises.
+    """
+    return evaluate(expression, dict(_PYTHON), local)
 
 
 def restricted(symbols: dict) -> dict:
@@ -70,10 +75,10 @@ def _compiled(expression: str) -> CodeType:
     tree = ast.parse(expression, "<expression>", "eval")
     for node in ast.walk(tree):
         if not isinstance(node, ALLOWED):
-            raise xacro.XacroException(f"{type(node).__name__} may not be used in an expression")
+            raise FormatError(f"{type(node).__name__} may not be used in an expression")
         name = getattr(node, "id", None) or getattr(node, "attr", "")
         if name.startswith("__"):
-            raise xacro.XacroException(f"Use of invalid name(s): {name}")
+            raise FormatError(f"Use of invalid name(s): {name}")
     return compile(ast.fix_missing_locations(_Attributes().visit(tree)), "<expression>", "eval")
 
 
@@ -87,7 +92,7 @@ class _Attributes(ast.NodeTransformer):
 
 
 def _attribute(value: Any, name: str) -> Any:
-    """What `value.name` is; XacroException where it is not for expressions."""
+    """What `value.name` is; FormatError where it is not for expressions."""
     if isinstance(value, xacro.NameSpace):
         if name not in value:
             raise NameError(f"name '{name}' is not defined")
@@ -99,7 +104,7 @@ def _attribute(value: Any, name: str) -> Any:
         return getattr(value, name)
     if isinstance(value, xacro.YamlDictWrapper) and not name.startswith("_"):
         return value[name]
-    raise xacro.XacroException(
+    raise FormatError(
         f"Use of invalid name(s): {name} of a value of type {type(value).__name__}")
 
 
@@ -108,7 +113,7 @@ class _Formatter(string.Formatter):
 
     def get_field(self, field_name: str, args: Sequence, kwargs: Mapping) -> tuple[Any, Any]:
         if "." in field_name or "[" in field_name:
-            raise xacro.XacroException(f"Use of invalid name(s): {field_name} in a format")
+            raise FormatError(f"Use of invalid name(s): {field_name} in a format")
         return super().get_field(field_name, args, kwargs)
 
 
@@ -117,8 +122,9 @@ _format: Callable[..., str] = _Formatter().format
 
 def _type_of(value: Any) -> type:
     if value is not None and not isinstance(value, tuple(METHODS)):
-        raise xacro.XacroException(f"type() of a {type(value).__name__} may not be used")
+        raise FormatError(f"type() of a {type(value).__name__} may not be used")
     return type(value)
 
 
 _BUILTINS = {_ATTRIBUTE: _attribute}
+_PYTHON = dict(restricted(xacro.create_global_symbols())["python"])
