@@ -11,6 +11,9 @@ from pathlib import Path
 import aiohttp
 import pytest
 from sim_viewer import hub, registry
+from sim_viewer.context import Context, Node
+from sim_viewer.options import Options
+from sim_viewer.tools.paced import Paced
 
 MESSAGES = 1000
 SEEDS = range(2)
@@ -239,3 +242,49 @@ async def drain(link):
 def resident_bytes():
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * resource.getpagesize()
+
+
+class Polled(Paced):
+    """Looks often, and counts."""
+
+    PERIOD = 0.005
+    looks = 0
+
+    def collect(self):
+        Polled.looks += 1
+
+
+def test_what_is_no_longer_watched_is_not_looked_at(visit, monkeypatch):
+    async def story(http, port):
+        monkeypatch.setitem(registry._watchables, "polled", Polled)
+        link = await http.ws_connect("/ws")
+        for number in range(1, 21):  # the end comes while the beginning is under way
+            await link.send_str(json.dumps({"id": 0, "op": "watch", "what": "polled"}))
+            await link.send_str(json.dumps({"id": 0, "op": "unwatch", "watch": number}))
+        assert await asks(link)
+        await link.close()
+        until = asyncio.get_running_loop().time() + 10
+        while any("Paced._run" in repr(task) for task in asyncio.all_tasks()):
+            assert asyncio.get_running_loop().time() < until, "it is looked at for nobody"
+            await asyncio.sleep(0.02)
+    visit(story)
+
+
+def test_a_browser_is_cleared_up_after_although_one_part_fails(monkeypatch):
+    def fail():
+        raise BrokenPipeError
+
+    async def story():
+        monkeypatch.setitem(registry._watchables, "polled", Polled)
+        node = Node(Options(), asyncio.get_running_loop())
+        context = Context(node, 1)
+        client = hub.Client(None, context)
+        released = []
+        context.on_close(fail)
+        context.on_close(lambda: released.append(True))
+        await client._watch({"what": "polled"})
+        await client.close()
+        assert released and not client._watches
+        node.close()
+
+    asyncio.run(story())

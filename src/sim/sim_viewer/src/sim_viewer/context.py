@@ -5,6 +5,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import rospy
+
 from sim_viewer.options import Options
 
 WORKERS = 16  # threads for what may block: services, the master, slow encoders
@@ -61,6 +63,9 @@ class Context:
         self._on_close.append(function)
 
     def closed(self) -> None:
-        """The connection has ended: call those who asked for it."""
+        """The connection has ended: call those who asked for it, also where one of them fails."""
         for function in self._on_close:
-            function()
+            try:
+                function()
+            except Exception as error:
+                rospy.logwarn("end of a connection: %s: %s", type(error).__name__, error)

@@ -166,6 +166,8 @@ class Client:
         except BaseException:
             await self._unwatch(number)
             raise
+        if number not in self._watches:  # ended meanwhile, and `start` went on after `stop`
+            await self._stop(watched)
         return answer
 
     async def _unwatch(self, number: Any) -> None:
@@ -173,6 +175,9 @@ class Client:
         if watched is None:
             return
         self._outbox.close(number)
+        await self._stop(watched)
+
+    async def _stop(self, watched: Any) -> None:
         try:
             await self._run(watched.stop)
         except Exception as error:
