@@ -204,6 +204,25 @@ def test_the_launch_file_is_told_what_was_asked_for(start):
     }
 
 
+def test_results_of_the_run_before_are_kept(start, tmp_path):
+    assert start(*FAKE).wait() == 0
+    first = (tmp_path / "course" / "report.json").read_bytes()
+    none = ("--launch-arg", "behaviour:=no_car", "--startup-timeout", "3")
+    assert start(*FAKE, *none).wait() == 2
+    assert not (tmp_path / "course" / "report.json").exists()
+    assert (tmp_path / "course" / "earlier" / "report.json").read_bytes() == first
+
+
+def test_a_folder_of_somebody_else_s_logs_is_not_removed(start, tmp_path):
+    diary = tmp_path / "course" / "log" / "diary.txt"
+    diary.parent.mkdir(parents=True)
+    diary.write_text("dear diary")
+    run = start(*FAKE)
+    assert run.wait() == 2
+    assert "is not a folder of logs that a run wrote" in run.last_line
+    assert diary.read_text() == "dear diary"
+
+
 @pytest.mark.parametrize(
     ("behaviour", "words"),
     [("leaves", "the car left the course at x="), ("stalls", "the car stalled at x=")],

@@ -19,6 +19,7 @@ from evaluation.session.processes import INTERRUPT_TIME, Child, Family
 
 USUAL_PORT = 11311
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
+ROSCORE_LOG = "roscore.log"  # in the folder of each run's logs
 MAY_FINISH = ("spawn",)  # a node so named has done its work when it ends with exit code 0
 DIED = re.compile(r"\[([\w/.-]+)\] process has died \[(?:pid \d+, )?exit code (-?\d+)")
 REQUIRED = re.compile(r"REQUIRED process \[([\w/.-]+)\] has died!")
@@ -36,7 +37,7 @@ class Launched:
         """`alone`: in a network namespace of its own, where nobody else chooses a port."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
-        shutil.rmtree(self.log_folder, ignore_errors=True)
+        _remove_logs(self.log_folder)
         self.log_folder.mkdir(parents=True)
         # From looking for a port to listening there: no other run may choose the same one.
         turn = log_folder if alone else Path(tempfile.gettempdir())
@@ -56,7 +57,7 @@ class Launched:
 
     def start_roscore(self) -> None:
         """Start roscore and wait until it answers."""
-        self.start("roscore", ["roscore", "-p", str(self.port)])
+        self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         until = time.monotonic() + ROSCORE_TIME
         while not _answers(self.master_uri):
             self.check(None)
@@ -171,6 +172,16 @@ class Launched:
         if driver and ("follower" in process or process.startswith(driver)):
             return f"the follower {self._follower} (process {process})"
         return f"process {process}"
+
+
+def _remove_logs(folder: Path) -> None:
+    """Those of the run before; RunError of a folder that no run wrote."""
+    if not folder.exists():
+        return
+    if not folder.is_dir() or (any(folder.iterdir()) and not (folder / ROSCORE_LOG).exists()):
+        raise RunError(f"{folder} is not a folder of logs that a run wrote: move it, or name"
+                       " another folder for results with --out")
+    shutil.rmtree(folder)
 
 
 def describe_exit(code: int) -> str:

@@ -22,6 +22,7 @@ from evaluation.trial.program import NOT_PASSED, PASSED, run_program
 Outcome = tuple[str, str]  # a word, and why
 # s, wall; an emulated ARM processor takes minutes to start, and seconds for its first picture
 STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
+EARLIER = "earlier"  # a folder in `out`
 
 
 class LiveDrive(ABC):
@@ -157,11 +158,13 @@ def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> None:
 
 
 def _make_room(drive: LiveDrive) -> None:
-    """What is in the folder afterwards is of this run."""
+    """What is in the folder afterwards is of this run; results of the last one go to EARLIER."""
+    earlier = drive.out / EARLIER
     try:
         drive.out.mkdir(parents=True, exist_ok=True)
-        for name in drive.owned_files():
-            (drive.out / name).unlink(missing_ok=True)
+        for path in filter(Path.exists, map(drive.out.joinpath, drive.owned_files())):
+            earlier.mkdir(exist_ok=True)
+            path.replace(earlier / path.name)
     except PermissionError:
         raise
     except OSError as error:
