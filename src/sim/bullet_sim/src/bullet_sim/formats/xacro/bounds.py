@@ -22,7 +22,7 @@ MOST_PARTS = 15_000  # macro calls, properties, conditions, blocks; large robots
 MOST_TEXTS = 150_000  # attributes and texts evaluated; TurtleBot3 has 110 for each link
 MOST_SECONDS = 3.5  # of processor time; large robots take 1
 LONG = 1.0  # s; an expression that took so long is what took the time
-MOST_BYTES = 2**30
+MOST_BYTES = 2**29
 NO_MEMORY = 70  # exit code of the process that expands
 NOTE_BYTES = 1024
 
