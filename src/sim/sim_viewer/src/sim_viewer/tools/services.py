@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+from collections.abc import Callable
 from typing import Any
 
 import rosgraph
@@ -60,20 +61,26 @@ def service_class(name: str) -> type:
 
 
 class Calls:
-    """Calls under way. Each has a thread of its own: a service that hangs blocks no other call."""
+    """Calls under way. Each has a thread of its own: a service that hangs blocks nothing else."""
 
     def __init__(self, node: Any):
         self._loop: asyncio.AbstractEventLoop = node.loop
         self._under_way = 0
 
-    async def call(self, name: str, kind: type, request: Any) -> Any:
-        """The response; Refused with the server's reason, or when it takes too long."""
+    async def call(self, name: str, kind: type, *fields: Any) -> Any:
+        """The response to a request or its fields.
+
+        Refused with the server's reason, or when it takes too long.
+        """
+        return await self.run(name, lambda: rospy.ServiceProxy(name, kind)(*fields))
+
+    async def run(self, name: str, work: Callable[[], Any]) -> Any:
+        """What `work` returns, which calls the services of `name`; Refused as for `call`."""
         if self._under_way >= MOST_AT_ONCE:
             raise Refused(f"{MOST_AT_ONCE} calls are still waiting for their answers")
         answer = self._loop.create_future()
         self._under_way += 1
-        threading.Thread(target=self._work, args=(name, kind, request, answer),
-                         daemon=True).start()
+        threading.Thread(target=self._work, args=(work, answer), daemon=True).start()
         try:
             return await asyncio.wait_for(asyncio.shield(answer), TIMEOUT)
         except TimeoutError:
@@ -81,9 +88,9 @@ class Calls:
         except (rospy.ServiceException, rospy.ROSException) as error:
             raise Refused(f"{name}: {error}") from None
 
-    def _work(self, name: str, kind: type, request: Any, answer: asyncio.Future) -> None:
+    def _work(self, work: Callable[[], Any], answer: asyncio.Future) -> None:
         try:
-            result = rospy.ServiceProxy(name, kind)(request)
+            result = work()
         except Exception as error:
             result = error
         try:

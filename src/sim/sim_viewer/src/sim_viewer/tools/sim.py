@@ -16,9 +16,11 @@ from sim_viewer.tools import names
 from sim_viewer.tools.clock import FactorMeter, SharedClock
 from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.paced import Paced
+from sim_viewer.tools.services import Calls
 from sim_viewer.tools.simulator_name import simulator_name
 
 PAUSE_ASKED = 1.0  # s between two questions whether it is paused
+ANSWER_TIME = 0.5  # s that an answer is waited for
 MOST_STEPS = 100_000
 STEP_LIMIT = 10.0  # s of wall time for all steps asked for at once
 RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
@@ -28,7 +30,7 @@ RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
 async def pause(context: Any, paused: bool = True) -> None:
     """Stop simulated time, or let it go on."""
     name = await _find_simulator(context)
-    await context.run_in_thread(call, name + (names.PAUSE if paused else names.UNPAUSE))
+    await _call(context, name + (names.PAUSE if paused else names.UNPAUSE))
     context.node.shared(SharedPause).forget()
 
 
@@ -37,7 +39,7 @@ async def reset(context: Any, what: str = "world") -> None:
     """`world`: models back to where they began; `simulation`: time to 0 as well; Refused else."""
     if what not in RESETS:
         raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
-    await context.run_in_thread(call, await _find_simulator(context) + RESETS[what])
+    await _call(context, await _find_simulator(context) + RESETS[what])
 
 
 @operation("step", control=True)
@@ -52,13 +54,20 @@ async def step(context: Any, steps: int = 1) -> dict[str, float]:
         raise Refused(f"steps is {steps}; give 1 to {MOST_STEPS}")
     name = await _find_simulator(context)
     state = await context.run_in_thread(context.node.shared(MasterView).state)
+    clock = context.node.shared(SharedClock)
+    exact = name + names.STEP in state.services
     try:
-        if name + names.STEP in state.services:
-            return await context.run_in_thread(_step_exactly, name, steps)
-        return await context.run_in_thread(_step_by_clock, name, context.node.shared(SharedClock),
-                                           steps)
+        return await context.node.shared(Calls).run(
+            name, lambda: _step_exactly(name, steps) if exact else _step_by_clock(name, clock, steps))
     finally:
         context.node.shared(SharedPause).forget()
+
+
+async def _call(context: Any, name: str) -> None:
+    try:
+        await context.node.shared(Calls).call(name, Empty)
+    except Refused as error:
+        raise Refused(f"{error}; is a simulator running?") from None
 
 
 async def _find_simulator(context: Any) -> str:
@@ -112,28 +121,42 @@ def call(name: str, kind: type = Empty) -> Any:
 
 
 class SharedPause:
-    """Whether the simulator is paused, asked at most once a second however many pages show it."""
+    """Whether the simulator is paused, asked at most once a second however many pages show it.
+
+    It is asked in a thread of its own: one that is halted does not answer at all.
+    """
 
     def __init__(self, node: Any = None):
         self._lock = threading.Lock()
         self._asked = -PAUSE_ASKED
+        self._answered = threading.Event()  # the last question was
+        self._answered.set()
         self._paused: bool | None = None
 
     def read(self, name: str) -> bool | None:
-        """As it was at most a second ago; None where there was no answer."""
+        """As it was at most a second ago; None where there is no answer."""
         with self._lock:
-            if time.monotonic() - self._asked >= PAUSE_ASKED:
-                try:
-                    self._paused = call(name + names.PHYSICS, GetPhysicsProperties).pause
-                except Refused:
-                    self._paused = None
-                self._asked = time.monotonic()
-            return self._paused
+            since = time.monotonic() - self._asked
+            if not self._answered.is_set():
+                return self._paused if since < ANSWER_TIME else None
+            if since < PAUSE_ASKED:
+                return self._paused
+            self._asked = time.monotonic()
+            self._answered.clear()
+        threading.Thread(target=self._ask, args=(name,), daemon=True).start()
+        return self._paused if self._answered.wait(ANSWER_TIME) else None
 
     def forget(self) -> None:
         """Ask anew: it has just been changed."""
         with self._lock:
             self._asked = -PAUSE_ASKED
+
+    def _ask(self, name: str) -> None:
+        try:
+            self._paused = call(name + names.PHYSICS, GetPhysicsProperties).pause
+        except Refused:
+            self._paused = None
+        self._answered.set()
 
 
 @watchable("status")
