@@ -44,14 +44,14 @@ def test_the_older_style_of_turtlebot3():
 
 
 @pytest.mark.parametrize("tree, has_map", [
-    ({}, True), ({"static_map": True}, True), ({"static_map": False}, False),
-    ({"rolling_window": True}, False), ({"rolling_window": True, "static_map": True}, True)])
+    ({}, False), ({"static_map": True}, True), ({"static_map": False}, False),
+    ({"rolling_window": True, "static_map": True}, True)])
 def test_when_the_older_style_has_a_map(tree, has_map):
     assert ("static_layer" in [layer.name for layer in read(tree).layers]) == has_map
 
 
 def test_older_parameters_reach_their_layers():
-    tree = {"map_type": "voxel", "map_topic": "other", "unknown_cost_value": 7,
+    tree = {"static_map": True, "map_type": "voxel", "map_topic": "other", "unknown_cost_value": 7,
             "lethal_cost_threshold": 60, "track_unknown_space": True, "z_voxels": 5,
             "mark_threshold": 2, "max_obstacle_height": 1.1, "observation_sources": "a b",
             "a": {"obstacle_range": 1.0}}

@@ -16,7 +16,7 @@ def costmap(monkeypatch):
     found.name, found.events, found.now = "costmap", [], 100.0
     found._values = {"update_frequency": 5.0, "publish_frequency": 0.0}
     found._paused = found._stopped = False
-    found._transforms = SimpleNamespace(
+    found.transforms = SimpleNamespace(
         buffer=SimpleNamespace(clear=lambda: found.events.append("no transforms")))
     found._sensors = SimpleNamespace(forget=lambda: found.events.append("no sensors"))
     found._publish_if_due = lambda: None

@@ -180,7 +180,7 @@ def base():
     found = Base.__new__(Base)
     found._velocity, found._limits, found.heard = np.zeros(3), None, None
     found._driven, found.odometry_fault, found.odom_topic = True, "", "/odom"
-    found.expect(0.3, 1.0)
+    found.expect(0.3, 1.0, 10.0)
     return found
 
 
@@ -219,6 +219,14 @@ def test_a_robot_may_be_pushed_faster_than_it_is_told(base, lines, pushed):
     """Or roll down a slope."""
     base._take(odometry(*pushed))
     assert base.velocity.tolist() == [pushed[0], 0.0, pushed[1]] and not lines
+
+
+def test_without_a_factor_any_odometry_counts_that_is_a_number(base, lines):
+    base.expect(0.3, 1.0, 0.0)
+    base._take(odometry(50.0, 100.0))
+    assert base.velocity.tolist() == [50.0, 0.0, 100.0] and not lines
+    base._take(odometry(math.nan, 0.0))
+    assert base.velocity[0] == 50.0 and "it says (nan" in lines[0]
 
 
 @pytest.mark.parametrize("tolerance", [math.inf, 1e30, math.nan])

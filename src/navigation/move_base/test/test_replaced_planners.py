@@ -43,7 +43,7 @@ START, GOAL = np.array([1.0, 1.0, 0.0]), np.array([3.0, 3.0, 0.0])
 
 @pytest.mark.parametrize("replaced", [False, True])
 def test_a_path_of_a_planner_that_was_replaced_counts_and_is_not_published(replaced):
-    planner = Navfn()
+    planner = Navfn(None)
     topic, plan = planner._topic, planner._plan
     planner._plan = lambda *arguments: (planner.close() if replaced else None, plan(*arguments))[1]
     assert planner.plan(COSTMAP, None, START, GOAL, "map")[-1] == pytest.approx(GOAL)
@@ -52,7 +52,7 @@ def test_a_path_of_a_planner_that_was_replaced_counts_and_is_not_published(repla
 
 @pytest.mark.parametrize("replaced", [False, True])
 def test_a_command_of_a_planner_that_was_replaced_counts_and_is_not_published(replaced):
-    planner = Dwa(10.0)
+    planner = Dwa(10.0, None)
     planner.set_path(np.linspace(START, GOAL, 30), False)
     topic, command = planner._local_plan, planner._planner.command
     planner._planner.command = lambda *arguments: (

@@ -196,7 +196,8 @@ def test_while_the_robot_cannot_see_patience_does_not_run_out(machine):
 
 
 def test_who_drives_but_gets_no_nearer_must_recover_and_then_give_up(machine):
-    """Also where oscillation_timeout is 0; a velocity alone makes no recovery available again."""
+    """With progress_timeout; a velocity alone makes no recovery available again."""
+    with_(machine, progress_timeout=15.0)
     machine.planned(machine.goal, True, 100.0)
     for nearer, now, state in ((True, 101.0, State.CONTROLLING), (False, 116.0, State.CONTROLLING),
                                (False, 116.1, State.CLEARING)):
@@ -214,11 +215,7 @@ def test_who_drives_but_gets_no_nearer_must_recover_and_then_give_up(machine):
         "Failed to find a valid control. Even after executing recovery behaviors.")
 
 
-def test_a_turn_takes_its_time_however_short_the_patience_is(machine):
-    """10 s are enough for half a turn."""
-    with_(machine, controller_patience=1.0)
+def test_without_a_progress_timeout_a_velocity_is_enough_as_upstream(machine):
     machine.planned(machine.goal, True, 100.0)
-    machine.controlled(True, False, 110.0)
+    machine.controlled(True, False, 1e6)
     assert machine.state is State.CONTROLLING
-    machine.controlled(True, False, 110.1)
-    assert machine.state is State.CLEARING

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
 import numpy as np
+import yaml
 
 from nav_algorithms import likelihood_field, poses, rays
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
@@ -19,6 +24,13 @@ BOXES = ((0, 0, 8, 0.15), (0, 5.85, 8, 6), (0, 0, 0.15, 6), (7.85, 0, 8, 6),
          (0, 3.6, 1.5, 3.75), (2.4, 3.6, 3, 3.75),
          (0.4, 0.4, 1.2, 1.5), (6.9, 0.4, 7.6, 1.9), (4.0, 5.2, 5.8, 5.7), (0.5, 5.0, 0.9, 5.6),
          (7.0, 4.2, 7.5, 4.6), (4.3, 1.2, 4.6, 1.5))
+
+
+def robust(kind: type) -> dict[str, Any]:
+    """What amcl/config/robust.yaml says of the fields of a settings class."""
+    file = Path(__file__).parents[2] / "amcl" / "config" / "robust.yaml"
+    values = yaml.safe_load(file.read_text(encoding="utf-8"))
+    return {field.name: values[field.name] for field in fields(kind) if field.name in values}
 
 
 def flat() -> OccupancyGrid:

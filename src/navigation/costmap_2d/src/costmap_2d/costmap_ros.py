@@ -41,13 +41,13 @@ class CostmapROS:
     """
 
     def __init__(self, name: str, transforms: Transforms, complaints: Complaints) -> None:
-        """Reads `~NAME/...`, subscribes, and starts updating.
+        """Reads `~NAME/...` (all that is in `tables`), subscribes, and starts updating.
 
         Raises nav_nodes.parameters.ParameterError for a parameter that makes no sense.
         """
         self.name = name
         self._where = rospy.resolve_name(f"~{name}")
-        self._transforms, self._complaints = transforms, complaints
+        self.transforms, self._complaints = transforms, complaints
         self._lock = threading.RLock()
         self._ready = threading.Event()
         self._paused = self._stopped = False
@@ -55,7 +55,7 @@ class CostmapROS:
         settings = read_settings(self._where)
         for warning in settings.warnings:
             rospy.logerr("%s", warning)
-        self._values = settings.values
+        self._values, self.tables = settings.values, settings.tables
         self.global_frame = self._values["global_frame"].lstrip("/")
         self.base_frame = self._values["robot_base_frame"].lstrip("/")
         self.transform_tolerance = self._values["transform_tolerance"]
@@ -96,7 +96,7 @@ class CostmapROS:
 
     def robot_pose(self) -> np.ndarray | None:
         """(x, y, yaw) in the global frame; None if tf has none, or none within the tolerance."""
-        return self._transforms.newest_pose(self.global_frame, self.base_frame,
+        return self.transforms.newest_pose(self.global_frame, self.base_frame,
                                             self.transform_tolerance)
 
     def is_ready(self) -> bool:
@@ -151,7 +151,7 @@ class CostmapROS:
             return False
         with self._lock:
             for each in self._maps:
-                each.place(self._transforms, self.global_frame)
+                each.place(self.transforms, self.global_frame)
             self._sensors.observe(self._layered.layers)
             self._publisher.note(self._layered.update(pose))
         self._publisher.publish_footprint(transform_points(pose, self._padded))
@@ -191,7 +191,7 @@ class CostmapROS:
             try:
                 self._update_and_rest()
             except rospy.ROSTimeMovedBackwardsException:
-                self._transforms.buffer.clear()  # else it goes by the newest of the time before
+                self.transforms.buffer.clear()  # else it goes by the newest of the time before
                 self._sensors.forget()
             except rospy.ROSInterruptException:
                 return

@@ -5,8 +5,10 @@ from __future__ import annotations
 import rospy
 
 from costmap_2d.costmap_ros import CostmapROS
+from costmap_2d.settings import SEARCHED_UPWARDS
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.parameters import ParameterError
 from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
@@ -18,9 +20,10 @@ def main() -> int:
     complaints = Complaints()
     clock.watch(complaints)
     try:
-        CostmapROS("costmap", Transforms(complaints), complaints)
+        costmap = CostmapROS("costmap", Transforms(complaints), complaints)
     except ParameterError as error:
         rospy.logfatal("%s", error)
         return 1
+    warn_of_ignored(below("costmap", costmap.tables), SEARCHED_UPWARDS)
     spin()
     return 0

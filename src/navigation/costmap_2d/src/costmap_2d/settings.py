@@ -45,11 +45,15 @@ class LayerSettings:
 
 @dataclass(frozen=True)
 class Settings:
-    """A costmap's own parameters by name, its layers, lowest first, and what to warn about."""
+    """A costmap's own parameters by name, its layers, lowest first, and what to warn about.
+
+    `tables` has what is read, by the namespace below the costmap's: "", "LAYER", "LAYER/SOURCE".
+    """
 
     values: dict[str, Any]
     layers: list[LayerSettings]
     warnings: list[str]
+    tables: dict[str, list[Parameter]]
 
 
 @cache
@@ -82,14 +86,12 @@ def settings_of(tree: Mapping[str, Any], where: str,
     """
     tree = {**{key: value for key, value in (outer or {}).items() if key in SEARCHED_UPWARDS},
             **tree}
-    if isinstance(tree.get("footprint"), list):
-        tree["footprint"] = yaml.safe_dump(tree["footprint"], default_flow_style=True).strip()
     values = _checked(table("costmap"), tree, where)
     warnings: list[str] = []
     chosen = (_chosen_layers(values["plugins"], where, warnings) if "plugins" in tree
               else _older_layers(tree, values))
     layers = [_layer(name, kind, tree, values, where) for name, kind in chosen]
-    return Settings(values, layers, warnings)
+    return Settings(values, layers, warnings, _tables(layers, "plugins" in tree))
 
 
 def footprint_of(values: Mapping[str, Any], where: str) -> np.ndarray | None:
@@ -126,6 +128,20 @@ def geometry_of(values: Mapping[str, Any], where: str
     return (rows, columns), resolution, (values["origin_x"], values["origin_y"])
 
 
+def _tables(layers: list[LayerSettings], by_plugins: bool) -> dict[str, list[Parameter]]:
+    """Also of what stands directly below the costmap's name, as older files have it."""
+    tables = {"": list(table("costmap"))}
+    for layer in layers:
+        entries = tables[layer.name] = table(*TABLES[layer.kind])
+        above = {*OF_THE_COSTMAP[layer.kind], *(() if by_plugins else ["observation_sources"])}
+        tables[""] += [entry for entry in entries if entry.name in above]
+        for source in layer.sources:
+            tables[f"{layer.name}/{source}"] = table("source")
+            if not by_plugins:
+                tables[source] = table("source")
+    return tables
+
+
 def _chosen_layers(plugins: list, where: str, warnings: list[str]) -> list[tuple[str, str]]:
     chosen = []
     for entry in plugins:
@@ -144,8 +160,7 @@ def _chosen_layers(plugins: list, where: str, warnings: list[str]) -> list[tuple
 
 
 def _older_layers(tree: Mapping[str, Any], values: Mapping[str, Any]) -> list[tuple[str, str]]:
-    has_map = values["static_map"] and ("static_map" in tree or not values["rolling_window"])
-    return [*([("static_layer", STATIC)] if has_map else []),
+    return [*([("static_layer", STATIC)] if values["static_map"] else []),
             ("obstacle_layer", VOXEL if values["map_type"] == "voxel" else OBSTACLE),
             ("inflation_layer", INFLATION)]
 

@@ -24,6 +24,7 @@ from fake_localization.poses import (
 )
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node
 from nav_nodes.silence import is_published, why_silent
@@ -159,9 +160,11 @@ def main() -> int:
     init_node("fake_localization")
     folder = Path(rospkg.RosPack().get_path("fake_localization"))
     try:
-        values = read_parameters(load_table(folder / "params" / "fake_localization.yaml"))
+        table = load_table(folder / "params" / "fake_localization.yaml")
+        values = read_parameters(table)
     except ParameterError as error:
         rospy.logfatal("%s", error)
         return 1
+    warn_of_ignored({"": table})
     FakeLocalization(values).run()
     return 0

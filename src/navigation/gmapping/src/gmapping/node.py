@@ -18,6 +18,7 @@ from std_msgs.msg import Float64
 from gmapping.mapper import TABLE, Mapper, ScanError
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
 from nav_nodes.mount import Mount, Mounts
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
@@ -132,7 +133,9 @@ def main() -> None:
     init_node("slam_gmapping")
     folder = Path(rospkg.RosPack().get_path("gmapping"))
     try:
-        SlamNode(read_parameters(load_table(folder / TABLE)))
+        table = load_table(folder / TABLE)
+        SlamNode(read_parameters(table))
+        warn_of_ignored({"": table})
     except ParameterError as error:
         rospy.logfatal("%s", error)
         raise SystemExit(1) from None

@@ -21,6 +21,7 @@ from sensor_msgs.msg import LaserScan
 
 from gmapping.mapper import TABLE, Mapper, ScanError
 from map_server.map_files import write_map
+from nav_nodes.ignored import ignored
 from nav_nodes.messages import yaw_of
 from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
@@ -104,6 +105,8 @@ def values_from(settings: list[str], seed: int | None, params: Path | None) -> d
     strange = given.keys() - {entry.name for entry in table}
     if strange:
         raise ParameterError(f"slam_gmapping has no parameter {', '.join(sorted(strange))}")
+    for line in ignored(given, {"": table}):
+        print(f"slam_gmapping_replay: a parameter without effect: {line}", file=sys.stderr)
     return {entry.name: entry.checked(given.get(entry.name, entry.default), entry.name)
             for entry in table}
 

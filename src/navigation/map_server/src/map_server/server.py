@@ -22,6 +22,7 @@ from map_server.map_files import load_map, read_map
 from map_server.metadata import COARSEST, FINEST, MapMetadata
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
@@ -98,7 +99,9 @@ def main() -> int:
 
 def _parameters() -> dict:
     folder = Path(rospkg.RosPack().get_path("map_server"))
-    return read_parameters(load_table(folder / "params" / "map_server.yaml"))
+    table = load_table(folder / "params" / "map_server.yaml")
+    warn_of_ignored({"": table})
+    return read_parameters(table)
 
 
 def _load(arguments: list[str], values: dict) -> tuple:

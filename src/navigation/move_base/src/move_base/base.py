@@ -15,8 +15,7 @@ from nav_msgs.msg import Odometry
 
 from move_base.stop_guard import DRIVEN, STANDING
 
-IMPOSSIBLE = 10.0      # times what the robot is told at most; nothing pushes it so fast
-SLOWEST = (0.5, 1.0)   # m/s and rad/s; who is told less than that may still be pushed
+SLOWEST = (0.5, 1.0)  # m/s and rad/s; who is told less than that may still be pushed
 
 TOPICS = {"twist": ("cmd_vel", Twist), "ackermann": ("ackermann_cmd", AckermannDriveStamped)}
 
@@ -39,15 +38,15 @@ def ackermann(velocity: np.ndarray, wheelbase: float, stamp: rospy.Time) -> Acke
 
 
 class Base:
-    """Publishes velocities. While it drives, a process beside this one waits to stop the robot."""
+    """Publishes velocities. With a guard a process beside this one waits to stop the robot."""
 
-    def __init__(self, command_type: str, wheelbase: float, odom_topic: str) -> None:
+    def __init__(self, command_type: str, wheelbase: float, odom_topic: str, guarded: bool) -> None:
         self._kind, self._wheelbase = command_type, wheelbase
         topic, message = TOPICS[command_type]
         self._commands = rospy.Publisher(topic, message, queue_size=1)
         self._lock = threading.Lock()
         self._driven = self._closed = False
-        self._guard = self._start_guard()
+        self._guard = self._start_guard() if guarded else None
         self._limits: tuple[float, float] | None = None
         self._slow_for = 0.0
         self._velocity = np.zeros(3)
@@ -69,12 +68,13 @@ class Base:
         """(vx, vy, omega) as odometry has it, m/s and rad/s; finite."""
         return self._velocity
 
-    def expect(self, speed: float, turn: float) -> None:
+    def expect(self, speed: float, turn: float, factor: float) -> None:
         """The robot is told `speed`, m/s, and `turn`, rad/s, at most.
 
-        Odometry that says far more counts as missing.
+        Odometry that says more than `factor` times that counts as missing; 0: only what is no
+        number does.
         """
-        self._possible = tuple(IMPOSSIBLE * max(told, least)
+        self._possible = tuple(factor * max(told, least) if factor else np.inf
                                for told, least in zip((speed, turn), SLOWEST, strict=True))
 
     def limit(self, speed: float, turn: float, distance: float) -> None:
@@ -104,8 +104,9 @@ class Base:
         """Zero, and the guard goes: if zero came too late to be sent, it sends it."""
         self._closed = True
         self._publish(np.zeros(3))
-        with self._lock:
-            self._guard.stdin.close()
+        if self._guard is not None:
+            with self._lock:
+                self._guard.stdin.close()
 
     def _publish(self, velocity: np.ndarray) -> None:
         message = (twist(velocity) if self._kind == "twist"
@@ -113,7 +114,7 @@ class Base:
         try:
             self._commands.publish(message)
         except rospy.ROSException:
-            pass  # the node ends; the guard sees to it that the robot stops
+            pass  # the node ends
 
     def _take(self, message: Odometry) -> None:
         moving = message.twist.twist
@@ -139,8 +140,8 @@ class Base:
                 and abs(velocity[2]) <= turn):
             return ""
         return (f"it says ({velocity[0]:.3g}, {velocity[1]:.3g}) m/s and {velocity[2]:.3g} rad/s; "
-                f"more than {speed:.3g} m/s or {turn:.3g} rad/s cannot be, by the local planner's "
-                "limits")
+                f"more than {speed:.3g} m/s or {turn:.3g} rad/s cannot be, by odometry_factor and "
+                "the local planner's limits")
 
     def _start_guard(self) -> subprocess.Popen:
         """In a session of its own: Ctrl-C in the terminal must not end it before this node."""
@@ -151,6 +152,9 @@ class Base:
             stdin=subprocess.PIPE, text=True, bufsize=1, start_new_session=True)
 
     def _tell_guard(self, driven: bool) -> None:
+        if self._guard is None:
+            self._driven = driven
+            return
         with self._lock:
             if self._guard.poll() is not None and not self._closed:
                 rospy.logwarn("the process that stops the robot if this one is killed has ended; "

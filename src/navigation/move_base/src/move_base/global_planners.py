@@ -9,6 +9,7 @@ import numpy as np
 import rospy
 from nav_msgs.msg import Path
 
+from costmap_2d import CostmapROS
 from move_base import carrot
 from move_base.plugin import Plugin, settings_from
 from nav_algorithms.costmap.costs import Costmap
@@ -29,7 +30,8 @@ class GlobalPlanner(Plugin):
     SETTINGS: type
     PUBLISHES = True
 
-    def __init__(self) -> None:
+    def __init__(self, costmap: CostmapROS) -> None:
+        """`costmap`: the global one."""
         super().__init__()
         self._publishing = threading.Lock()  # another may take its place while it plans
         self._topic = (rospy.Publisher(f"~{self.NAME}/plan", Path, queue_size=1)

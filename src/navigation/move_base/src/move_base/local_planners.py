@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from dataclasses import dataclass
 from typing import Any
@@ -10,12 +11,14 @@ import numpy as np
 import rospy
 from nav_msgs.msg import Path
 
+from costmap_2d import CostmapROS
 from move_base.global_planners import path_message
-from move_base.plugin import Plugin, settings_from, warn_of_older_names
+from move_base.plugin import Plugin, settings_from
 from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning import dwa, pure_pursuit, trajectory_rollout
 from nav_algorithms.local_planning.velocities import Command
 from nav_algorithms.poses import compose
+from nav_nodes.parameters import ParameterError
 
 
 @dataclass(frozen=True)
@@ -38,15 +41,14 @@ class LocalPlanner(Plugin):
 
     SETTINGS: type
     PLANNER: type
-    OLDER_NAMES: dict[str, str] = {}
 
-    def __init__(self, controller_frequency: float) -> None:
-        """`controller_frequency`: commands, Hz."""
+    def __init__(self, controller_frequency: float, costmaps: tuple[CostmapROS, CostmapROS]
+                 ) -> None:
+        """`controller_frequency`: commands, Hz; `costmaps`: the global and the local one."""
         self._frequency = controller_frequency
         self._lock = threading.RLock()
         self._path: np.ndarray | None = None
         self._closed = False
-        warn_of_older_names(self.NAME, self.OLDER_NAMES)
         super().__init__()
         self._global_plan, self._local_plan = (
             rospy.Publisher(f"~{self.NAME}/{topic}", Path, queue_size=1)
@@ -54,11 +56,15 @@ class LocalPlanner(Plugin):
 
     def change(self, values: dict[str, Any]) -> None:
         with self._lock:
+            planner = self.PLANNER(self._settings(values))
             super().change(values)
-            self._planner = self.PLANNER(settings_from(self.SETTINGS, values,
-                                                       controller_frequency=self._frequency))
+            self._planner = planner
             if self._path is not None:
                 self._planner.set_path(self._path)
+
+    def _settings(self, values: dict[str, Any]) -> Any:
+        """Of the algorithm; raises ParameterError."""
+        return settings_from(self.SETTINGS, values, controller_frequency=self._frequency)
 
     def at_frequency(self, controller_frequency: float) -> None:
         """Commands will come so often, Hz."""
@@ -120,10 +126,6 @@ class Dwa(LocalPlanner):
 
     NAME, TABLE = "DWAPlannerROS", "dwa_planner"
     SETTINGS, PLANNER = dwa.DwaSettings, dwa.DwaPlanner
-    OLDER_NAMES = {"max_trans_vel": "max_vel_trans", "min_trans_vel": "min_vel_trans",
-                   "max_rot_vel": "max_vel_theta", "min_rot_vel": "min_vel_theta",
-                   "acc_limit_trans": "acc_lim_trans", "acc_lim_th": "acc_lim_theta",
-                   "rot_stopped_vel": "theta_stopped_vel"}
 
 
 class TrajectoryRollout(LocalPlanner):
@@ -132,9 +134,14 @@ class TrajectoryRollout(LocalPlanner):
     NAME, TABLE = "TrajectoryPlannerROS", "trajectory_planner"
     SETTINGS = trajectory_rollout.TrajectoryRolloutSettings
     PLANNER = trajectory_rollout.TrajectoryRollout
-    OLDER_NAMES = {"acc_lim_th": "acc_lim_theta", "max_rotational_vel": "max_vel_theta",
-                   "min_in_place_rotational_vel": "min_in_place_vel_theta",
-                   "backup_vel": "escape_vel"}
+
+    def _settings(self, values: dict[str, Any]) -> Any:
+        try:
+            strafes = tuple(map(float, re.findall(r"[^][, ]+", values["y_vels"])))
+        except ValueError:
+            raise ParameterError(f"~{self.NAME}/y_vels is {values['y_vels']!r}, but must be "
+                                 "numbers with commas between them") from None
+        return super()._settings({**values, "y_vels": strafes})
 
 
 class PurePursuit(LocalPlanner):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import rospy
@@ -59,15 +60,17 @@ class Navigator:
         self._recovering = None
         self._base.stop()
 
-    def cycle(self, now: float, frequency: float, timeout: float, map_required: bool
+    def cycle(self, now: float, values: dict[str, Any]
               ) -> tuple[PoseStamped | None, Outcome | None]:
         """One step at `now`, s: where the robot is, if known, and how the goal ended, if it has.
 
-        While something is missing the robot stands, and patience does not run out.
+        While something is missing the robot stands, and patience does not run out. `values` are
+        move_base's.
         """
-        self._base.expect(*self.local_planner.fastest())
+        self._base.expect(*self.local_planner.fastest(), values["odometry_factor"])
         pose = self._costmaps[0].robot_pose()
-        if not self._watch.can_drive(now, timeout, map_required) or pose is None:
+        if not self._watch.can_drive(now, values["data_timeout"],
+                                     values["map_required"]) or pose is None:
             self._base.stop()
             self._machine.hold(now)
             return None, None
@@ -75,7 +78,7 @@ class Navigator:
         self._machine.at(pose[0], pose[1], now)
         state = self._machine.state
         if state is State.CLEARING:
-            return where, self._recover(where, frequency)
+            return where, self._recover(where, values["controller_frequency"])
         return where, self._control(now, pose) if state is State.CONTROLLING else None
 
     def _control(self, now: float, pose: np.ndarray) -> Outcome | None:

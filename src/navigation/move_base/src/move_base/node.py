@@ -17,14 +17,15 @@ from move_base_msgs.msg import (
 )
 
 from costmap_2d import CostmapROS
+from costmap_2d.settings import SEARCHED_UPWARDS
 from move_base.base import Base
-from move_base.global_planners import GLOBAL_PLANNERS
 from move_base.goals import INVALID, fault_of, in_frame
-from move_base.local_planners import LOCAL_PLANNERS
+from move_base.local_planners import LocalPlanner
 from move_base.navigator import Navigator, Outcome
+from move_base.own_planners import global_planner, local_planner
 from move_base.planning import CannotPlanYet, Planning
-from move_base.plugin import chosen, settings_from, table
-from move_base.recoveries import load
+from move_base.plugin import settings_from, table
+from move_base.recoveries import Recovery, load
 from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
 from move_base.status import keep_telling
@@ -32,6 +33,7 @@ from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
 from nav_nodes import clock
 from nav_nodes.complaints import Complaints
+from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.messages import stamped_pose
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
@@ -48,17 +50,17 @@ class MoveBase:
         """Raises ParameterError for parameters that make no sense, unknown planners among them."""
         values = self._values = read_parameters(table("move_base"))
         kinds = self._planner_kinds(values)
-        self._global_planner = kinds[0]()
-        local_planner = kinds[1](values["controller_frequency"])
         complaints = Complaints()
         clock.watch(complaints)
         self._transforms = Transforms(complaints)
-        self._base = Base(values["command_type"], values["wheelbase"],
-                          local_planner.values["odom_topic"])
         self._costmaps = (CostmapROS("global_costmap", self._transforms, complaints),
                           CostmapROS("local_costmap", self._transforms, complaints))
         frames = [costmap.global_frame for costmap in self._costmaps]
         self._transforms.chain = *dict.fromkeys(frames), self._costmaps[0].base_frame
+        self._global_planner = kinds[0](self._costmaps[0])
+        driver = kinds[1](values["controller_frequency"], self._costmaps)
+        self._base = Base(values["command_type"], values["wheelbase"],
+                          driver.values["odom_topic"], values["stop_guard"])
         self._machine = StateMachine(settings_from(Patience, values))
         radius = reach(self._costmaps[0].bare_footprint)
         recoveries = load(values, radius)
@@ -67,7 +69,7 @@ class MoveBase:
         self._navigator = Navigator(
             self._costmaps, self._transforms, self._base,
             Watch(self._costmaps, self._base, self._transforms.buffer, complaints),
-            self._machine, planning, local_planner, recoveries)
+            self._machine, planning, driver, recoveries)
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
         self._server = actionlib.SimpleActionServer("move_base", MoveBaseAction, self._execute,
                                                     auto_start=False)
@@ -82,11 +84,22 @@ class MoveBase:
                          queue_size=1)
         self._server.start()
         keep_telling(self._server)
+        warn_of_ignored(self._tables(driver, recoveries), SEARCHED_UPWARDS)
 
     def _planner_kinds(self, values: dict) -> tuple[type, type]:
-        return tuple(chosen(values[name], known, rospy.resolve_name(f"~{name}"))
-                     for name, known in (("base_global_planner", GLOBAL_PLANNERS),
-                                         ("base_local_planner", LOCAL_PLANNERS)))
+        return tuple(find(values[name], rospy.resolve_name(f"~{name}"))
+                     for name, find in (("base_global_planner", global_planner),
+                                        ("base_local_planner", local_planner)))
+
+    def _tables(self, driver: LocalPlanner, recoveries: list[Recovery]) -> dict[str, list]:
+        """All that is read, by the namespace below the node's; TrajectoryPlannerROS has two."""
+        tables = {"": table("move_base")}
+        for part in ({self._global_planner.NAME: self._global_planner.entries},
+                     {driver.NAME: driver.entries}, *(each.tables() for each in recoveries),
+                     *(below(each.name, each.tables) for each in self._costmaps)):
+            for space, entries in part.items():
+                tables[space] = [*tables.get(space, []), *entries]
+        return tables
 
     def _period(self) -> float:
         return 1.0 / self._values["controller_frequency"]
@@ -95,11 +108,12 @@ class MoveBase:
         """dynamic_reconfigure."""
         kinds = self._planner_kinds(values)
         if not isinstance(self._global_planner, kinds[0]):
-            before, self._global_planner = self._global_planner, kinds[0]()
+            before, self._global_planner = self._global_planner, kinds[0](self._costmaps[0])
             before.close()
         if not isinstance(self._navigator.local_planner, kinds[1]):
             before = self._navigator.local_planner
-            self._navigator.local_planner = kinds[1](values["controller_frequency"])
+            self._navigator.local_planner = kinds[1](values["controller_frequency"],
+                                                     self._costmaps)
             before.close()
             self._base.listen_to(self._navigator.local_planner.values["odom_topic"])
         self._navigator.local_planner.at_frequency(values["controller_frequency"])
@@ -166,8 +180,7 @@ class MoveBase:
         self._current_goal.publish(goal)
         while not rospy.is_shutdown() and not self._server.is_preempt_requested():
             began, frequency = rospy.get_time(), self._values["controller_frequency"]
-            where, outcome = self._navigator.cycle(
-                began, frequency, self._values["data_timeout"], self._values["map_required"])
+            where, outcome = self._navigator.cycle(began, self._values)
             if where is not None:
                 self._server.publish_feedback(MoveBaseFeedback(where))
             if outcome is not None:

@@ -34,8 +34,8 @@ def settings_from(kind: type, values: Mapping[str, Any], **others: Any) -> Any:
     return kind(**{**{name: values[name] for name in names & values.keys()}, **others})
 
 
-def chosen(name: str, known: Mapping[str, type], where: str) -> type:
-    """The class of that name; upstream's older names without the package are taken, too.
+def chosen(name: str, known: Mapping[str, Any], where: str) -> Any:
+    """What has that name; upstream's older names without the package are taken, too.
 
     Raises ParameterError that says what there is.
     """
@@ -56,11 +56,15 @@ class Plugin:
 
     def __init__(self) -> None:
         """Raises ParameterError for a value that makes no sense."""
-        entries = table(self.TABLE)
-        self.values = read_parameters(entries, f"~{self.NAME}/")
+        self.values = read_parameters(self.entries, f"~{self.NAME}/")
         self.change(self.values)
-        self._server = (serve_changes(entries, self.values, self.change, self.NAME)
-                        if any(entry.change for entry in entries) else None)
+        self._server = (serve_changes(self.entries, self.values, self.change, self.NAME)
+                        if any(entry.change for entry in self.entries) else None)
+
+    @property
+    def entries(self) -> list[Parameter]:
+        """Of its table."""
+        return table(self.TABLE)
 
     def change(self, values: dict[str, Any]) -> None:
         """Takes all values, at the beginning and after each change; may raise ParameterError."""
@@ -72,11 +76,3 @@ class Plugin:
             self._server.set_service.shutdown()
             self._server.descr_topic.unregister()
             self._server.update_topic.unregister()
-
-
-def warn_of_older_names(namespace: str, names: Mapping[str, str]) -> None:
-    """Says which parameters have other names today and are not read, in upstream's words."""
-    for old, new in names.items():
-        if rospy.has_param(f"~{namespace}/{old}"):
-            rospy.logwarn("Parameter %s is deprecated (and will not load properly). "
-                          "Use %s instead.", old, new)

@@ -1,7 +1,7 @@
 """Whether the robot gets nearer to its goal. A velocity can always be found for turning to and fro.
 
-Upstream calls every velocity a success, and with oscillation_timeout 0 a robot that cannot get
-quite to its goal hovers before it for ever.
+For `progress_timeout`. Upstream calls every velocity a success, and with oscillation_timeout 0 a
+robot that cannot get quite to its goal stays before it for ever.
 """
 
 from __future__ import annotations

@@ -17,8 +17,9 @@ from move_base.plugin import chosen, settings_from, table
 from nav_algorithms import recovery
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.poses import wrap_angle
-from nav_nodes.parameters import read_parameters
+from nav_nodes.parameters import Parameter, read_parameters
 
+LIMITS = "TrajectoryPlannerROS"  # where upstream's rotate_recovery looks for its speeds
 TOO_LONG = 2.0  # times what a drive should take, until it is given up
 
 
@@ -41,6 +42,10 @@ class Recovery:
         """Raises ParameterError for a value that makes no sense."""
         self.name = name
         self.values: dict[str, Any] = read_parameters(table(self.TABLE), f"~{name}/")
+
+    def tables(self) -> dict[str, list[Parameter]]:
+        """What it reads, by the namespace below the node's."""
+        return {self.name: table(self.TABLE)}
 
     def start(self, rig: Rig) -> None:
         """Begins; the robot stands."""
@@ -78,13 +83,16 @@ class Rotate(Recovery):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        of_local_planner = [entry for entry in table(self.TABLE)
-                            if entry.name not in ("sim_granularity", "frequency")]
-        self.values.update(read_parameters(of_local_planner, "~TrajectoryPlannerROS/"))
+        self.values.update(read_parameters(self.tables()[LIMITS], f"~{LIMITS}/"))
         self._settings = settings_from(
             recovery.RotateSettings, self.values, acc_lim_th=self.values["acc_lim_theta"],
             max_rotational_vel=self.values["max_vel_theta"],
             min_in_place_rotational_vel=self.values["min_in_place_vel_theta"])
+
+    def tables(self) -> dict[str, list[Parameter]]:
+        entries = table(self.TABLE)
+        own = [entry for entry in entries if entry.name in ("sim_granularity", "frequency")]
+        return {self.name: own, LIMITS: [entry for entry in entries if entry not in own]}
 
     def start(self, rig: Rig) -> None:
         super().start(rig)

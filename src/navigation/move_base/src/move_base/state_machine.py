@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from enum import Enum
 
 GOAL_REACHED = "Goal reached."
-A_TURN = 10.0  # s that a robot may take, at least, without getting nearer: it turns round before
 
 
 class State(Enum):
@@ -32,7 +31,10 @@ class Trigger(Enum):
 
 @dataclass(frozen=True)
 class Patience:
-    """Names and defaults of move_base; s, m. A negative number of retries is no limit."""
+    """Names and defaults of move_base; s, m. A negative number of retries is no limit.
+
+    `progress_timeout` is ours; 0 is none, as upstream.
+    """
 
     planner_frequency: float = 0.0
     planner_patience: float = 5.0
@@ -40,6 +42,7 @@ class Patience:
     max_planning_retries: int = -1
     oscillation_timeout: float = 0.0
     oscillation_distance: float = 0.5
+    progress_timeout: float = 0.0
     recovery_behavior_enabled: bool = True
 
 
@@ -137,7 +140,7 @@ class StateMachine:
                     self.recovery = 0
             if found:
                 self._last_control = now
-                if now > self._last_nearer + max(patience, A_TURN):
+                if 0.0 < self.patience.progress_timeout < now - self._last_nearer:
                     self._clear(Trigger.CONTROLLING)
             elif now > self._last_control + patience:
                 self._clear(Trigger.CONTROLLING)

@@ -42,7 +42,7 @@ class Watch:
         With `map_required` so is a map whose publisher has gone.
 
         A timeout of 0 asks, as upstream, only for costmaps, poses and what an
-        `expected_update_rate` was set for, and that odometry is none that cannot be.
+        `expected_update_rate` was set for, and that no odometry was refused.
         """
         poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, for what they say
         located = all(pose is not None for pose in poses)

@@ -2,8 +2,8 @@
 
 S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 8.3: KLD-sampling, and random poses
 when the scans fit worse than they used to. As in amcl, with these differences: particles are drawn
-with low variance; the averages that tell of a lost robot are of the scans alone, not of the number
-of particles; and random poses are few, but drawn where the latest scan fits (places.py).
+with low variance, and the averages that tell of a lost robot are of the scans alone, not of the
+number of particles. How many poses are drawn anew, and where, are parameters (see amcl's table).
 """
 
 from __future__ import annotations
@@ -19,18 +19,15 @@ from nav_algorithms.particle_bins import bins_of, particles_needed
 from nav_algorithms.places import Places
 from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
 
-NOTICED = 0.1  # share by which scans must fit worse than they used to before that means anything
-# At most this share is drawn anew in one scan. A passer-by makes scans fit worse, too, and poses
-# that fit where the map looks alike must win by what is seen later, not by how many were drawn.
-MOST_ANEW = 0.02
-# Where a robot starts anywhere, several places look alike, and the right one may have been given up
-# before the robot saw the difference: this share is drawn anew in each of its first scans.
-SEARCH_SHARE, SEARCH_SCANS = 0.1, 40
-
 
 @dataclass(frozen=True)
 class LocalisationSettings:
-    """amcl's parameters by its names; m, rad."""
+    """amcl's parameters by its names; m, rad. The last six are ours, off as in upstream.
+
+    A passer-by makes scans fit worse, too: hence `lost_threshold`; poses that fit where the map
+    looks alike must win by what is seen later, not by how many were drawn: `lost_share_max`. Where
+    a robot starts anywhere the right place may have been given up too early: `search_share`.
+    """
 
     min_particles: int = 100
     max_particles: int = 5000
@@ -48,6 +45,12 @@ class LocalisationSettings:
     selective_resampling: bool = False
     recovery_alpha_slow: float = 0.001
     recovery_alpha_fast: float = 0.1
+    lost_threshold: float = 0.0
+    lost_share_max: float = 1.0
+    lost_forgets: bool = True
+    random_fit_share: float = 0.0
+    search_share: float = 0.0
+    search_scans: int = 0
 
     @property
     def alphas(self) -> np.ndarray:
@@ -129,7 +132,7 @@ class Localisation:
         if not first:
             self._move(odometry)
         elif self._anywhere and self._weighed == 0:
-            self.particles = self._places.draw_fitting(len(self.particles), scan, self._model)
+            self.particles = self._drawn_anew(len(self.particles), scan)
         self._odometry = odometry
         self._weigh(scan)
         resampled = self._weighed % self._settings.resample_interval == 0
@@ -161,16 +164,23 @@ class Localisation:
         self._weighed += 1
         for name in ("slow", "fast"):
             share = max(getattr(self._settings, f"recovery_alpha_{name}"), 1 / self._weighed)
-            self._averages[name] += share * (part - self._averages[name])
+            before = self._averages[name] or part  # 0 after a draw that forgets
+            self._averages[name] = before + share * (part - before)
 
     @property
     def lost(self) -> float:
         """Share of the particles that the next resampling draws as random poses."""
-        searched = SEARCH_SHARE if self._anywhere and self._weighed < SEARCH_SCANS else 0.0
-        if self._settings.recovery_alpha_fast == 0.0 or self._averages["slow"] == 0.0:
+        settings = self._settings
+        searched = (settings.search_share
+                    if self._anywhere and self._weighed < settings.search_scans else 0.0)
+        if settings.recovery_alpha_fast == 0.0 or self._averages["slow"] == 0.0:
             return searched
         share = 1.0 - self._averages["fast"] / self._averages["slow"]
-        return max(searched, min(share, MOST_ANEW) if share > NOTICED else 0.0)
+        return max(searched, min(share, settings.lost_share_max)
+                   if share > settings.lost_threshold else 0.0)
+
+    def _drawn_anew(self, count: int, scan: Scan) -> np.ndarray:
+        return self._places.draw_fitting(count, self._settings.random_fit_share, scan, self._model)
 
     def _resample(self, scan: Scan) -> None:
         settings, random, lost = self._settings, self._random, self.lost
@@ -182,7 +192,9 @@ class Localisation:
         drawn = self.particles[_at(sums, random.random(most))]
         anew = np.flatnonzero(random.random(most) < lost)
         if len(anew):
-            drawn[anew] = self._places.draw_fitting(len(anew), scan, self._model)
+            drawn[anew] = self._drawn_anew(len(anew), scan)
+        if lost and settings.lost_forgets:
+            self._averages = dict.fromkeys(self._averages, 0.0)
         count = particles_needed(bins_of(drawn), settings.kld_err, settings.kld_z,
                                  min(settings.min_particles, most), most)
         # As many as these are enough; those from the particles are drawn again, evenly spaced.

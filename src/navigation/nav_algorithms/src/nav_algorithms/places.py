@@ -35,12 +35,15 @@ class Places:
         points = (cells + self._random.random((count, 2))) * self._resolution + self._origin
         return np.column_stack((points, self._random.uniform(-np.pi, np.pi, count)))
 
-    def draw_fitting(self, count: int, scan: Scan, model: LaserModel) -> np.ndarray:
-        """Poses (count, 3) in no order, half of them anywhere, half where the scan fits well."""
-        anywhere = self.draw(count - count // 2)
+    def draw_fitting(self, count: int, share: float, scan: Scan, model: LaserModel) -> np.ndarray:
+        """Poses (count, 3) in no order, that share of them where the scan fits well."""
+        fitting = int(count * share)
+        anywhere = self.draw(count - fitting)
+        if not fitting:
+            return anywhere
         tried = self.draw(TRIED)
         few = scan.thinned(-(-len(scan.ranges) // BEAMS))
         logs = SHARPNESS * model.compare(tried, few).logs
         chances = np.exp(logs - logs.max())
-        chosen = self._random.choice(TRIED, count // 2, p=chances / chances.sum())
+        chosen = self._random.choice(TRIED, fitting, p=chances / chances.sum())
         return self._random.permutation(np.concatenate((anywhere, tried[chosen])))

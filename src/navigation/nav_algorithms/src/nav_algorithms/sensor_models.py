@@ -3,7 +3,7 @@
 The laws are those of S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 6.3 and 6.4,
 with amcl's names and its odd sum: a beam of probability p adds p^3 to a particle's weight, so a few
 wrong beams do no harm. Three faults of amcl's are left out: its half cell between map and field,
-poses that look into the middle of walls (_way_off), and readings beyond range_max that its beam
+poses that look into the middle of walls (`wall_depth`, off by default), and readings beyond range_max that its beam
 model takes for no reading at all (here: for z_max).
 """
 
@@ -18,16 +18,12 @@ from nav_algorithms.compiled import compiled
 from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.rays import cast
 
-# A wall of 15 cm is one broad optimum for sigma_hit of 0.2 m, 7 cm behind its surface: the middle
-# cells count as farther off, and just so much that a beam too short is as wrong as one too long.
-# Where nothing is seen from behind, any more than that would push poses away from far walls.
-THIN, THIN_WALL = 2.0, 0.3  # times, m
 BEAM, FIELD, FIELD_PROB = "beam", "likelihood_field", "likelihood_field_prob"
 
 
 @dataclass(frozen=True)
 class SensorSettings:
-    """amcl's parameters by its names; m."""
+    """amcl's parameters by its names; m. The last two are ours: see _way_off."""
 
     laser_max_beams: int = 30
     laser_z_hit: float = 0.95
@@ -42,6 +38,8 @@ class SensorSettings:
     beam_skip_distance: float = 0.5
     beam_skip_threshold: float = 0.3
     beam_skip_error_threshold: float = 0.9
+    wall_depth: float = 0.0
+    thin_wall: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -91,7 +89,7 @@ class LaserModel:
         self._place = grid.resolution, *grid.origin
         # Where upstream's rays end: at all that is not free, and at the map's edge.
         self._blocked = np.pad((grid.cells != FREE).astype(np.uint8), 1, constant_values=1)
-        self._distances = np.minimum(_way_off(grid.cells, grid.resolution),
+        self._distances = np.minimum(_way_off(grid.cells, grid.resolution, settings),
                                      settings.laser_likelihood_max_dist)
         self._tables: dict[float, np.ndarray] = {}
 
@@ -157,20 +155,23 @@ def _part(sums: np.ndarray, best: float) -> np.ndarray:
     return sums / best if best > 0.0 else np.ones_like(sums)
 
 
-def _way_off(cells: np.ndarray, resolution: float) -> np.ndarray:
+def _way_off(cells: np.ndarray, resolution: float, settings: SensorSettings) -> np.ndarray:
     """How wrong it is for a beam to end in each cell, (rows, columns), m.
 
-    Upstream's distance to the nearest occupied cell, or that to the surface, where it is more; in
-    walls so thin that they are seen from both sides THIN times the latter.
+    Upstream's distance to the nearest occupied cell: any place in a wall is right, and a wall of
+    15 cm is one broad optimum for sigma_hit of 0.2 m, 7 cm behind its surface. With `wall_depth`
+    that many times the distance to the surface, where it is more; once at most in walls thicker
+    than `thin_wall`, which are not seen from both sides: more would push poses away from them.
     """
     occupied, free = cells == OCCUPIED, cells == FREE
     distances = likelihood_field.distances(occupied.astype(np.uint8)) * resolution
-    if not (occupied.any() and free.any()):
+    if not (settings.wall_depth and occupied.any() and free.any()):
         return distances
     behind = (likelihood_field.distances(free.astype(np.uint8)) - 1.0) * resolution
-    deep = behind >= THIN_WALL / 2
-    of_thick = likelihood_field.distances(deep.astype(np.uint8)) * resolution <= THIN_WALL / 2
-    return np.where(free, distances, np.maximum(distances, np.where(of_thick, 1.0, THIN) * behind))
+    half = settings.thin_wall / 2
+    of_thick = likelihood_field.distances((behind >= half).astype(np.uint8)) * resolution <= half
+    depth = np.where(of_thick, min(1.0, settings.wall_depth), settings.wall_depth)
+    return np.where(free, distances, np.maximum(distances, depth * behind))
 
 
 @compiled("f8(f8[:,::1], f8, f8)")

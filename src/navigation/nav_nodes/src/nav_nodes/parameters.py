@@ -2,8 +2,9 @@
 
 A table is a list of entries with `name`, `type` (bool, int, double, str, list), `default`, and if
 wanted `min`, `max` (numbers), `choices` (str), `also` (names that upstream reads as well, where
-`name` is not set), `change` (true: offered by dynamic_reconfigure), `status` (works, or accepted:
-read, no effect) and `meaning`. READMEs are made from the same file.
+`name` is not set), `was` (older names that are not read), `change` (true: offered by
+dynamic_reconfigure), `status` (works; accepted: no effect; differs: means something else than
+upstream's), `ours` (true: upstream has none, and the default is what upstream does) and `meaning`.
 """
 
 from __future__ import annotations
@@ -37,8 +38,10 @@ class Parameter:
     max: float = math.inf
     choices: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
+    was: tuple[str, ...] = ()
     change: bool = False
     status: str = "works"
+    ours: bool = False
     meaning: str = ""
 
     def checked(self, value: Any, where: str) -> Any:
@@ -48,6 +51,8 @@ class Parameter:
             value = float(value)
         if kind is int and isinstance(value, float) and value.is_integer():
             value = int(value)  # roscpp takes 20.0 for 20, too
+        if kind is str and isinstance(value, list):  # [[0.1, 0.1], ...]: text to upstream
+            value = yaml.safe_dump(value, default_flow_style=True, width=math.inf).strip()
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
             raise ParameterError(f"{where} is {value!r}, but must be of type {self.type}")
         if kind in (int, float) and not self.min <= value <= self.max:
@@ -71,7 +76,7 @@ def load_table(path: Path) -> list[Parameter]:
         if strange or entry["type"] not in KINDS:
             raise ParameterError(f"{path}: {entry['name']}: unknown key or type: "
                                  f"{', '.join(sorted(strange)) or entry['type']}")
-        for key in ("choices", "also"):
+        for key in ("choices", "also", "was"):
             entry[key] = tuple(entry.get(key, ()))
         table.append(Parameter(**entry))
         table[-1].checked(table[-1].default, f"{path}: default of {table[-1].name}")
@@ -104,12 +109,15 @@ def serve_changes(table: list[Parameter], values: dict[str, Any],
 
     `apply` gets all values, now and after each change, on ROS's threads, and may answer with those
     to hold instead; if it raises ParameterError that is a warning, and everything stays as it was.
+    `restore_defaults`, where it is in the table, brings back what held at the start, as upstream.
     """
     changeable = [entry for entry in table if entry.change]
     current = dict(values)
 
     def change(config: dict, _level: int) -> dict:
         wanted = {**current, **{entry.name: config[entry.name] for entry in changeable}}
+        if wanted.get("restore_defaults"):
+            wanted = {**values, "restore_defaults": False}
         try:
             for entry in changeable:
                 entry.checked(wanted[entry.name], f"dynamic_reconfigure: {entry.name}")

@@ -26,37 +26,36 @@ from nav_algorithms.local_planning.velocities import (
 )
 from nav_algorithms.poses import wrap_angle
 
-STRAFES = (-0.3, -0.1, 0.1, 0.3)  # m/s, y_vels
-HEADING_SCALE = 0.3               # upstream's, of a radian off the heading
+HEADING_SCALE = 0.3  # upstream's, of a radian off the heading
 
 
 @dataclass(frozen=True)
 class TrajectoryRolloutSettings:
     """Names and defaults of base_local_planner/TrajectoryPlannerROS; m, s, rad.
 
-    Defaults are those in upstream's code; what its reconfigure server sets over them is for the
-    node. `prune_plan` has no effect: what is behind the robot is always left out. Upstream backs
+    Defaults are those of upstream's reconfigure server. `prune_plan` has no effect: what is behind the robot is always left out. Upstream backs
     out (`escape_vel`) even into what it touches; here only where that is free.
     """
 
     acc_lim_x: float = 2.5
     acc_lim_y: float = 2.5
     acc_lim_theta: float = 3.2
-    max_vel_x: float = 0.5
-    min_vel_x: float = 0.1
+    max_vel_x: float = 0.55
+    min_vel_x: float = 0.0
     max_vel_theta: float = 1.0
     min_vel_theta: float = -1.0
     min_in_place_vel_theta: float = 0.4
     escape_vel: float = -0.1
     holonomic_robot: bool = True
+    y_vels: tuple[float, ...] = (-0.3, -0.1, 0.1, 0.3)
     xy_goal_tolerance: float = 0.10
     yaw_goal_tolerance: float = 0.05
     latch_xy_goal_tolerance: bool = False
     prune_plan: bool = True
-    sim_time: float = 1.0
+    sim_time: float = 1.7
     sim_granularity: float = 0.025
     angular_sim_granularity: float = 0.025
-    vx_samples: int = 3
+    vx_samples: int = 20
     vtheta_samples: int = 20
     meter_scoring: bool = False
     pdist_scale: float = 0.6
@@ -64,11 +63,11 @@ class TrajectoryRolloutSettings:
     occdist_scale: float = 0.01
     heading_lookahead: float = 0.325
     heading_scoring: bool = False
-    heading_scoring_timestep: float = 0.8
-    dwa: bool = True
+    heading_scoring_timestep: float = 0.1
+    dwa: bool = False
     oscillation_reset_dist: float = 0.05
     escape_reset_dist: float = 0.10
-    escape_reset_theta: float = np.pi / 4
+    escape_reset_theta: float = np.pi / 2
     trans_stopped_velocity: float = 0.01
     rot_stopped_velocity: float = 0.01
     controller_frequency: float = 20.0  # move_base's: one command a period
@@ -88,7 +87,7 @@ class TrajectoryRollout(LocalPlanner):
 
     def limits(self) -> Limits:
         s = self.settings
-        strafe = max(STRAFES) if s.holonomic_robot else 0.0
+        strafe = max(map(abs, s.y_vels), default=0.0) if s.holonomic_robot else 0.0
         in_place = min(s.min_in_place_vel_theta, s.max_vel_theta)  # at the goal, to either side
         return Limits((min(s.escape_vel, s.min_vel_x), -strafe, min(s.min_vel_theta, -in_place)),
                       (max(s.max_vel_x, s.min_vel_x), strafe, s.max_vel_theta))
@@ -103,7 +102,7 @@ class TrajectoryRollout(LocalPlanner):
             self.escaped_from = None
         taken = self._forwards_or_turning(scorer, velocity, float(np.hypot(*(goal - pose)[:2])))
         if taken is None and self.settings.holonomic_robot:
-            taken = scorer.nearest_ahead(self._allowed([[0.0, y, 0.0] for y in STRAFES]), np.inf)
+            taken = scorer.nearest_ahead(self._allowed([[0.0, y, 0.0] for y in self.settings.y_vels]), np.inf)
         if taken is None:
             taken = scorer.first_free([[self.settings.escape_vel, 0.0, 0.0]])
             if taken is None:
