@@ -42,8 +42,7 @@ MOVE_BASE = {
     "shutdown_costmaps": False, "controller_frequency": 10, "planner_patience": 5,
     "controller_patience": 15, "conservative_reset_dist": 3, "planner_frequency": 5,
     "oscillation_timeout": 10, "oscillation_distance": .2,
-    "base_local_planner": "dwa_local_planner/DWAPlannerROS",
-    "map_required": True}  # ours
+    "base_local_planner": "dwa_local_planner/DWAPlannerROS"}
 
 
 def load(package, name, *arguments):

@@ -15,10 +15,12 @@ NODES = {  # launch: the nodes it starts where there is no screen
     "nav03_map_server": {"/map_server"}, "nav04_amcl": {"/amcl"},
     "nav04_test": {"/map_server", "/amcl"}, "nav05_path": {"/move_base"},
     "nav05_test": {"/map_server", "/amcl", "/move_base"},
+    "nav05_robust": {"/map_server", "/amcl", "/move_base"},
+    "nav07_own_planner": {"/map_server", "/amcl", "/move_base"},
     "nav06_auto_slam": {"/slam_gmapping", "/move_base"},
 }
 RVIZ = {"nav01_slam": "map", "nav03_map_server": "map", "nav04_test": "map", "nav05_test": "nav",
-        "nav06_auto_slam": "nav"}  # launch: the configuration
+        "nav05_robust": "nav", "nav06_auto_slam": "nav", "nav07_own_planner": "nav"}  # launch: the configuration
 COSTMAP = ("costmap", "static_layer", "obstacle_layer", "inflation_layer")
 
 
@@ -69,7 +71,8 @@ def test_parameters_are_known():
         "/move_base/local_costmap/scan/": table("costmap_2d", "source"),
     }
     known |= {space.replace("local", "global"): names for space, names in known.items()}
-    given = load("nav05_test")[1] | load("nav06_auto_slam")[1]
+    given = load("nav05_robust")[1] | load("nav06_auto_slam")[1] | load("nav07_own_planner")[1]
+    assert given["/move_base/base_global_planner"].value == "nav_demo/BreadthFirst"
     for name in given:
         space, _, last = name.rpartition("/")
         if space:

@@ -91,7 +91,7 @@ def test_some_parameters_are_searched_upwards():
     tree = {"observation_sources": "scan", "raytrace_range": 3.5}
     found = read(tree, footprint="[[1, 1], [-1, 1], [0, -1]]", obstacle_range=1.5,
                  raytrace_range=9.0, width=77.0)
-    scan = found.layers[1].sources["scan"]
+    scan = found.layers[0].sources["scan"]
     assert (scan["obstacle_range"], scan["raytrace_range"]) == (1.5, 3.5)
     assert settings.footprint_of(found.values, WHERE).tolist() == [[1, 1], [-1, 1], [0, -1]]
     assert found.values["width"] == 10.0

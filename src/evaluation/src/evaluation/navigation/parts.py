@@ -37,9 +37,8 @@ TOLD_OFF, TOLD_OFF_YAW = 0.3, 0.26  # m along x and y, and rad, at most, of the 
 SIMULATOR = ("roslaunch", "evaluation", "house.launch")
 SLAM = ("roslaunch", "turtlebot3_slam", "turtlebot3_slam.launch", "slam_methods:=gmapping",
         "open_rviz:=false")
-MOVE_BASE = ("roslaunch", "turtlebot3_navigation", "move_base.launch")
-NAVIGATION = ("roslaunch", "turtlebot3_navigation", "turtlebot3_navigation.launch",
-              "open_rviz:=false")
+MOVE_BASE = ("roslaunch", "evaluation", "move_base.launch")
+NAVIGATION = ("roslaunch", "evaluation", "navigation.launch")
 
 
 class Part:
