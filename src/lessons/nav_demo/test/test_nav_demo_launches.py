@@ -20,7 +20,8 @@ NODES = {  # launch: the nodes it starts where there is no screen
     "nav06_auto_slam": {"/slam_gmapping", "/move_base"},
 }
 RVIZ = {"nav01_slam": "map", "nav03_map_server": "map", "nav04_test": "map", "nav05_test": "nav",
-        "nav05_robust": "nav", "nav06_auto_slam": "nav", "nav07_own_planner": "nav"}  # launch: the configuration
+        "nav05_robust": "nav", "nav06_auto_slam": "nav",
+        "nav07_own_planner": "nav"}  # launch: the configuration
 COSTMAP = ("costmap", "static_layer", "obstacle_layer", "inflation_layer")
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import rospy
+from rospkg import RosPack
 
 from move_base import exported, plugin
 from move_base.local_planners import Situation
@@ -13,7 +14,7 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_nodes.parameters import ParameterError
 
 MANIFEST = """<package format="2"><name>{0}</name><version>0.1.0</version>
-<description>d</description><maintainer email="a@b.c">a</maintainer><license>MIT</license>
+<description>d</description><maintainer email="a@example.org">a</maintainer><license>MIT</license>
 <export><nav_core plugin="${{prefix}}/planner_plugin.xml"/></export></package>"""
 PLUGINS = """<library path="src">
   <class name="{0}/Straight" type="{0}_planners.Straight"
@@ -59,24 +60,6 @@ COSTMAP = Costmap(np.zeros((40, 40), np.uint8), 0.1, (0.0, 0.0))
 START, GOAL = np.array([1.0, 1.0, 0.0]), np.array([3.0, 3.0, 0.5])
 
 
-class Packages:
-    """One package, as rospkg knows it."""
-
-    def __init__(self, folder):
-        self._folder = folder
-
-    def list(self):
-        return [self._folder.name]
-
-    def get_path(self, _name):
-        return str(self._folder)
-
-    def get_manifest(self, _name):
-        from rospkg.manifest import parse_manifest_file
-
-        return parse_manifest_file(str(self._folder), "package.xml")
-
-
 class Topic:
     """As rospy's publisher, with somebody who listens."""
 
@@ -100,7 +83,8 @@ def package(tmp_path, monkeypatch):
     (folder / "package.xml").write_text(MANIFEST.format(folder.name))
     (folder / "planner_plugin.xml").write_text(PLUGINS.format(folder.name))
     (folder / "src" / f"{folder.name}_planners.py").write_text(CODE)
-    monkeypatch.setattr(exported.rospkg, "RosPack", lambda: Packages(folder))
+    packages = RosPack([str(tmp_path)])
+    monkeypatch.setattr(exported.rospkg, "RosPack", lambda: packages)
     monkeypatch.setattr(exported.sys, "path", [*exported.sys.path])
     monkeypatch.setattr(rospy, "Publisher", Topic)
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(1))
@@ -144,7 +128,7 @@ def test_what_cannot_be_loaded_is_one_line(package, name, words):
 
 
 def test_a_local_planner_without_its_methods_is_refused(package):
-    with pytest.raises(ParameterError, match="no set_plan.*compute_velocity_commands"):
+    with pytest.raises(ParameterError, match=r"no set_plan.*compute_velocity_commands"):
         local_planner(f"{package.name}/Half", "x")
 
 
@@ -154,9 +138,15 @@ def test_a_broken_file_is_named(package):
         global_planner("nothing/There", "x")
 
 
+def test_a_package_that_nobody_can_read_is_passed_over(package):
+    manifest = package / "package.xml"
+    manifest.write_text(manifest.read_text().replace("a@example.org", "nobody"))
+    assert exported.exported(exported.GLOBAL) == {}
+
+
 def test_ours_are_found_without_looking_at_packages(monkeypatch):
     monkeypatch.setattr(exported, "exported", lambda _base: pytest.fail("looked"))
     for name in ("navfn/NavfnROS", "global_planner/GlobalPlanner", "NavfnROS"):
-        assert global_planner(name, "x").NAME == name.rpartition("/")[2]
+        assert name.rpartition("/")[2] == global_planner(name, "x").NAME
     for name in ("base_local_planner/TrajectoryPlannerROS", "dwa_local_planner/DWAPlannerROS"):
-        assert local_planner(name, "x").NAME == name.rpartition("/")[2]
+        assert name.rpartition("/")[2] == local_planner(name, "x").NAME

@@ -18,7 +18,8 @@ TABLES = {
 
 
 @pytest.mark.parametrize("tree, said", [
-    ({"planner_frequency": 1.0, "DWAPlannerROS": {"max_vel_trans": 1, "path_distance_bias": 1}}, []),
+    ({"planner_frequency": 1.0,
+      "DWAPlannerROS": {"max_vel_trans": 1, "path_distance_bias": 1}}, []),
     ({"planer_frequency": 1.0}, ["planer_frequency (did you mean planner_frequency?)"]),
     ({"y_vels": "[]"}, ["y_vels"]),
     ({"DWAPlannerROS": {"max_trans_vel": 1.0}},

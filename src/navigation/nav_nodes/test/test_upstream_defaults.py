@@ -12,7 +12,7 @@ GROUPS = yaml.safe_load(Path(__file__).with_name("upstream_defaults.yaml").read_
 OFF = (0, 0.0, False)
 OURS_ALONE = {"hybrid_astar.yaml", "pure_pursuit.yaml", "escape_recovery.yaml"}
 NOT_POLICIES = {"lost_share_max": 1.0, "lost_forgets": True, "thin_wall": 0.3,
-                "command_type": "twist", "wheelbase": 0.325}  # ours; these values are upstream's way
+                "command_type": "twist", "wheelbase": 0.325}  # with these values it is upstream's
 ROBUST = sorted(NAVIGATION.glob("*/config/robust.yaml"))
 
 

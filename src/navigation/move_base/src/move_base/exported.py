@@ -44,11 +44,19 @@ def exported(base: str) -> dict[str, Exported]:
     packages = rospkg.RosPack()
     found = {}
     for package in packages.list():
-        for attribute in packages.get_manifest(package).get_export("nav_core", "plugin"):
+        for attribute in _exports(packages, package):
             for each in _classes(packages.get_path(package), attribute):
                 if each.base == base and "::" not in each.type:
                     found[each.name] = each
     return found
+
+
+def _exports(packages: rospkg.RosPack, package: str) -> list[str]:
+    """What its package.xml names; one that is broken is catkin's to complain about."""
+    try:
+        return packages.get_manifest(package).get_export("nav_core", "plugin")
+    except Exception:  # rospkg raises anything, UnboundLocalError among it
+        return []
 
 
 def _classes(package: str, attribute: str) -> list[Exported]:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import rospkg
-import rospy
 
 from nav_nodes.parameters import (
     Parameter,

@@ -3,8 +3,8 @@
 The laws are those of S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 6.3 and 6.4,
 with amcl's names and its odd sum: a beam of probability p adds p^3 to a particle's weight, so a few
 wrong beams do no harm. Three faults of amcl's are left out: its half cell between map and field,
-poses that look into the middle of walls (`wall_depth`, off by default), and readings beyond range_max that its beam
-model takes for no reading at all (here: for z_max).
+readings beyond range_max that its beam model takes for no reading at all (here: for z_max), and,
+with `wall_depth`, poses that look into the middle of walls.
 """
 
 from __future__ import annotations

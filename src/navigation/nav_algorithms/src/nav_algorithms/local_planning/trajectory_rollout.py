@@ -33,8 +33,9 @@ HEADING_SCALE = 0.3  # upstream's, of a radian off the heading
 class TrajectoryRolloutSettings:
     """Names and defaults of base_local_planner/TrajectoryPlannerROS; m, s, rad.
 
-    Defaults are those of upstream's reconfigure server. `prune_plan` has no effect: what is behind the robot is always left out. Upstream backs
-    out (`escape_vel`) even into what it touches; here only where that is free.
+    Defaults are those of upstream's reconfigure server. `prune_plan` has no effect: what is behind
+    the robot is always left out. Upstream backs out (`escape_vel`) even into what it touches; here
+    only where that is free.
     """
 
     acc_lim_x: float = 2.5
@@ -102,7 +103,8 @@ class TrajectoryRollout(LocalPlanner):
             self.escaped_from = None
         taken = self._forwards_or_turning(scorer, velocity, float(np.hypot(*(goal - pose)[:2])))
         if taken is None and self.settings.holonomic_robot:
-            taken = scorer.nearest_ahead(self._allowed([[0.0, y, 0.0] for y in self.settings.y_vels]), np.inf)
+            strafes = [[0.0, y, 0.0] for y in self.settings.y_vels]
+            taken = scorer.nearest_ahead(self._allowed(strafes), np.inf)
         if taken is None:
             taken = scorer.first_free([[self.settings.escape_vel, 0.0, 0.0]])
             if taken is None:
