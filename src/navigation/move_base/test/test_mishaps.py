@@ -18,9 +18,12 @@ from move_base.base import Base
 from move_base.node import MoveBase
 from move_base.planning import Planning
 from move_base.services import Services
-from move_base.state_machine import State, StateMachine
+from move_base.plugin import settings_from, table
+from move_base.state_machine import Patience, State, StateMachine
 from move_base.watch import Watch
 from nav_algorithms.costmap.costs import LETHAL, Costmap
+
+PATIENCE = settings_from(Patience, {entry.name: entry.default for entry in table("move_base")})
 
 
 @pytest.fixture(autouse=True)
@@ -81,7 +84,7 @@ def ends_threads(monkeypatch):
 @pytest.mark.usefixtures("ends_threads")
 def test_a_planner_that_fails_has_no_path_and_is_asked_again(lines):
     """The thread that plans must go on; else every later goal would wait for ever."""
-    machine, asked, again = StateMachine(), [], threading.Event()
+    machine, asked, again = StateMachine(PATIENCE), [], threading.Event()
 
     def plan(_goal):
         asked.append(True)

@@ -4,13 +4,16 @@ from dataclasses import replace
 
 import pytest
 
+from move_base.plugin import settings_from, table
 from move_base.state_machine import Patience, State, StateMachine, Trigger
+
+DEFAULT = settings_from(Patience, {entry.name: entry.default for entry in table("move_base")})
 
 
 @pytest.fixture
 def machine():
     """Two recoveries, and a goal that was given at 100 s."""
-    made = StateMachine(Patience(), recoveries=2)
+    made = StateMachine(DEFAULT, recoveries=2)
     made.goal = made.begin(100.0)
     return made
 
@@ -27,7 +30,7 @@ def test_a_new_goal_is_planned(machine):
 
 def test_no_goal_wants_no_plan():
     """Neither before the first nor after the last."""
-    machine = StateMachine()
+    machine = StateMachine(DEFAULT)
     assert not machine.wants_plan
     machine.begin(0.0)
     machine.end()

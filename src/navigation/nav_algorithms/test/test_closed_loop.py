@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms import likelihood_field
 from nav_algorithms.costmap import footprint as footprints
@@ -54,7 +55,7 @@ def world(seed, clearance):
         occupied[:8] = occupied[-8:] = 1
         occupied[:, :8] = occupied[:, -8:] = 1
         if navfn.plan(Costmap(inflated(occupied, FINE, clearance), FINE, (0, 0)),
-                      START, GOAL) is not None:
+                      START, GOAL, settings=of(navfn.NavfnSettings)) is not None:
             return occupied
 
 
@@ -92,7 +93,8 @@ def drive(occupied, planner, global_plan, outline, replan, rate, acceleration, g
 
 def navfn_for(inscribed):
     return lambda coarse, pose, goal: navfn.plan(
-        Costmap(inflated(coarse, RESOLUTION, inscribed), RESOLUTION, (0, 0)), pose, goal)
+        Costmap(inflated(coarse, RESOLUTION, inscribed), RESOLUTION, (0, 0)), pose, goal,
+        settings=of(navfn.NavfnSettings))
 
 
 def hybrid_for(outline, settings):
@@ -104,7 +106,7 @@ def hybrid_for(outline, settings):
 
 @pytest.mark.parametrize("seed", [0, 4, 7])
 def test_dwa_with_the_waffle(seed):
-    planner = DwaPlanner(DwaSettings(
+    planner = DwaPlanner(of(DwaSettings,
         max_vel_x=0.26, min_vel_x=-0.26, max_vel_trans=0.26, min_vel_trans=0.13, max_vel_y=0.0,
         min_vel_y=0.0, acc_lim_y=0.0, max_vel_theta=1.82, min_vel_theta=0.9, sim_time=2.0,
         vx_samples=20, vy_samples=0, vth_samples=40, path_distance_bias=32.0,
@@ -116,7 +118,7 @@ def test_dwa_with_the_waffle(seed):
 
 @pytest.mark.parametrize("seed", [1, 5])
 def test_trajectory_rollout_with_the_waffle(seed):
-    planner = TrajectoryRollout(TrajectoryRolloutSettings(
+    planner = TrajectoryRollout(of(TrajectoryRolloutSettings,
         max_vel_x=0.26, min_vel_x=0.05, max_vel_theta=1.8, min_vel_theta=-1.8,
         holonomic_robot=False, controller_frequency=10.0, angular_sim_granularity=0.05,
         vx_samples=6, yaw_goal_tolerance=0.1, trans_stopped_velocity=0.05,
@@ -127,18 +129,19 @@ def test_trajectory_rollout_with_the_waffle(seed):
 
 @pytest.mark.parametrize("seed", [4, 13])
 def test_pursuit_with_the_waffle_where_it_hardly_fits(seed):
-    planner = PurePursuit(PurePursuitSettings(
+    planner = PurePursuit(of(PurePursuitSettings,
         desired_linear_vel=0.26, turn_in_place=True, min_lookahead_dist=0.15,
         max_lookahead_dist=0.3, minimum_turning_radius=0.15, acc_lim_x=2.5,
         controller_frequency=10.0, xy_goal_tolerance=0.05))
-    plan = hybrid_for(WAFFLE, HybridAstarSettings(turn_in_place=True))
+    plan = hybrid_for(WAFFLE, of(HybridAstarSettings, turn_in_place=True))
     assert drive(world(seed, 0.2), planner, plan, WAFFLE, 0, 10, (2.5, 0, 3.2), GOAL,
                  180)[0] == "reached"
 
 
 @pytest.mark.parametrize("seed, yaw", [(0, np.pi / 2), (3, -np.pi / 2)])
 def test_pursuit_with_a_car(seed, yaw):
-    plan = hybrid_for(CAR, HybridAstarSettings())
+    plan = hybrid_for(CAR, of(HybridAstarSettings))
     goal = np.array([*GOAL[:2], yaw])
-    assert drive(world(seed, 0.35), PurePursuit(), plan, CAR, 0, 20, (2.0, 0, 6.0), goal,
+    planner = PurePursuit(of(PurePursuitSettings))
+    assert drive(world(seed, 0.35), planner, plan, CAR, 0, 20, (2.0, 0, 6.0), goal,
                  60)[0] == "reached"

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import astar, navfn
@@ -31,12 +32,16 @@ def length(path):
     return np.hypot(*np.diff(path[:, :2], axis=0).T).sum()
 
 
+def navfn_plan(*arguments, tolerance=None, **settings):
+    return navfn.plan(*arguments, tolerance, settings=of(navfn.NavfnSettings, **settings))
+
+
 def astar_plan(*arguments, **settings):
-    return astar.plan(*arguments, settings=astar.GlobalPlannerSettings(**settings))
+    return astar.plan(*arguments, settings=of(astar.GlobalPlannerSettings, **settings))
 
 
 PLANNERS = [
-    navfn.plan, astar.plan,
+    navfn_plan, astar_plan,
     lambda *arguments: astar_plan(*arguments, use_dijkstra=False),
     lambda *arguments: astar_plan(*arguments, use_dijkstra=False, use_quadratic=False),
     lambda *arguments: astar_plan(*arguments, old_navfn_behavior=True)]
@@ -62,7 +67,7 @@ def test_no_way_is_none(plan):
 
 
 def test_a_free_path_is_straight():
-    assert length(navfn.plan(empty(), START, GOAL)) == pytest.approx(10.0, rel=0.003)
+    assert length(navfn_plan(empty(), START, GOAL)) == pytest.approx(10.0, rel=0.003)
     streets = astar_plan(empty(), START, GOAL, use_grid_path=True, use_quadratic=False)
     assert 10.0 < length(streets) < 11.5
 
@@ -80,17 +85,17 @@ def test_the_potential_is_the_distance():
 def test_dear_cells_are_gone_round():
     costmap = empty()
     costmap.cells[80:120, 60:180] = 200
-    assert length(navfn.plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) > 8.3
+    assert length(navfn_plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) > 8.3
     costmap.cells[80:120, 60:180] = 1
-    assert length(navfn.plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) < 8.05
+    assert length(navfn_plan(costmap, np.array([-4.0, 0, 0]), np.array([4.0, 0, 0]))) < 8.05
 
 
 def test_the_unknown_is_crossed_if_allowed():
     costmap = empty()
     costmap.cells[:, 110:130] = UNKNOWN
-    assert navfn.plan(costmap, START, GOAL) is not None
-    assert navfn.plan(costmap, START, GOAL, settings=navfn.NavfnSettings(False)) is None
-    assert astar.plan(costmap, START, GOAL) is not None
+    assert navfn_plan(costmap, START, GOAL) is not None
+    assert navfn_plan(costmap, START, GOAL, allow_unknown=False) is None
+    assert astar_plan(costmap, START, GOAL) is not None
     assert astar_plan(costmap, START, GOAL, allow_unknown=False) is None
 
 
@@ -98,20 +103,20 @@ def test_a_goal_in_a_wall_is_moved_within_the_tolerance():
     costmap = empty()
     costmap.cells[150:170, 190:210] = LETHAL
     goal = np.array([4.0, 3.0, 1.0])
-    assert navfn.plan(costmap, START, goal) is None
-    path = navfn.plan(costmap, START, goal, tolerance=0.8)
+    assert navfn_plan(costmap, START, goal) is None
+    path = navfn_plan(costmap, START, goal, tolerance=0.8)
     assert 0.45 < np.hypot(*(path[-1, :2] - goal[:2])) < 0.8
     assert path[-1, 2] == 1.0
-    assert navfn.plan(costmap, START, goal, tolerance=0.3) is None
-    assert navfn.plan(costmap, START, goal,
-                      settings=navfn.NavfnSettings(default_tolerance=0.8)) is not None
+    assert navfn_plan(costmap, START, goal, tolerance=0.3) is None
+    assert navfn_plan(costmap, START, goal,
+                      default_tolerance=0.8) is not None
 
 
 def test_a_start_too_near_to_a_wall_is_left():
     costmap = empty()
     costmap.cells[60:, 30:60] = INSCRIBED
     costmap.cells[60:, 44:46] = LETHAL
-    path = navfn.plan(costmap, np.array([-3.6, 0.0, 0.0]), GOAL)
+    path = navfn_plan(costmap, np.array([-3.6, 0.0, 0.0]), GOAL)
     assert path is not None
     assert (costmap.cells[tuple(costmap.cells_of(path[:, :2]).T)] != LETHAL).all()
 
@@ -168,6 +173,6 @@ def test_a_large_map_takes_less_than_50_ms():
     times = []
     for _ in range(3):
         begin = time.process_time()
-        navfn.plan(costmap, np.array([1.0, 1.0, 0]), np.array([19.0, 19.0, 0]))
+        navfn_plan(costmap, np.array([1.0, 1.0, 0]), np.array([19.0, 19.0, 0]))
         times.append(time.process_time() - begin)
     assert min(times) < 0.05

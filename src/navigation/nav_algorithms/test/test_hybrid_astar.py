@@ -2,16 +2,21 @@
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import hybrid_astar
-from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings, plan
+from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
 from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.poses import wrap_angle
 
 CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])
 WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
+
+
+def plan(*arguments, **settings):
+    return hybrid_astar.plan(*arguments, of(HybridAstarSettings, **settings))
 
 
 def road(width=1.2):
@@ -48,8 +53,7 @@ def test_turning_round_in_a_road_takes_three_points_or_more():
     assert abs(wrap_angle(path[-1, 2] - np.pi)) < 1e-9
     assert {piece.direction for piece in cut(path)} == {1, -1}
     assert 3 <= len(cut(path)) <= 5
-    forwards = HybridAstarSettings(allow_reverse=False)
-    assert plan(road(), start, goal, CAR, forwards) is None
+    assert plan(road(), start, goal, CAR, allow_reverse=False) is None
 
 
 def test_backwards_where_that_is_shorter():
@@ -63,9 +67,8 @@ def test_a_car_that_cannot_turn_there_finds_no_way():
 
 
 def test_a_robot_that_turns_on_the_spot():
-    settings = HybridAstarSettings(turn_in_place=True)
     start, goal = np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi])
-    path = plan(road(), start, goal, WAFFLE, settings)
+    path = plan(road(), start, goal, WAFFLE, turn_in_place=True)
     check(path, road(), start, np.array([3.0, 0, path[-1, 2]]), WAFFLE)
     assert 0 in {piece.direction for piece in cut(path)}
     assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
@@ -76,7 +79,7 @@ def test_the_unknown_is_crossed_if_allowed():
     costmap.cells[:, 100:110] = UNKNOWN
     start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
     assert plan(costmap, start, goal, CAR) is not None
-    assert plan(costmap, start, goal, CAR, HybridAstarSettings(allow_unknown=False)) is None
+    assert plan(costmap, start, goal, CAR, allow_unknown=False) is None
 
 
 def test_round_obstacles_and_twice_the_same():
@@ -124,5 +127,5 @@ def test_on_a_large_map_a_near_goal_is_sought_near_by_first(monkeypatch, wall, l
 
 
 def test_the_number_of_steps_is_bounded():
-    settings = HybridAstarSettings(max_expansions=10)
-    assert plan(road(), np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi]), CAR, settings) is None
+    assert plan(road(), np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi]), CAR,
+                max_expansions=10) is None

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
@@ -39,17 +40,17 @@ def straight(length=1.2, yaw=0.0, count=40):
 
 
 def dwa(**changed):
-    return DwaPlanner(DwaSettings(**{**WAFFLE_DWA, **changed}))
+    return DwaPlanner(of(DwaSettings, **{**WAFFLE_DWA, **changed}))
 
 
 def rollout(**changed):
-    return TrajectoryRollout(TrajectoryRolloutSettings(**{
+    return TrajectoryRollout(of(TrajectoryRolloutSettings, **{
         **dict(max_vel_x=0.26, min_vel_x=0.05, holonomic_robot=False, sim_time=1.0, vx_samples=3,
                dwa=True), **changed}))
 
 
 def pursuit(**changed):
-    return PurePursuit(PurePursuitSettings(**changed))
+    return PurePursuit(of(PurePursuitSettings, **changed))
 
 
 PLANNERS = [dwa, rollout, pursuit]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
@@ -18,12 +19,12 @@ STRAIGHT = np.column_stack((ALONG, 0 * ALONG, 0 * ALONG))
 TURNED = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 2.0]])  # there already, but for the yaw
 
 MAKERS = [
-    lambda: DwaPlanner(DwaSettings(max_vel_trans=0.3, max_vel_x=0.3, min_vel_x=-0.2)),
-    lambda: DwaPlanner(DwaSettings(use_dwa=False, min_vel_x=0.05)),
-    lambda: TrajectoryRollout(TrajectoryRolloutSettings()),
-    lambda: TrajectoryRollout(TrajectoryRolloutSettings(dwa=False, holonomic_robot=False)),
-    lambda: PurePursuit(PurePursuitSettings()),
-    lambda: PurePursuit(PurePursuitSettings(turn_in_place=True))]
+    lambda: DwaPlanner(of(DwaSettings, max_vel_trans=0.3, max_vel_x=0.3, min_vel_x=-0.2)),
+    lambda: DwaPlanner(of(DwaSettings, use_dwa=False, min_vel_x=0.05)),
+    lambda: TrajectoryRollout(of(TrajectoryRolloutSettings)),
+    lambda: TrajectoryRollout(of(TrajectoryRolloutSettings, dwa=False, holonomic_robot=False)),
+    lambda: PurePursuit(of(PurePursuitSettings)),
+    lambda: PurePursuit(of(PurePursuitSettings, turn_in_place=True))]
 MEASURED = [(100.0, 0.0, 0.0), (-50.0, 0.0, 0.0), (0.0, 0.0, 1e5), (0.3, 0.0, -1e5),
             (1e5, 2.0, 3.0), (0.9, 0.0, 2.0), (-0.3, -0.3, 0.0)]
 
@@ -70,7 +71,7 @@ def test_limits():
 @pytest.mark.parametrize("slowest", [0.0, -0.2])
 def test_a_turn_at_the_goal_goes_to_the_right_too(costmap, slowest):
     """min_vel_theta is of the way; clipped to it, such a turn would never come."""
-    planner = TrajectoryRollout(TrajectoryRolloutSettings(min_vel_theta=slowest))
+    planner = TrajectoryRollout(of(TrajectoryRolloutSettings, min_vel_theta=slowest))
     planner.set_path(np.array([[0.0, 0.0, 0.0], [0.01, 0.0, -1.0]]))
     velocity = np.zeros(3)
     for _ in range(5):  # it speeds up

@@ -1,20 +1,21 @@
 """A robot in a made-up flat: kept track of, found, and found again after it was carried away."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from defaults import of
 from house import ANGLES, LASER, RANGE_MAX, Robot, flat, ring, robust, room
 
 from nav_algorithms import poses
 from nav_algorithms.monte_carlo import Localisation, LocalisationSettings
 from nav_algorithms.sensor_models import FIELD, FIELD_PROB, Scan, SensorSettings
 
-SETTINGS = LocalisationSettings(
+SETTINGS = of(LocalisationSettings,
     min_particles=500, max_particles=2000, kld_err=0.02, update_min_a=0.2, resample_interval=1,
     odom_alpha1=0.1, odom_alpha2=0.1, odom_alpha3=0.1, odom_alpha4=0.1,
     **robust(LocalisationSettings))
-SENSOR = SensorSettings(laser_max_beams=180, laser_z_hit=0.5, laser_z_rand=0.5,
+SENSOR = of(SensorSettings, laser_max_beams=180, laser_z_hit=0.5, laser_z_rand=0.5,
                         **robust(SensorSettings))
 CLOSE = np.diag([0.02, 0.02, 0.01])
 SEEN = Scan(np.full(360, 2.0), ANGLES, LASER, RANGE_MAX)
@@ -56,7 +57,7 @@ def test_a_crowd_about_the_robot_does_not_have_it_at_a_place_that_looks_alike(se
 
 def test_the_beam_model_keeps_track_too():
     robot = Robot(4)
-    found = Localisation(flat(), SETTINGS, SensorSettings(laser_model_type="beam"),
+    found = Localisation(flat(), SETTINGS, of(SensorSettings, laser_model_type="beam"),
                          np.random.default_rng(0))
     found.start_at(robot.pose, CLOSE)
     assert robot.follow(found, 20)[25:, 0].mean() < 0.07
@@ -94,8 +95,7 @@ def test_without_recovery_a_lost_robot_is_not_looked_for():
 
 def test_by_default_a_lost_robot_is_looked_for_as_upstream_does():
     """By as many random poses as the scans are worse, and then the averages begin anew."""
-    off = {field.name: field.default for field in fields(LocalisationSettings)
-           if field.name in robust(LocalisationSettings)}
+    off = {name: getattr(of(LocalisationSettings), name) for name in robust(LocalisationSettings)}
     robot, found = Robot(1), localisation(1, resample_interval=2, **off)
     found.start_at(robot.pose, CLOSE)
     robot.follow(found, 20)

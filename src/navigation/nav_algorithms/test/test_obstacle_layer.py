@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import FREE, LETHAL, UNKNOWN, Costmap
@@ -134,7 +135,7 @@ def test_obstacles_stay_in_the_world_when_the_window_rolls():
     assert not update(layered).any()
 
 
-@pytest.mark.parametrize("layer", [ObstacleLayer("o"), VoxelLayer("v", VoxelSettings())])
+@pytest.mark.parametrize("layer", [ObstacleLayer("o"), VoxelLayer("v", of(VoxelSettings))])
 def test_forgetting(layer):
     layered = costmap_of(layer)
     obstacles = seen((2.55, 2.05, 0.2), (3.55, 2.05, 0.2))
@@ -149,7 +150,7 @@ def test_forgetting(layer):
 
 
 def test_a_voxel_is_cleared_only_at_its_height():
-    layered = costmap_of(VoxelLayer("voxels", VoxelSettings()))
+    layered = costmap_of(VoxelLayer("voxels", of(VoxelSettings)))
     update(layered, [seen((3.05, 2.05, 0.9), origin=(2.05, 2.05, 0.9))])
     low = seen((3.85, 2.05, 0.1), origin=(2.05, 2.05, 0.1))
     assert update(layered, [], [low])[20, 30] == LETHAL
@@ -158,7 +159,7 @@ def test_a_voxel_is_cleared_only_at_its_height():
 
 
 def test_rays_among_voxels_spare_what_is_beside_their_end():
-    layered = costmap_of(VoxelLayer("voxels", VoxelSettings()))
+    layered = costmap_of(VoxelLayer("voxels", of(VoxelSettings)))
     update(layered, [seen((3.05, 2.05, 0.1), origin=(2.05, 2.05, 0.1))])
     for end, expected in ((3.15, LETHAL), (3.35, FREE)):
         ray = seen((end, 2.05, 0.1), origin=(2.05, 2.05, 0.1))
@@ -166,7 +167,7 @@ def test_rays_among_voxels_spare_what_is_beside_their_end():
 
 
 def test_a_marked_voxel_is_a_seen_one():
-    settings = VoxelSettings(z_voxels=3, unknown_threshold=1, mark_threshold=1)
+    settings = of(VoxelSettings, z_voxels=3, unknown_threshold=1, mark_threshold=1)
     layered = costmap_of(VoxelLayer("voxels", settings, track_unknown=True), track_unknown=True)
     update(layered, [seen((3.05, 2.05, 0.1))])
     ray = seen((3.85, 2.05, 0.3), origin=(2.05, 2.05, 0.3))
@@ -174,7 +175,7 @@ def test_a_marked_voxel_is_a_seen_one():
 
 
 def test_voxels_need_more_marks_than_the_threshold():
-    layered = costmap_of(VoxelLayer("voxels", VoxelSettings(mark_threshold=1)))
+    layered = costmap_of(VoxelLayer("voxels", of(VoxelSettings, mark_threshold=1)))
     one, two = (3.05, 2.05, 0.1), (3.05, 2.05, 0.5)
     assert update(layered, [seen(one, one)])[20, 30] == FREE
     assert update(layered, [seen(two)])[20, 30] == LETHAL
@@ -183,7 +184,7 @@ def test_voxels_need_more_marks_than_the_threshold():
 
 
 def test_a_column_with_many_unseen_voxels_is_unknown():
-    layered = costmap_of(VoxelLayer("voxels", VoxelSettings(z_voxels=3, unknown_threshold=1),
+    layered = costmap_of(VoxelLayer("voxels", of(VoxelSettings, z_voxels=3, unknown_threshold=1),
                                     track_unknown=True), track_unknown=True)
     for height, expected in ((0.1, UNKNOWN), (0.3, FREE)):
         ray = seen((3.85, 2.05, height), origin=(2.05, 2.05, height))
@@ -191,20 +192,20 @@ def test_a_column_with_many_unseen_voxels_is_unknown():
 
 
 def test_points_below_the_voxels_count_as_on_the_floor_and_above_not_at_all():
-    layered = costmap_of(VoxelLayer("voxels", VoxelSettings(z_voxels=2, z_resolution=0.2)))
+    layered = costmap_of(VoxelLayer("voxels", of(VoxelSettings, z_voxels=2, z_resolution=0.2)))
     assert update(layered, [seen((3.05, 2.05, -0.1))])[20, 30] == LETHAL
     assert update(layered, [seen((3.05, 3.05, 0.5))])[30, 30] == FREE
 
 
 def test_voxels_stay_in_the_world_and_go_with_other_settings():
-    layer = VoxelLayer("voxels", VoxelSettings())
+    layer = VoxelLayer("voxels", of(VoxelSettings))
     layered = costmap_of(layer, rolling=True)
     update(layered, [seen((3.05, 2.05, 0.9))])
     update(layered, pose=np.add(HERE, (0.5, 0.0, 0.0)))
     cells = update(layered, [], [seen((3.85, 2.05, 0.1), origin=(2.55, 2.05, 0.1))],
                    pose=np.add(HERE, (0.5, 0.0, 0.0)))
     assert (cells == LETHAL).sum() == 1
-    layer.change_settings(VoxelSettings(mark_threshold=2))
+    layer.change_settings(of(VoxelSettings, mark_threshold=2))
     assert update(layered).any()
-    layer.change_settings(VoxelSettings(z_resolution=0.1))
+    layer.change_settings(of(VoxelSettings, z_resolution=0.1))
     assert not update(layered).any()

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from defaults import of
 from slam_world import CELL, ORIGIN, RANGE_MAX, RING, Drive, drive, trajectory_error, walls
 
 from nav_algorithms import likelihood_field
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
 from nav_algorithms.particle_slam import ParticleSlam, SlamSettings
 
-SETTINGS = SlamSettings(particles=30, maxUrange=3.0, maxRange=RANGE_MAX - 0.01, minimumScore=50,
+SETTINGS = of(SlamSettings, particles=30, maxUrange=3.0, maxRange=RANGE_MAX - 0.01, minimumScore=50,
                         xmin=-2, ymin=-2, xmax=16, ymax=10, linearUpdate=0.5, angularUpdate=0.2)
 FIRST_CORRIDOR = RING[:2]
 

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from defaults import of
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import LETHAL, Costmap
@@ -15,7 +16,7 @@ CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])
 WHEELBASE, LOCK = 0.335, 0.5     # m; rad, of the front wheels
 STEERING, LATENCY = 0.1, 2       # s, time constant of the front wheels; periods until they obey
 RATE, TICKS = 20, 5              # commands a second; steps of the car a command
-SETTINGS = PurePursuitSettings(desired_linear_vel=0.8, minimum_turning_radius=0.63,
+SETTINGS = of(PurePursuitSettings, desired_linear_vel=0.8, minimum_turning_radius=0.63,
                                min_approach_linear_velocity=0.1,
                                approach_velocity_scaling_dist=0.2, yaw_goal_tolerance=0.15)
 
@@ -80,7 +81,7 @@ def turn_about(x, width):
     """(plans, changes between forwards and backwards, s) until it stands at x, m, turned about."""
     costmap, planner = road(width), PurePursuit(SETTINGS)
     wide = footprints.padded(CAR, 0.02)  # what is planned with, and what follows
-    settings = HybridAstarSettings(minimum_turning_radius=0.7)
+    settings = of(HybridAstarSettings, minimum_turning_radius=0.7)
     pose, speed, steering, waiting = np.array([x, 0.0, 0.0]), 0.0, 0.0, [(0.0, 0.0)] * LATENCY
     goal, plans, directions = np.array([x, 0.0, np.pi]), 0, []
     for period in range(60 * RATE):

@@ -2,13 +2,23 @@
 
 import numpy as np
 import pytest
+from defaults import of
 
+from nav_algorithms import recovery
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import LETHAL, Costmap
-from nav_algorithms.recovery import EscapeSettings, RotateSettings, escape, rotation
+from nav_algorithms.recovery import EscapeSettings, RotateSettings
 
 WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
 ORIGIN = np.zeros(3)
+
+
+def rotation(*arguments, **settings):
+    return recovery.rotation(*arguments, of(RotateSettings, **settings))
+
+
+def escape(*arguments, **settings):
+    return recovery.escape(*arguments, of(EscapeSettings, **settings))
 
 
 def free():
@@ -17,10 +27,10 @@ def free():
 
 def test_a_turn_goes_once_round_and_slows_down():
     assert rotation(free(), WAFFLE, ORIGIN, 0.0).omega == 1.0
-    near = rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.11, RotateSettings(acc_lim_th=1.0))
+    near = rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.11, acc_lim_theta=1.0)
     assert near.omega == pytest.approx(np.sqrt(0.22))
     assert rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.101,
-                    RotateSettings(acc_lim_th=0.1)).omega == 0.4
+                    acc_lim_theta=0.1).omega == 0.4
     assert rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.05).omega == 0.0
 
 
@@ -51,7 +61,7 @@ def test_the_way_out_is_forwards_where_a_wall_is_behind():
 def test_a_car_leaves_in_a_curve():
     costmap = free()
     costmap.cells[:26] = LETHAL
-    command = escape(costmap, WAFFLE, ORIGIN, EscapeSettings(minimum_turning_radius=0.5))
+    command = escape(costmap, WAFFLE, ORIGIN, minimum_turning_radius=0.5)
     assert command.omega != 0.0
     assert command.trajectory[-1, 1] > 0.05
 

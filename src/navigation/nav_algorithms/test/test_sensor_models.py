@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from defaults import of
 from house import robust
 
 from nav_algorithms.grid import OccupancyGrid
@@ -13,8 +14,8 @@ from nav_algorithms.sensor_models import BEAM, FIELD, FIELD_PROB, LaserModel, Sc
 CELLS = np.zeros((40, 60), np.int8)
 CELLS[:, 40], CELLS[:, 41:] = 100, -1
 GRID = OccupancyGrid(CELLS, 0.05, (0.0, 0.0))
-SETTINGS = SensorSettings(laser_max_beams=100, laser_z_hit=0.7, laser_z_short=0.3, laser_z_max=0.2,
-                          laser_z_rand=0.1, laser_lambda_short=0.4)
+SETTINGS = of(SensorSettings, laser_max_beams=100, laser_z_hit=0.7, laser_z_short=0.3,
+              laser_z_max=0.2, laser_z_rand=0.1, laser_lambda_short=0.4)
 PARTICLES = np.array([[1.025, 1.025, 0.0]])
 AHEAD = np.zeros(3)
 

@@ -59,7 +59,8 @@ class Ground:
 
     def shortest_way(self, start: np.ndarray, goal: np.ndarray) -> float:
         """m, from pose to pose, without touching a wall; inf where there is no way."""
-        path = navfn.plan(self._costs, np.asarray(start, float), np.asarray(goal, float))
+        path = navfn.plan(self._costs, np.asarray(start, float), np.asarray(goal, float),
+                          settings=navfn.NavfnSettings(allow_unknown=True, default_tolerance=0.0))
         if path is None:
             return np.inf
         return float(np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1).sum())

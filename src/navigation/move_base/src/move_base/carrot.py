@@ -14,12 +14,12 @@ from nav_algorithms.costmap.costs import Costmap
 class CarrotSettings:
     """Names of carrot_planner/CarrotPlanner; m. A step of 0 is a cell."""
 
-    step_size: float = 0.0
-    min_dist_from_robot: float = 0.1
+    step_size: float
+    min_dist_from_robot: float
 
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
-         settings: CarrotSettings = CarrotSettings()) -> np.ndarray | None:
+         settings: CarrotSettings) -> np.ndarray | None:
     """Path (2, 3): `start` and the place nearest to the goal, on the line to it, that is free.
 
     Its yaw is the start's at the start and the goal's at the goal, and turns evenly between them.

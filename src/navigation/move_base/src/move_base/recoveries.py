@@ -84,10 +84,7 @@ class Rotate(Recovery):
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.values.update(read_parameters(self.tables()[LIMITS], f"~{LIMITS}/"))
-        self._settings = settings_from(
-            recovery.RotateSettings, self.values, acc_lim_th=self.values["acc_lim_theta"],
-            max_rotational_vel=self.values["max_vel_theta"],
-            min_in_place_rotational_vel=self.values["min_in_place_vel_theta"])
+        self._settings = settings_from(recovery.RotateSettings, self.values)
 
     def tables(self) -> dict[str, list[Parameter]]:
         entries = table(self.TABLE)
@@ -98,7 +95,7 @@ class Rotate(Recovery):
         super().start(rig)
         rospy.logwarn("Rotate recovery behavior started.")
         self._turned, self._yaw = 0.0, None
-        slowest = max(self._settings.min_in_place_rotational_vel, 0.05)
+        slowest = max(self._settings.min_in_place_vel_theta, 0.05)
         self._steps_left = int(TOO_LONG * 2 * np.pi / slowest * rig.frequency)
 
     def step(self) -> bool:

@@ -31,19 +31,19 @@ class Trigger(Enum):
 
 @dataclass(frozen=True)
 class Patience:
-    """Names and defaults of move_base; s, m. A negative number of retries is no limit.
+    """Names of move_base; s, m. A negative number of retries is no limit.
 
     `progress_timeout` is ours; 0 is none, as upstream.
     """
 
-    planner_frequency: float = 0.0
-    planner_patience: float = 5.0
-    controller_patience: float = 15.0
-    max_planning_retries: int = -1
-    oscillation_timeout: float = 0.0
-    oscillation_distance: float = 0.5
-    progress_timeout: float = 0.0
-    recovery_behavior_enabled: bool = True
+    planner_frequency: float
+    planner_patience: float
+    controller_patience: float
+    max_planning_retries: int
+    oscillation_timeout: float
+    oscillation_distance: float
+    progress_timeout: float
+    recovery_behavior_enabled: bool
 
 
 class StateMachine:
@@ -52,7 +52,7 @@ class StateMachine:
     What upstream calls recovery_index_ is `recovery`: which behaviour is the next to be tried.
     """
 
-    def __init__(self, patience: Patience = Patience(), recoveries: int = 0) -> None:
+    def __init__(self, patience: Patience, recoveries: int = 0) -> None:
         """`recoveries`: how many behaviours there are. Both may be replaced at any time."""
         self.patience, self.recoveries = patience, recoveries
         self._lock = threading.RLock()

@@ -22,35 +22,35 @@ from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
 
 @dataclass(frozen=True)
 class LocalisationSettings:
-    """amcl's parameters by its names; m, rad. The last six are ours, off as in upstream.
+    """amcl's parameters by its names; m, rad. The last six are ours.
 
     A passer-by makes scans fit worse, too: hence `lost_threshold`; poses that fit where the map
     looks alike must win by what is seen later, not by how many were drawn: `lost_share_max`. Where
     a robot starts anywhere the right place may have been given up too early: `search_share`.
     """
 
-    min_particles: int = 100
-    max_particles: int = 5000
-    kld_err: float = 0.01
-    kld_z: float = 0.99
-    odom_model_type: str = "diff"
-    odom_alpha1: float = 0.2
-    odom_alpha2: float = 0.2
-    odom_alpha3: float = 0.2
-    odom_alpha4: float = 0.2
-    odom_alpha5: float = 0.2
-    update_min_d: float = 0.2
-    update_min_a: float = np.pi / 6
-    resample_interval: int = 2
-    selective_resampling: bool = False
-    recovery_alpha_slow: float = 0.001
-    recovery_alpha_fast: float = 0.1
-    lost_threshold: float = 0.0
-    lost_share_max: float = 1.0
-    lost_forgets: bool = True
-    random_fit_share: float = 0.0
-    search_share: float = 0.0
-    search_scans: int = 0
+    min_particles: int
+    max_particles: int
+    kld_err: float
+    kld_z: float
+    odom_model_type: str
+    odom_alpha1: float
+    odom_alpha2: float
+    odom_alpha3: float
+    odom_alpha4: float
+    odom_alpha5: float
+    update_min_d: float
+    update_min_a: float
+    resample_interval: int
+    selective_resampling: bool
+    recovery_alpha_slow: float
+    recovery_alpha_fast: float
+    lost_threshold: float
+    lost_share_max: float
+    lost_forgets: bool
+    random_fit_share: float
+    search_share: float
+    search_scans: int
 
     @property
     def alphas(self) -> np.ndarray:

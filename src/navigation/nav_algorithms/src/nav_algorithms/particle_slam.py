@@ -31,32 +31,32 @@ MATCHED = 0.25     # cells; how far beams are from the walls where a scan matche
 class SlamSettings:
     """gmapping's parameters by its names; m, rad, s."""
 
-    maxUrange: float = 80.0
-    maxRange: float = 80.0
-    minimumScore: float = 0.0
-    sigma: float = 0.05
-    kernelSize: int = 1
-    lstep: float = 0.05
-    astep: float = 0.05
-    iterations: int = 5
-    lsigma: float = 0.075
-    ogain: float = 3.0
-    lskip: int = 0
-    srr: float = 0.1
-    srt: float = 0.2
-    str: float = 0.1
-    stt: float = 0.2
-    linearUpdate: float = 1.0
-    angularUpdate: float = 0.5
-    temporalUpdate: float = -1.0
-    resampleThreshold: float = 0.5
-    particles: int = 30
-    xmin: float = -100.0
-    ymin: float = -100.0
-    xmax: float = 100.0
-    ymax: float = 100.0
-    delta: float = 0.05
-    occ_thresh: float = 0.25
+    maxUrange: float
+    maxRange: float
+    minimumScore: float
+    sigma: float
+    kernelSize: int
+    lstep: float
+    astep: float
+    iterations: int
+    lsigma: float
+    ogain: float
+    lskip: int
+    srr: float
+    srt: float
+    str: float
+    stt: float
+    linearUpdate: float
+    angularUpdate: float
+    temporalUpdate: float
+    resampleThreshold: float
+    particles: int
+    xmin: float
+    ymin: float
+    xmax: float
+    ymax: float
+    delta: float
+    occ_thresh: float
 
 
 class ParticleSlam:

@@ -15,27 +15,27 @@ from nav_algorithms.local_planning.velocities import Command
 
 @dataclass(frozen=True)
 class RotateSettings:
-    """Names and defaults of rotate_recovery/RotateRecovery; rad, s."""
+    """Names of rotate_recovery/RotateRecovery; rad, s."""
 
-    sim_granularity: float = 0.017
-    frequency: float = 20.0
-    acc_lim_th: float = 3.2
-    max_rotational_vel: float = 1.0
-    min_in_place_rotational_vel: float = 0.4
-    yaw_goal_tolerance: float = 0.10
+    sim_granularity: float
+    frequency: float
+    acc_lim_theta: float
+    max_vel_theta: float
+    min_in_place_vel_theta: float
+    yaw_goal_tolerance: float
 
 
 @dataclass(frozen=True)
 class EscapeSettings:
     """How to leave a tight spot; m, s. A radius of 0 is a robot that only goes straight."""
 
-    distance: float = 0.4
-    speed: float = 0.1
-    minimum_turning_radius: float = 0.0
+    distance: float
+    speed: float
+    minimum_turning_radius: float
 
 
 def rotation(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, turned_so_far: float,
-             settings: RotateSettings = RotateSettings()) -> Command | None:
+             settings: RotateSettings) -> Command | None:
     """The next command of one full turn to the left, of which `turned_so_far`, rad, is done.
 
     Zero once it is done; None where the footprint (K, 2) would touch something on the rest of it.
@@ -51,13 +51,13 @@ def rotation(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, turned_s
     poses = turned(pose, left, settings.sim_granularity)
     if (footprints.costs(costmap, footprint, poses) < 0).any():
         return None
-    omega = float(np.clip(np.sqrt(2 * settings.acc_lim_th * left),
-                          settings.min_in_place_rotational_vel, settings.max_rotational_vel))
+    omega = float(np.clip(np.sqrt(2 * settings.acc_lim_theta * left),
+                          settings.min_in_place_vel_theta, settings.max_vel_theta))
     return Command(0.0, 0.0, omega, poses)
 
 
 def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
-           settings: EscapeSettings = EscapeSettings()) -> Command | None:
+           settings: EscapeSettings) -> Command | None:
     """A slow drive out of a tight spot, backwards or forwards; None where all ways are blocked.
 
     Of the ways that touch nothing over `distance`, or over half of it where there is none, the one

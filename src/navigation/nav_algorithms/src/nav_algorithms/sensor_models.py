@@ -25,21 +25,21 @@ BEAM, FIELD, FIELD_PROB = "beam", "likelihood_field", "likelihood_field_prob"
 class SensorSettings:
     """amcl's parameters by its names; m. The last two are ours: see _way_off."""
 
-    laser_max_beams: int = 30
-    laser_z_hit: float = 0.95
-    laser_z_short: float = 0.1
-    laser_z_max: float = 0.05
-    laser_z_rand: float = 0.05
-    laser_sigma_hit: float = 0.2
-    laser_lambda_short: float = 0.1
-    laser_likelihood_max_dist: float = 2.0
-    laser_model_type: str = FIELD
-    do_beamskip: bool = False
-    beam_skip_distance: float = 0.5
-    beam_skip_threshold: float = 0.3
-    beam_skip_error_threshold: float = 0.9
-    wall_depth: float = 0.0
-    thin_wall: float = 0.3
+    laser_max_beams: int
+    laser_z_hit: float
+    laser_z_short: float
+    laser_z_max: float
+    laser_z_rand: float
+    laser_sigma_hit: float
+    laser_lambda_short: float
+    laser_likelihood_max_dist: float
+    laser_model_type: str
+    do_beamskip: bool
+    beam_skip_distance: float
+    beam_skip_threshold: float
+    beam_skip_error_threshold: float
+    wall_depth: float
+    thin_wall: float
 
 
 @dataclass(frozen=True)

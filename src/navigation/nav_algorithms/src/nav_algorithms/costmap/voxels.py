@@ -18,11 +18,11 @@ LEVELS = 16  # at most, one bit each
 class VoxelSettings:
     """Under costmap_2d's names; m, and numbers of voxels in a column."""
 
-    origin_z: float = 0.0
-    z_resolution: float = 0.2
-    z_voxels: int = 10
-    unknown_threshold: int = 15  # a column with more unseen voxels is UNKNOWN
-    mark_threshold: int = 0      # a column with more marks is LETHAL
+    origin_z: float
+    z_resolution: float
+    z_voxels: int
+    unknown_threshold: int  # a column with more unseen voxels is UNKNOWN
+    mark_threshold: int     # a column with more marks is LETHAL
 
 
 class VoxelLayer(ObstacleLayer):

@@ -14,23 +14,23 @@ from nav_algorithms.global_planning.potential import crossing_costs
 
 @dataclass(frozen=True)
 class GlobalPlannerSettings:
-    """Names and defaults of global_planner/GlobalPlanner. Pictures belong to its node."""
+    """Names of global_planner/GlobalPlanner. Pictures belong to its node."""
 
-    allow_unknown: bool = True
-    default_tolerance: float = 0.0    # m, as navfn's
-    use_dijkstra: bool = True         # else A*
-    use_quadratic: bool = True        # distances as the crow flies, else as the streets go
-    use_grid_path: bool = False       # from cell to cell, else along the slope
-    old_navfn_behavior: bool = False  # navfn's costs in place of the next three
-    lethal_cost: int = 253            # from here on no cell is crossed
-    neutral_cost: float = 50.0
-    cost_factor: float = 3.0
-    orientation_mode: int = 0
-    orientation_window_size: int = 1
+    allow_unknown: bool
+    default_tolerance: float  # m, as navfn's
+    use_dijkstra: bool        # else A*
+    use_quadratic: bool       # distances as the crow flies, else as the streets go
+    use_grid_path: bool       # from cell to cell, else along the slope
+    old_navfn_behavior: bool  # navfn's costs in place of the next three
+    lethal_cost: int          # from here on no cell is crossed
+    neutral_cost: float
+    cost_factor: float
+    orientation_mode: int
+    orientation_window_size: int
 
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, tolerance: float | None = None,
-         settings: GlobalPlannerSettings = GlobalPlannerSettings()) -> np.ndarray | None:
+         *, settings: GlobalPlannerSettings) -> np.ndarray | None:
     """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
 
     As navfn's `plan`, but yaws are those of `orientation_mode`. `old_navfn_behavior` takes navfn's

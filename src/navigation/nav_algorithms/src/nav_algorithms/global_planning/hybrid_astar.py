@@ -27,26 +27,26 @@ AROUND = 20.0      # m of surroundings, about start and goal
 class HybridAstarSettings:
     """What the vehicle can and what it should rather not do. Costs are in metres of free road."""
 
-    allow_unknown: bool = True
-    default_tolerance: float = 0.0       # accepted: the goal is reached exactly or not at all
-    minimum_turning_radius: float = 0.6  # m
-    allow_reverse: bool = True
-    turn_in_place: bool = False          # differential drives: turns on the spot, and no curves
-    state_resolution: float = 0.1        # m, of the cells of poses
-    yaw_bins: int = 72                   # on the full circle
-    primitive_length: float = 0.15       # m, of one piece
-    cost_penalty: float = 2.0            # for each metre, times the cell's cost / 252
-    reverse_penalty: float = 1.6         # for each metre, as a factor
-    cusp_penalty: float = 0.5            # for each change between forwards and backwards
-    curvature_penalty: float = 0.02      # for each metre and each 1/m of curvature
-    swerve_penalty: float = 0.02         # for each 1/m by which the curvature changes
-    turn_penalty: float = 0.25           # for each radian on the spot
-    max_expansions: int = 150_000        # about a second on one core of 2020
-    improve_expansions: int = 20_000     # after the first way was found
+    allow_unknown: bool
+    default_tolerance: float       # accepted: the goal is reached exactly or not at all
+    minimum_turning_radius: float  # m
+    allow_reverse: bool
+    turn_in_place: bool            # differential drives: turns on the spot, and no curves
+    state_resolution: float        # m, of the cells of poses
+    yaw_bins: int                  # on the full circle
+    primitive_length: float        # m, of one piece
+    cost_penalty: float            # for each metre, times the cell's cost / 252
+    reverse_penalty: float         # for each metre, as a factor
+    cusp_penalty: float            # for each change between forwards and backwards
+    curvature_penalty: float       # for each metre and each 1/m of curvature
+    swerve_penalty: float          # for each 1/m by which the curvature changes
+    turn_penalty: float            # for each radian on the spot
+    max_expansions: int            # about a second on one core of 2020
+    improve_expansions: int        # after the first way was found
 
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
-         settings: HybridAstarSettings = HybridAstarSettings()) -> np.ndarray | None:
+         settings: HybridAstarSettings) -> np.ndarray | None:
     """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
 
     Poses are a cell or less apart; the vehicle drives backwards where the next pose lies behind.

@@ -17,14 +17,14 @@ UNKNOWN_COST = 253.0         # where unknown cells may be crossed
 
 @dataclass(frozen=True)
 class NavfnSettings:
-    """Names and defaults of navfn/NavfnROS. The window and the picture belong to its node."""
+    """Names of navfn/NavfnROS. The window and the picture belong to its node."""
 
-    allow_unknown: bool = True
-    default_tolerance: float = 0.0  # m, how far from the goal a path may end, along x and y
+    allow_unknown: bool
+    default_tolerance: float  # m, how far from the goal a path may end, along x and y
 
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, tolerance: float | None = None,
-         settings: NavfnSettings = NavfnSettings()) -> np.ndarray | None:
+         *, settings: NavfnSettings) -> np.ndarray | None:
     """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
 
     Points are half a cell apart or a little more; yaws are those of travel, the first is the

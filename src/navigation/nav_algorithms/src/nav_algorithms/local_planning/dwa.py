@@ -1,7 +1,7 @@
 """DWAPlannerROS: of the velocities within reach, the one whose near future costs the least.
 
 D. Fox, W. Burgard, S. Thrun, "The dynamic window approach to collision avoidance" (1997), with the
-costs, names and defaults of dwa_local_planner.
+costs, names of dwa_local_planner.
 """
 
 from __future__ import annotations
@@ -29,55 +29,55 @@ EPSILON = 1e-4
 
 @dataclass(frozen=True)
 class DwaSettings:
-    """Names and defaults of dwa_local_planner/DWAPlannerROS; m, s, rad.
+    """Names of dwa_local_planner/DWAPlannerROS; m, s, rad.
 
     A velocity limit below 0 is none. `acc_lim_trans` and `prune_plan` have no effect: each axis has
     its own limit, and what is behind the robot is always left out. A turn on the spot is scored
     where it looks best, not where `sim_time` ends it: upstream's robots turn past their path.
     """
 
-    acc_lim_x: float = 2.5
-    acc_lim_y: float = 2.5
-    acc_lim_theta: float = 3.2
-    acc_lim_trans: float = 0.1
-    max_vel_trans: float = 0.55
-    min_vel_trans: float = 0.1
-    max_vel_x: float = 0.55
-    min_vel_x: float = 0.0
-    max_vel_y: float = 0.1
-    min_vel_y: float = -0.1
-    max_vel_theta: float = 1.0
-    min_vel_theta: float = 0.4
-    xy_goal_tolerance: float = 0.1
-    yaw_goal_tolerance: float = 0.1
-    latch_xy_goal_tolerance: bool = False
-    sim_time: float = 1.7
-    sim_granularity: float = 0.025
-    angular_sim_granularity: float = 0.1
-    vx_samples: int = 3
-    vy_samples: int = 10
-    vth_samples: int = 20
-    path_distance_bias: float = 0.6
-    goal_distance_bias: float = 0.8
-    occdist_scale: float = 0.01
-    twirling_scale: float = 0.0
-    forward_point_distance: float = 0.325
-    stop_time_buffer: float = 0.2
-    scaling_speed: float = 0.25
-    max_scaling_factor: float = 0.2
-    oscillation_reset_dist: float = 0.05
-    oscillation_reset_angle: float = 0.2
-    prune_plan: bool = False
-    trans_stopped_vel: float = 0.1
-    theta_stopped_vel: float = 0.1
-    use_dwa: bool = True
-    controller_frequency: float = 20.0  # move_base's: one command a period
+    acc_lim_x: float
+    acc_lim_y: float
+    acc_lim_theta: float
+    acc_lim_trans: float
+    max_vel_trans: float
+    min_vel_trans: float
+    max_vel_x: float
+    min_vel_x: float
+    max_vel_y: float
+    min_vel_y: float
+    max_vel_theta: float
+    min_vel_theta: float
+    xy_goal_tolerance: float
+    yaw_goal_tolerance: float
+    latch_xy_goal_tolerance: bool
+    sim_time: float
+    sim_granularity: float
+    angular_sim_granularity: float
+    vx_samples: int
+    vy_samples: int
+    vth_samples: int
+    path_distance_bias: float
+    goal_distance_bias: float
+    occdist_scale: float
+    twirling_scale: float
+    forward_point_distance: float
+    stop_time_buffer: float
+    scaling_speed: float
+    max_scaling_factor: float
+    oscillation_reset_dist: float
+    oscillation_reset_angle: float
+    prune_plan: bool
+    trans_stopped_vel: float
+    theta_stopped_vel: float
+    use_dwa: bool
+    controller_frequency: float  # move_base's: one command a period
 
 
 class DwaPlanner(LocalPlanner):
     """The dynamic window approach."""
 
-    def __init__(self, settings: DwaSettings = DwaSettings()) -> None:
+    def __init__(self, settings: DwaSettings) -> None:
         self.settings = settings
         super().__init__(Arrival(
             settings.xy_goal_tolerance, settings.yaw_goal_tolerance,

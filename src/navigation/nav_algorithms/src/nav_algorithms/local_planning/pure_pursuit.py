@@ -30,36 +30,36 @@ STEERING_TIME = 0.6  # s, that a piece may begin slowly because of that
 class PurePursuitSettings:
     """m, s, rad. `turn_in_place` is for robots that can; a car's path has no turns on the spot."""
 
-    desired_linear_vel: float = 0.5
-    acc_lim_x: float = 1.0
-    acc_lim_theta: float = 3.2
-    max_vel_theta: float = 1.8
-    min_vel_theta: float = 0.2
-    minimum_turning_radius: float = 0.5
-    turn_in_place: bool = False
-    lookahead_time: float = 0.9
-    min_lookahead_dist: float = 0.25
-    max_lookahead_dist: float = 0.9
-    use_regulated_linear_velocity_scaling: bool = True
-    regulated_linear_scaling_min_radius: float = 0.9
-    regulated_linear_scaling_min_speed: float = 0.15
-    use_cost_regulated_linear_velocity_scaling: bool = True
-    cost_scaling_dist: float = 0.3
-    cost_scaling_gain: float = 1.0
-    approach_velocity_scaling_dist: float = 0.5
-    min_approach_linear_velocity: float = 0.06
-    max_allowed_time_to_collision_up_to_carrot: float = 1.0
-    max_deviation: float = 0.4
-    xy_goal_tolerance: float = 0.1
-    yaw_goal_tolerance: float = 0.1
-    trans_stopped_vel: float = 0.05
-    controller_frequency: float = 20.0
+    desired_linear_vel: float
+    acc_lim_x: float
+    acc_lim_theta: float
+    max_vel_theta: float
+    min_vel_theta: float
+    minimum_turning_radius: float
+    turn_in_place: bool
+    lookahead_time: float
+    min_lookahead_dist: float
+    max_lookahead_dist: float
+    use_regulated_linear_velocity_scaling: bool
+    regulated_linear_scaling_min_radius: float
+    regulated_linear_scaling_min_speed: float
+    use_cost_regulated_linear_velocity_scaling: bool
+    cost_scaling_dist: float
+    cost_scaling_gain: float
+    approach_velocity_scaling_dist: float
+    min_approach_linear_velocity: float
+    max_allowed_time_to_collision_up_to_carrot: float
+    max_deviation: float
+    xy_goal_tolerance: float
+    yaw_goal_tolerance: float
+    trans_stopped_vel: float
+    controller_frequency: float
 
 
 class PurePursuit:
     """Follows one path, piece by piece; `set_path` begins a new one."""
 
-    def __init__(self, settings: PurePursuitSettings = PurePursuitSettings()) -> None:
+    def __init__(self, settings: PurePursuitSettings) -> None:
         self.settings = settings
         self.pieces: list[Piece] = []
         self.goal: np.ndarray | None = None

@@ -1,7 +1,7 @@
 """TrajectoryPlannerROS: forwards if that helps, else turn on the spot, else strafe, else back out.
 
 B. Gerkey and K. Konolige, "Planning and control in unstructured terrain" (2008), with the scores,
-names and defaults of base_local_planner.
+names of base_local_planner.
 """
 
 from __future__ import annotations
@@ -31,53 +31,52 @@ HEADING_SCALE = 0.3  # upstream's, of a radian off the heading
 
 @dataclass(frozen=True)
 class TrajectoryRolloutSettings:
-    """Names and defaults of base_local_planner/TrajectoryPlannerROS; m, s, rad.
+    """Names of base_local_planner/TrajectoryPlannerROS; m, s, rad.
 
-    Defaults are those of upstream's reconfigure server. `prune_plan` has no effect: what is behind
-    the robot is always left out. Upstream backs out (`escape_vel`) even into what it touches; here
-    only where that is free.
+    `prune_plan` has no effect: what is behind the robot is always left out. Upstream backs out
+    (`escape_vel`) even into what it touches; here only where that is free.
     """
 
-    acc_lim_x: float = 2.5
-    acc_lim_y: float = 2.5
-    acc_lim_theta: float = 3.2
-    max_vel_x: float = 0.55
-    min_vel_x: float = 0.0
-    max_vel_theta: float = 1.0
-    min_vel_theta: float = -1.0
-    min_in_place_vel_theta: float = 0.4
-    escape_vel: float = -0.1
-    holonomic_robot: bool = True
-    y_vels: tuple[float, ...] = (-0.3, -0.1, 0.1, 0.3)
-    xy_goal_tolerance: float = 0.10
-    yaw_goal_tolerance: float = 0.05
-    latch_xy_goal_tolerance: bool = False
-    prune_plan: bool = True
-    sim_time: float = 1.7
-    sim_granularity: float = 0.025
-    angular_sim_granularity: float = 0.025
-    vx_samples: int = 20
-    vtheta_samples: int = 20
-    meter_scoring: bool = False
-    pdist_scale: float = 0.6
-    gdist_scale: float = 0.8
-    occdist_scale: float = 0.01
-    heading_lookahead: float = 0.325
-    heading_scoring: bool = False
-    heading_scoring_timestep: float = 0.1
-    dwa: bool = False
-    oscillation_reset_dist: float = 0.05
-    escape_reset_dist: float = 0.10
-    escape_reset_theta: float = np.pi / 2
-    trans_stopped_velocity: float = 0.01
-    rot_stopped_velocity: float = 0.01
-    controller_frequency: float = 20.0  # move_base's: one command a period
+    acc_lim_x: float
+    acc_lim_y: float
+    acc_lim_theta: float
+    max_vel_x: float
+    min_vel_x: float
+    max_vel_theta: float
+    min_vel_theta: float
+    min_in_place_vel_theta: float
+    escape_vel: float
+    holonomic_robot: bool
+    y_vels: tuple[float, ...]
+    xy_goal_tolerance: float
+    yaw_goal_tolerance: float
+    latch_xy_goal_tolerance: bool
+    prune_plan: bool
+    sim_time: float
+    sim_granularity: float
+    angular_sim_granularity: float
+    vx_samples: int
+    vtheta_samples: int
+    meter_scoring: bool
+    pdist_scale: float
+    gdist_scale: float
+    occdist_scale: float
+    heading_lookahead: float
+    heading_scoring: bool
+    heading_scoring_timestep: float
+    dwa: bool
+    oscillation_reset_dist: float
+    escape_reset_dist: float
+    escape_reset_theta: float
+    trans_stopped_velocity: float
+    rot_stopped_velocity: float
+    controller_frequency: float  # move_base's: one command a period
 
 
 class TrajectoryRollout(LocalPlanner):
     """Trajectory rollout; with `dwa` its samples are those of the next period."""
 
-    def __init__(self, settings: TrajectoryRolloutSettings = TrajectoryRolloutSettings()) -> None:
+    def __init__(self, settings: TrajectoryRolloutSettings) -> None:
         s = self.settings = settings
         super().__init__(Arrival(
             s.xy_goal_tolerance, s.yaw_goal_tolerance, s.latch_xy_goal_tolerance,
