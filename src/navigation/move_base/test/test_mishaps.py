@@ -17,8 +17,8 @@ from move_base import goals, services
 from move_base.base import Base
 from move_base.node import MoveBase
 from move_base.planning import Planning
-from move_base.services import Services
 from move_base.plugin import settings_from, table
+from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
 from move_base.watch import Watch
 from nav_algorithms.costmap.costs import LETHAL, Costmap

@@ -20,12 +20,11 @@ from costmap_2d import CostmapROS
 from costmap_2d.settings import SEARCHED_UPWARDS
 from move_base.base import Base
 from move_base.goals import INVALID, fault_of, in_frame
-from move_base.local_planners import LocalPlanner
 from move_base.navigator import Navigator, Outcome
 from move_base.own_planners import global_planner, local_planner
 from move_base.planning import CannotPlanYet, Planning
 from move_base.plugin import settings_from, table
-from move_base.recoveries import Recovery, load
+from move_base.recoveries import load
 from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
 from move_base.status import keep_telling
@@ -84,22 +83,17 @@ class MoveBase:
                          queue_size=1)
         self._server.start()
         keep_telling(self._server)
-        warn_of_ignored(self._tables(driver, recoveries), SEARCHED_UPWARDS)
+        tables = {each.NAME: each.entries for each in (self._global_planner, driver)
+                  if each.TABLE}  # others' planners read what they like
+        tables |= {each.name: each.entries for each in recoveries} | {"": table("move_base")}
+        for each in self._costmaps:
+            tables |= below(each.name, each.tables)
+        warn_of_ignored(tables, SEARCHED_UPWARDS)
 
     def _planner_kinds(self, values: dict) -> tuple[type, type]:
         return tuple(find(values[name], rospy.resolve_name(f"~{name}"))
                      for name, find in (("base_global_planner", global_planner),
                                         ("base_local_planner", local_planner)))
-
-    def _tables(self, driver: LocalPlanner, recoveries: list[Recovery]) -> dict[str, list]:
-        """All that is read, by the namespace below the node's; TrajectoryPlannerROS has two."""
-        tables = {"": table("move_base")}
-        for part in ({self._global_planner.NAME: self._global_planner.entries},
-                     {driver.NAME: driver.entries}, *(each.tables() for each in recoveries),
-                     *(below(each.name, each.tables) for each in self._costmaps)):
-            for space, entries in part.items():
-                tables[space] = [*tables.get(space, []), *entries]
-        return tables
 
     def _period(self) -> float:
         return 1.0 / self._values["controller_frequency"]

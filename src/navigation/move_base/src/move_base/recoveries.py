@@ -41,11 +41,12 @@ class Recovery:
     def __init__(self, name: str) -> None:
         """Raises ParameterError for a value that makes no sense."""
         self.name = name
-        self.values: dict[str, Any] = read_parameters(table(self.TABLE), f"~{name}/")
+        self.values: dict[str, Any] = read_parameters(self.entries, f"~{name}/")
 
-    def tables(self) -> dict[str, list[Parameter]]:
-        """What it reads, by the namespace below the node's."""
-        return {self.name: table(self.TABLE)}
+    @property
+    def entries(self) -> list[Parameter]:
+        """What it reads below its own name."""
+        return table(self.TABLE)
 
     def start(self, rig: Rig) -> None:
         """Begins; the robot stands."""
@@ -83,13 +84,14 @@ class Rotate(Recovery):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self.values.update(read_parameters(self.tables()[LIMITS], f"~{LIMITS}/"))
+        others = [entry for entry in table(self.TABLE) if entry not in self.entries]
+        self.values.update(read_parameters(others, f"~{LIMITS}/"))
         self._settings = settings_from(recovery.RotateSettings, self.values)
 
-    def tables(self) -> dict[str, list[Parameter]]:
-        entries = table(self.TABLE)
-        own = [entry for entry in entries if entry.name in ("sim_granularity", "frequency")]
-        return {self.name: own, LIMITS: [entry for entry in entries if entry not in own]}
+    @property
+    def entries(self) -> list[Parameter]:
+        return [entry for entry in super().entries
+                if entry.name in ("sim_granularity", "frequency")]
 
     def start(self, rig: Rig) -> None:
         super().start(rig)
