@@ -1,6 +1,7 @@
 """Local planners, one command at a time."""
 
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -420,3 +421,13 @@ def test_what_oscillation_forbids_is_allowed_where_nothing_else_is_free():
     commands = [chosen.command(window_around(), WAFFLE, ORIGIN, STILL) for _ in range(2)]
     assert commands[0] is None
     assert commands[1].vx > 0.0
+
+
+@pytest.mark.parametrize("simple", [False, True])
+def test_a_simple_attractor_takes_no_notice_of_the_path(simple):
+    corners = np.array([[0.0, 0.0], [0.0, 0.8], [0.8, 0.8], [0.8, 0.0]])
+    path = np.concatenate([np.linspace(a, b, 30) for a, b in pairwise(corners)])
+    path = np.column_stack((path, np.zeros(len(path))))
+    command = commanded(rollout(simple_attractor=simple), path)
+    assert command.vx > 0.0 if simple else command.omega > 0.3
+    assert not simple or abs(command.omega) < 0.2

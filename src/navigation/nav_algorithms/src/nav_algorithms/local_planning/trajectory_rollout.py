@@ -61,6 +61,7 @@ class TrajectoryRolloutSettings:
     pdist_scale: float
     gdist_scale: float
     occdist_scale: float
+    simple_attractor: bool
     heading_lookahead: float
     heading_scoring: bool
     heading_scoring_timestep: float
@@ -160,8 +161,11 @@ class _Scorer:
                  ) -> None:
         self.settings, self.costmap, self.footprint = settings, costmap, footprint
         self.pose, self.velocity, self.near = pose, velocity, near
-        path = distances_to(costmap, near[:, :2], near[:, :2])
-        goal = distances_to(costmap, near[-1:, :2], near[:, :2])
+        if settings.simple_attractor:
+            path, goal = np.zeros(costmap.cells.shape), _square_distances(costmap, near[-1, :2])
+        else:
+            path = distances_to(costmap, near[:, :2], near[:, :2])
+            goal = distances_to(costmap, near[-1:, :2], near[:, :2])
         self.grids = np.stack((path, goal, goal))
         self.radii = footprints.free_radii(costmap)
         unit = costmap.resolution if settings.meter_scoring else 1.0
@@ -230,3 +234,10 @@ class _Scorer:
     def command(self, candidate: np.ndarray) -> Command:
         """The candidate with where it leads."""
         return Command(*map(float, candidate), self._driven(candidate))
+
+
+def _square_distances(costmap: Costmap, place: np.ndarray) -> np.ndarray:
+    """Of each cell's middle from a place (2,), as the crow flies, m^2: upstream's attractor."""
+    rows, columns = np.indices(costmap.cells.shape)
+    middles = (np.stack((columns, rows), axis=-1) + 0.5) * costmap.resolution + costmap.origin
+    return ((middles - place)**2).sum(axis=-1)
