@@ -46,3 +46,9 @@ def test_a_whole_number_may_be_written_with_a_point():
 def test_what_is_no_such_number_is_refused(value):
     with pytest.raises(ParameterError, match="pdist_scale is"):
         SCALE.checked(value, "pdist_scale")
+
+
+def test_a_list_is_text_where_text_is_wanted():
+    """As in `footprint: [[0.1, 0.1], ...]` or `y_vels: [-0.3, 0.3]`."""
+    outline = Parameter("footprint", "str", "[]")
+    assert outline.checked([[0.1, 0.1], [-0.1, 0.1]], "x") == "[[0.1, 0.1], [-0.1, 0.1]]"
