@@ -97,7 +97,7 @@ class CostmapROS:
     def robot_pose(self) -> np.ndarray | None:
         """(x, y, yaw) in the global frame; None if tf has none, or none within the tolerance."""
         return self.transforms.newest_pose(self.global_frame, self.base_frame,
-                                            self.transform_tolerance)
+                                           self.transform_tolerance)
 
     def is_ready(self) -> bool:
         """The map (if one is asked for) and the robot's pose have come, and an update was made."""
