@@ -22,8 +22,8 @@ build_workspace() {
   mkdir -p "$root/devel/lib/python3/dist-packages"  # else catkin leaves it out of the PYTHONPATH it remembers
   # The venv's python, since catkin writes it into the wrappers of installed scripts; Debian 13's reads the second name.
   cd "$root"
-  # By our catkin_make, which leaves out a learner's package that asks for what nobody has.
-  PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
+  # By our catkin_make, which leaves out a learner's package that asks for what nobody has; messages for C++ and Python alone.
+  ROS_LANG_DISABLE=genlisp PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
     python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" ||
     fail_with_cause "catkin_make failed"
   grep -a ' is left out: ' "$state/build.log" || true
