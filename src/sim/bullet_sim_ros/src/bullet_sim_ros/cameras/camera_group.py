@@ -8,7 +8,7 @@ from std_msgs.msg import Empty
 
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 log = logging.getLogger("bullet_sim.plugins")

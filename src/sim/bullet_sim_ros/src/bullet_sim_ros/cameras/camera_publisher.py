@@ -11,7 +11,7 @@ from bullet_sim.sensors.camera import Camera, CameraReading, CaptureState
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.cameras.compressed import CompressedTopic
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 TRIALS = 3
 LONGEST_TRIAL = 0.2  # s, wall: a slow renderer is tried once

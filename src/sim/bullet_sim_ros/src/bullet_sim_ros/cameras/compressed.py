@@ -7,7 +7,7 @@ from sensor_msgs.msg import CompressedImage
 
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import encode
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 FORMATS = ("jpeg", "png")

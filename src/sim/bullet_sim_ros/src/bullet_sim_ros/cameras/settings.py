@@ -8,7 +8,7 @@ from sensor_msgs.msg import CameraInfo
 from bullet_sim.description import CameraDescription
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -12,7 +12,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 
 class ControllerContext:

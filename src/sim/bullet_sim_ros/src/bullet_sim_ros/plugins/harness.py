@@ -10,9 +10,8 @@ from std_msgs.msg import Bool, Float32
 from bullet_sim.mechanisms.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugin_host.plugin_tags import read_numbers
-from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

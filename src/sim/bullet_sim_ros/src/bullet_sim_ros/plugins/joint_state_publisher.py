@@ -8,9 +8,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint, PassiveJoint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -12,9 +12,7 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.imu import ImuSensor
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.commands import subscribe_commands
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
 from bullet_sim_ros.plugins.kobuki_core import CoreTopic
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 from bullet_sim_ros.plugins.kobuki_output import KobukiOutput

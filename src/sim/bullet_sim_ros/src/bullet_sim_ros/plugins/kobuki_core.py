@@ -7,7 +7,7 @@ from kobuki_msgs.msg import SensorState
 
 from bullet_sim.drives.kobuki import Kobuki
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
 
 TICKS = 2578.33 / math.tau  # of a wheel's encoder, a rad: 52 a turn of the motor, geared

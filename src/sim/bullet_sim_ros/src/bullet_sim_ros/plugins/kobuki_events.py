@@ -11,7 +11,7 @@ from bullet_sim.mechanisms.kobuki_bumpers import SECTORS, pressed_bumpers
 from bullet_sim.mechanisms.wheel_drop import WheelDrop
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading for a distance in m
 

@@ -6,7 +6,7 @@ from bullet_sim.drives.kobuki import Kobuki
 from bullet_sim.sensors.imu import ImuReading
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 
 POSE_COVARIANCE = convert.diagonal((0.1, 0.1, 1e6, 1e6, 1e6, 0.05))  # m^2 and rad^2

@@ -9,9 +9,8 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters, read_numbers
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
