@@ -43,7 +43,7 @@ def test_a_robot_that_works(check):
 
 @pytest.mark.parametrize("where, matters", [
     ('<gazebo><plugin name="p" filename="libmy_own.so"/></gazebo>',
-     "what it moves or publishes is missing"),
+     "what it moves will stand still, its topics will be missing"),
     ('<gazebo reference="base"><sensor name="s" type="ray"><plugin name="p" '
      'filename="libmy_own.so"/></sensor></gazebo>', "its topics will be missing"),
 ])

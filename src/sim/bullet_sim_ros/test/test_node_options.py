@@ -95,7 +95,8 @@ def test_a_verbose_simulator_also_says_what_it_loads(monkeypatch, verbose, told)
     core, said = logging.getLogger("bullet_sim"), []
     monkeypatch.setattr(core, "handlers", [])
     monkeypatch.setattr(core, "propagate", True)
-    monkeypatch.setitem(log_bridge._SENDERS, logging.INFO, lambda _form, text: said.append(text))
+    monkeypatch.setattr(logging.getLogger("rosout"), "log", lambda _level, _form, text:
+                        said.append(text))
     before = core.level
     try:
         log_bridge.forward_core_log(verbose)

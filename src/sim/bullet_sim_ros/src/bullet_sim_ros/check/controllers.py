@@ -28,6 +28,5 @@ def controller_findings(parameters: Mapping[str, object], spawned: Collection[st
             row = known.get(kind)
             yield Finding(where, part, row.status if row else WORKS, row.how if row else "")
         elif PACKAGE.match(kind) or namespace.rpartition("/")[2] in spawned:
-            close = registry.nearest(kind)
-            hint = f"; did you mean {close}?" if close else ""
-            yield Finding(where, part, ABSENT, f"there is no such type of controller here{hint}")
+            yield Finding(where, part, ABSENT,
+                          f"there is no such type of controller here{registry.hint(kind)}")
