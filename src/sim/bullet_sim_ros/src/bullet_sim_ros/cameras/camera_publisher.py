@@ -34,7 +34,7 @@ class CameraPublisher:
         self.settings = settings = CameraSettings(context, self.camera.description, suffix,
                                                   baseline)
         self._profiler = context.world.profiler
-        self._info = settings.info()
+        self._info = settings.info
         self._images = context.advertise(settings.image_topic, Image, queue_size=2, latch=True)
         self._compressed = CompressedTopic(context, settings.image_topic, latch=True)
         self._infos = context.advertise(settings.info_topic, CameraInfo, queue_size=2)

@@ -34,7 +34,8 @@ class HarnessPlugin:
         self._harness = Harness(context.world, link, self._axis(winch))
         topics = names.join(f"/{context.model.name}", "harness")
         context.subscribe(names.join(topics, "velocity"), Float32, self._take_speed, queue_size=1)
-        context.subscribe(names.join(topics, "detach"), Bool, self._take_detach, queue_size=1)
+        context.subscribe(names.join(topics, "detach"), Bool,
+                          lambda msg: self._harness.detach if msg.data else None, queue_size=1)
         context.each_step(self._harness.update)
         context.on_close(self._harness.detach)
 
@@ -61,6 +62,3 @@ class HarnessPlugin:
             log.warning("%s: a speed that is not finite is ignored", self._context.describe())
             return None
         return lambda: self._harness.command(msg.data)
-
-    def _take_detach(self, msg: Bool) -> Callable[[], None] | None:
-        return self._harness.detach if msg.data else None

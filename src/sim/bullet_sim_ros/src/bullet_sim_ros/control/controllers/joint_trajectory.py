@@ -1,7 +1,6 @@
 """joint_trajectory_controller: joints that follow a trajectory, by topic or by action."""
 
 import logging
-from collections.abc import Callable
 
 import rospy
 from actionlib import ServerGoalHandle
@@ -92,7 +91,8 @@ class JointTrajectoryController(Controller):
         context.serve("query_state", QueryTrajectoryState, self._query_state)
         context.action("follow_joint_trajectory", FollowJointTrajectoryAction, self._take_goal,
                        self._take_cancel)
-        context.subscribe("command", JointTrajectory, self._take_command, queue_size=1)
+        context.subscribe("command", JointTrajectory, lambda msg: lambda: self._follow(msg),
+                          queue_size=1)
 
     # --- in the loop
 
@@ -162,13 +162,10 @@ class JointTrajectoryController(Controller):
 
     # --- in ROS threads
 
-    def _take_command(self, msg: JointTrajectory) -> Callable[[], None]:
-        return lambda: self._follow(msg)
-
     def _query_state(self, request: QueryTrajectoryStateRequest) -> QueryTrajectoryStateResponse:
         if not self._running:
             raise rospy.ServiceException(f"{self.context.describe()} is not running")
-        states = self.context.in_loop(lambda: self._follower.sample(request.time.to_sec()))
+        states = self.context.mailbox.call(lambda: self._follower.sample(request.time.to_sec()))
         return QueryTrajectoryStateResponse(
             self._follower.names, [state.position for state in states],
             [state.velocity for state in states], [state.acceleration for state in states])
