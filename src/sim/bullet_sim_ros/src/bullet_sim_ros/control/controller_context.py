@@ -35,7 +35,6 @@ class ControllerContext:
         self.manager_namespace = manager_namespace  # absolute, /racecar
         self.namespace = names.join(manager_namespace, name)  # absolute, /racecar/<controller>
         self.parameters = ControllerParameters(self.namespace)
-        self.parameter = self.parameters.value
         self.joints: dict[str, JointHandle] = hardware.joints
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed

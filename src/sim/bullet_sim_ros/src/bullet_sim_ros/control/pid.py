@@ -12,17 +12,16 @@ from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.reconfigure_server import Owner, Value, offer_values
 
-RANGES = {"p": (-1e5, 1e5), "i": (-1e5, 1e5), "d": (-1e3, 1e3),
-          "i_clamp_max": (0.0, 1e5), "i_clamp_min": (-1e5, 0.0), "antiwindup": (False, True)}
-TELLS = {"p": "Proportional gain", "i": "Integral gain", "d": "Derivative gain",
-         "i_clamp_max": "Greatest integral term", "i_clamp_min": "Least integral term",
-         "antiwindup": "Clamp the integral of the error, not only its term"}
+RANGES = {"p": (-1e5, 1e5, "Proportional gain"), "i": (-1e5, 1e5, "Integral gain"),
+          "d": (-1e3, 1e3, "Derivative gain"), "i_clamp_max": (0.0, 1e5, "Greatest integral term"),
+          "i_clamp_min": (-1e5, 0.0, "Least integral term"),
+          "antiwindup": (False, True, "Clamp the integral of the error, not only its term")}
 
 
 def offer_gains(owner: Owner, namespace: str, gains: PidGains,
                 change: Callable[[PidGains], None]) -> None:
     """`change(gains)` is called in a ROS thread, at once and whenever somebody changes them."""
-    values = {name: Value(now, *RANGES[name], TELLS[name]) for name, now in asdict(gains).items()}
+    values = {name: Value(now, *RANGES[name]) for name, now in asdict(gains).items()}
     offer_values(owner, namespace, values, lambda new: change(PidGains(**new)))
 
 

@@ -31,9 +31,12 @@ CONSEQUENCES = {
     "libImuSensorPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
 }
 # What is missing without one that is named by none of these, by where it is.
-MATTERS = {"sensor": "its topics will be missing", "visual": "what it shows will be missing",
-           "model": "what it moves will stand still, its topics will be missing",
-           "world": "what it does to the world will be missing, models are not touched"}
+MATTERS = {
+    "sensor": "sensor: its topics will be missing",
+    "visual": "looks: what it shows will be missing",
+    "model": "actuator or model plugin: what it moves will stand still, its topics will be missing",
+    "world": "world plugin: what it does to the world will be missing, models are not touched",
+}
 
 
 def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str]) -> None:
@@ -51,4 +54,4 @@ def consequence(context: PluginContext, filename: str) -> str:
     for beginning, text in CONSEQUENCES.items():
         if filename.startswith(beginning):
             return text
-    return f"{context.kind} plugin: {MATTERS[context.kind]}"
+    return MATTERS[context.kind]

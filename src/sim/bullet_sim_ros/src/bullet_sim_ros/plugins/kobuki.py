@@ -1,7 +1,7 @@
 """libgazebo_ros_kobuki.so: TurtleBot2's base with wheels, gyroscope, bumpers and cliff sensors."""
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 
 from geometry_msgs.msg import Twist
 from kobuki_msgs.msg import MotorPower, SensorState
@@ -17,7 +17,7 @@ from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
-from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
+from bullet_sim_ros.plugins.kobuki_events import BaseTopic, BumperTopic, CliffTopic, WheelDropTopic
 
 RATE = 50.0  # Hz: what the real base does; gazebo_ros_kobuki.cpp, OnUpdate, is at each step
 SIDES = ("left", "center", "right")
@@ -58,9 +58,11 @@ class KobukiPlugin:
     def _subscribe(self, base: str) -> None:
         commands = names.join(base, "commands")
         subscribe_commands(self._context, commands, "velocity", self._command, queue_size=10)
-        for name, kind, take in (("motor_power", MotorPower, self._take_power),
-                                 ("reset_odometry", Empty, self._take_reset)):
-            self._context.subscribe(names.join(commands, name), kind, take, queue_size=10)
+        self._context.subscribe(
+            names.join(commands, "motor_power"), MotorPower, queue_size=10,
+            take=lambda msg: lambda: self._kobuki.switch(msg.state == MotorPower.ON))
+        self._context.subscribe(names.join(commands, "reset_odometry"), Empty, queue_size=10,
+                                take=lambda _msg: self._kobuki.reset_odometry)
 
     def _number(self, tag: str) -> float:
         self._context.parameters.required(tag)
@@ -82,12 +84,6 @@ class KobukiPlugin:
 
     def _command(self, msg: Twist) -> None:
         self._kobuki.command(msg.linear.x, msg.angular.z)
-
-    def _take_power(self, msg: MotorPower) -> Callable[[], None]:
-        return lambda: self._kobuki.switch(msg.state == MotorPower.ON)
-
-    def _take_reset(self, _msg: Empty) -> Callable[[], None]:
-        return self._kobuki.reset_odometry
 
 
 POSE_COVARIANCE = convert.diagonal((0.1, 0.1, 1e6, 1e6, 1e6, 0.05))  # m^2 and rad^2
@@ -136,19 +132,15 @@ WHEEL_BITS = {"right": SensorState.WHEEL_DROP_RIGHT, "left": SensorState.WHEEL_D
 WORD = 0xFFFF
 
 
-class CoreTopic:
+class CoreTopic(BaseTopic):
     """`sensors/core`. Currents, duty cycles, buttons and inputs are not simulated: they are 0."""
 
     def __init__(self, context: PluginContext, base: str, kobuki: Kobuki, bumper: BumperTopic,
                  cliffs: Sequence[CliffTopic], drop: WheelDropTopic):
-        self._context, self._kobuki = context, kobuki
+        super().__init__(context, base, "sensors/core", SensorState)
+        self._kobuki = kobuki
         self._bumper, self._drop = bumper, drop
         self._cliffs = {cliff.side: cliff for cliff in cliffs}
-        self._topic = context.advertise(names.join(base, "sensors/core"), SensorState, queue_size=1)
-
-    def wanted(self) -> int:
-        """Whether anybody listens: contacts and rays cost time."""
-        return self._topic.get_num_connections()
 
     def publish(self) -> None:
         """After a step."""

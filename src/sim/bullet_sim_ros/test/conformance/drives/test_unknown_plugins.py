@@ -16,17 +16,17 @@ def warnings(caplog) -> list[str]:
 @pytest.mark.parametrize("text, said", [
     ('<link name="l"><sensor name="eye" type="camera"><plugin name="p" filename="libx.so"/>'
      "</sensor></link>",
-     "model box: sensor eye: plugin p (libx.so) is not known here and left out; sensor plugin: its "
-     "topics will be missing"),
+     "model box: sensor eye: plugin p (libx.so) is not known here and left out; sensor: its topics "
+     "will be missing"),
     ('<link name="l"/><plugin name="p" filename="libx.so"/>',
-     "model box: plugin p (libx.so) is not known here and left out; model plugin: what it "
-     "moves will stand still, its topics will be missing"),
+     "model box: plugin p (libx.so) is not known here and left out; actuator or model plugin: what "
+     "it moves will stand still, its topics will be missing"),
     ('<link name="l"/><plugin name="p" filename="libLiftDragPlugin.so"/>',
      "model box: plugin p (libLiftDragPlugin.so) is not known here and left out; physics: no lift "
      "and no drag; what flies or sails by them will not"),
     ('<link name="l"><visual name="v"><geometry><sphere><radius>1</radius></sphere></geometry>'
      '<plugin name="p" filename="libx.so"/></visual></link>',
-     "visual plugin: what it shows will be missing"),
+     "looks: what it shows will be missing"),
 ])
 def test_a_warning_says_what_will_be_missing(bench, caplog, text, said):
     # conforms: unknown plugins
