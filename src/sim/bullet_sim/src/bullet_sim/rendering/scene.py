@@ -116,7 +116,7 @@ class Scene(SceneState):
     def change_light(self, light: LightDescription) -> None:
         """Give the light of that name other properties; UnknownName without one."""
         self.remove_light(light.name)
-        self.add_light(light)
+        self.lights[light.name] = light
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
         """Visuals whose mesh cannot be read are left out, with one warning each.
