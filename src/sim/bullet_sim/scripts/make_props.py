@@ -6,7 +6,7 @@
 A table is a model. Its keys (SI units):
   name        the model's own name where it is not that of the folder
   like, paint another model's table, but for its name, with the look of its first part changed
-  static, mass (1), link ("link"), pose and link_pose [x, y, z], as in SDF
+  static, mass (1), link ("link"), pose and link_pose [x, y, z(, roll, pitch, yaw)], as in SDF
   size        [x, y, z], m, of the box round all that is solid (round all, where nothing is)
   ordinary    the size is an ordinary one of its kind; without it, that of the model of this name
               in Gazebo's database (gazebo_models)
@@ -23,7 +23,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
-HEAD = '<?xml version="1.0"?>\n<!-- Written by make_props.py from data/props. -->\n'
+SOURCE = "make_props.py from data/props"
 SHAPES = ("box", "cylinder", "sphere")
 FACES = ((0.4, 0.0, 0.0), (0.0, 0.4, 90.0), (-0.4, 0.0, 180.0), (0.0, -0.4, 270.0))
 # The seven bars of a digit: across, up (of half the digit's width and height) and whether it lies.
@@ -74,22 +74,31 @@ def _bar(bar: str, face: tuple[float, float, float]) -> dict:
 def model_text(folder: str, table: dict) -> str:
     """The model.sdf of a table."""
     sdf = Element("sdf", version="1.6")
-    model = SubElement(sdf, "model", name=table.get("name", folder))
+    add_model(sdf, table.get("name", folder), table)
+    return document(sdf, SOURCE)
+
+
+def add_model(parent: Element, name: str, table: dict) -> None:
+    """The `<model>` of a table whose parts are plain shapes."""
+    model = SubElement(parent, "model", name=name)
     if table.get("static"):
         _text(model, "static", "true")
-    if "pose" in table:
-        _text(model, "pose", _numbers([*table["pose"], 0, 0, 0]))
+    _add_pose(model, table.get("pose"))
     link = SubElement(model, "link", name=table.get("link", "link"))
-    if "link_pose" in table:
-        _text(link, "pose", _numbers([*table["link_pose"], 0, 0, 0]))
+    _add_pose(link, table.get("link_pose"))
     if not table.get("static"):
         _add_inertial(link, table)
     for number, part in enumerate(table["parts"], 1):
         for kind, wanted in (("collision", "solid"), ("visual", "seen")):
             if part.get(wanted, True):
                 _add_shape(link, kind, f"{kind}_{number}", part)
-    indent(sdf, " ")
-    return HEAD + tostring(sdf, encoding="unicode") + "\n"
+
+
+def document(root: Element, source: str) -> str:
+    """The text of a file; `source`: what wrote it."""
+    indent(root, " ")
+    text = tostring(root, encoding="unicode")
+    return f'<?xml version="1.0"?>\n<!-- Written by {source}. -->\n{text}\n'
 
 
 def config_text(folder: str, table: dict) -> str:
@@ -98,15 +107,13 @@ def config_text(folder: str, table: dict) -> str:
     _text(model, "name", table.get("name", folder))
     _text(model, "version", "1.0")
     _text(model, "sdf", "model.sdf").set("version", "1.6")
-    indent(model, " ")
-    return HEAD + tostring(model, encoding="unicode") + "\n"
+    return document(model, SOURCE)
 
 
 def _add_shape(link: Element, kind: str, name: str, part: dict) -> None:
     element = SubElement(link, kind, name=name)
-    at = part.get("at", [0, 0, 0])
-    if any(at):
-        _text(element, "pose", _numbers(at if len(at) == 6 else [*at, 0, 0, 0]))
+    at = part.get("at", [])
+    _add_pose(element, at if any(at) else None)
     geometry = SubElement(element, "geometry")
     match _shape(part):
         case "box", size:
@@ -147,8 +154,7 @@ def _add_inertial(link: Element, table: dict) -> None:
         for i in range(3):
             moments[i] += m * (sum(squares) - squares[i])
     inertial = SubElement(link, "inertial")
-    if any(abs(value) > 1e-9 for value in centre):
-        _text(inertial, "pose", _numbers([*centre, 0, 0, 0]))
+    _add_pose(inertial, centre if any(abs(value) > 1e-9 for value in centre) else None)
     _text(inertial, "mass", _numbers([mass]))
     inertia = SubElement(inertial, "inertia")
     for tag, value in zip(("ixx", "iyy", "izz"), moments, strict=True):
@@ -183,6 +189,11 @@ def _sides(part: dict) -> list[float]:
         case "sphere", radius:
             return [math.sqrt(12 / 5) * radius] * 3
     raise ValueError(part)
+
+
+def _add_pose(parent: Element, pose: list[float] | None) -> None:
+    if pose is not None:
+        _text(parent, "pose", _numbers([*pose, 0, 0, 0][:6]))
 
 
 def _text(parent: Element, tag: str, text: str) -> Element:

@@ -9,72 +9,22 @@ The heap is the same every time: its generator has a fixed seed.
 
 import math
 import random
-from pathlib import Path
+from collections.abc import Iterable
+from xml.etree.ElementTree import Element, SubElement
 
 import cv2
 import numpy as np
+from make_props import DATA, add_model, document
 
-DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
 WORLDS = DATA / "worlds"
 TERRAIN = "media/materials/textures/heightmap_bowl.png"  # where Gazebo has the one of its own
 SEED = 1
 PIECES = 60
 DENSITY = 2000.0  # kg/m^3, of concrete
 HALF_WIDTH = 2.0  # m, of the heap
-HEAD = """<?xml version="1.0"?>
-<!-- Written by make_worlds.py. -->
-<sdf version="1.6">
-  <world name="default">
-    <include>
-      <uri>model://sun</uri>
-    </include>
-    <include>
-      <uri>model://ground_plane</uri>
-    </include>
-"""
-TAIL = "  </world>\n</sdf>\n"
-MODEL = """    <model name="{name}">
-      <pose>{pose}</pose>
-      <link name="link">
-        <inertial>
-          <mass>{mass:.4g}</mass>
-          <inertia><ixx>{xx:.4g}</ixx><iyy>{yy:.4g}</iyy><izz>{zz:.4g}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia>
-        </inertial>
-        <collision name="collision">
-          <geometry>{shape}</geometry>
-        </collision>
-        <visual name="visual">
-          <geometry>{shape}</geometry>
-          <material><script><uri>file://media/materials/scripts/gazebo.material</uri><name>Gazebo/{look}</name></script></material>
-        </visual>
-      </link>
-    </model>
-"""
 SIDE = 129  # px of the terrain image, and m of the ground: one pixel is a metre
 TALLEST = 10.0  # m, of white
 FLAT = 10.0  # m round the origin that are level
-
-
-def box(name: str, pose: list[float], size: list[float], mass: float, look: str) -> str:
-    """A box model; `size` in m, `pose` x, y, z, roll, pitch, yaw in m and rad."""
-    x, y, z = size
-    return _model(name, pose, f"<box><size>{_numbers(size)}</size></box>", mass, look,
-                  [mass * (y * y + z * z) / 12, mass * (x * x + z * z) / 12,
-                   mass * (x * x + y * y) / 12])
-
-
-def cylinder(name: str, pose: list[float], radius: float, length: float, mass: float,
-             look: str) -> str:
-    """A cylinder model, its axis along its own z."""
-    shape = f"<cylinder><radius>{radius:g}</radius><length>{length:g}</length></cylinder>"
-    across = mass * (3 * radius ** 2 + length ** 2) / 12
-    return _model(name, pose, shape, mass, look, [across, across, mass * radius ** 2 / 2])
-
-
-def sphere(name: str, pose: list[float], radius: float, mass: float, look: str) -> str:
-    """A ball model."""
-    return _model(name, pose, f"<sphere><radius>{radius:g}</radius></sphere>", mass, look,
-                  [0.4 * mass * radius ** 2] * 3)
 
 
 def rubble() -> str:
@@ -91,25 +41,42 @@ def rubble() -> str:
             size = [round(rng.uniform(*limits), 2) for limits in ((0.3, 0.9), (0.2, 0.6),
                                                                   (0.1, 0.3))]
             mass = DENSITY * math.prod(size)
-            models.append(box(f"box_{number}", pose, size, mass, "Grey"))
+            models.append((f"box_{number}", _body(pose, mass, "Grey", box=size)))
         else:
             radius, length = round(rng.uniform(0.05, 0.15), 2), round(rng.uniform(0.3, 0.8), 2)
             mass = DENSITY * math.pi * radius ** 2 * length
-            models.append(cylinder(f"cylinder_{number}", pose, radius, length, mass, "Bricks"))
-    return HEAD + "".join(models) + TAIL
+            models.append((f"cylinder_{number}",
+                           _body(pose, mass, "Bricks", cylinder=[radius, length])))
+    return _world(models)
 
 
 def stacks() -> str:
     """Towers of five boxes, spheres and thin cylinders of 1 m and 1 kg."""
     models = []
-    for number in range(5):
-        z = number + 0.5
-        models += [
-            box(f"box_{number + 1}", [0, 0, z, 0, 0, 0], [1, 1, 1], 1, "WoodPallet"),
-            sphere(f"sphere_{number + 1}", [0, 1.5, z, 0, 0, 0], 0.5, 1, "WoodPallet"),
-            sphere(f"sphere_{number + 1}a", [1.5, 1.5, z, 0, 0, 0], 0.5, 1, "WoodPallet"),
-            cylinder(f"cylinder_{number + 1}", [0, -1.5, z, 0, 0, 0], 0.1, 1, 1, "WoodPallet")]
-    return HEAD + "".join(models) + TAIL
+    for number in range(1, 6):
+        for name, x, y, shape in (
+                (f"box_{number}", 0, 0, {"box": [1, 1, 1]}),
+                (f"sphere_{number}", 0, 1.5, {"sphere": 0.5}),
+                (f"sphere_{number}a", 1.5, 1.5, {"sphere": 0.5}),
+                (f"cylinder_{number}", 0, -1.5, {"cylinder": [0.1, 1]})):
+            models.append((name, _body([x, y, number - 0.5], 1, "WoodPallet", **shape)))
+    return _world(models)
+
+
+def _body(pose: list[float], mass: float, look: str, **shape: float | list[float]) -> dict:
+    """A table as of make_props.py."""
+    return {"pose": pose, "mass": mass, "parts": [{**shape, "look": f"Gazebo/{look}"}]}
+
+
+def _world(models: Iterable[tuple[str, dict]]) -> str:
+    """Models by name, under the sun and on the ground."""
+    sdf = Element("sdf", version="1.6")
+    world = SubElement(sdf, "world", name="default")
+    for name in ("sun", "ground_plane"):
+        SubElement(SubElement(world, "include"), "uri").text = f"model://{name}"
+    for name, table in models:
+        add_model(world, name, table)
+    return document(sdf, "make_worlds.py")
 
 
 def terrain() -> np.ndarray:
@@ -123,17 +90,6 @@ def _height(x: float, y: float) -> float:
     out = min(1.0, max(0.0, (math.hypot(x, y) - FLAT) / (SIDE / 2)))
     waves = math.sin(x / 7) * math.cos(y / 9)
     return (7.5 + waves) * out * out * (3 - 2 * out)
-
-
-def _model(name: str, pose: list[float], shape: str, mass: float, look: str,
-           moments: list[float]) -> str:
-    xx, yy, zz = moments
-    return MODEL.format(name=name, pose=_numbers(pose), shape=shape, mass=mass, look=look,
-                        xx=xx, yy=yy, zz=zz)
-
-
-def _numbers(values: list[float]) -> str:
-    return " ".join(f"{value:.4g}" for value in values)
 
 
 def files() -> dict[str, str]:

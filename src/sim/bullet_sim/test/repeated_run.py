@@ -67,7 +67,7 @@ def fill(world: World) -> None:
     world.spawn(ModelDescription("ground", static=True, links=(
         LinkDescription("link", visuals=(Visual("floor", floor),),
                         collisions=(Collision("floor", floor),)),)))
-    world.add_light(LightDescription("sun", "directional", direction=(0.3, 0.2, -1.0)))
+    world.scene.add_light(LightDescription("sun", "directional", direction=(0.3, 0.2, -1.0)))
     for number in range(4):
         shape = Sphere(0.05) if number % 2 else Box((0.1, 0.1, 0.1))
         world.spawn(ModelDescription(f"thing_{number}", links=(link("link", shape, 0.1),)),

@@ -45,7 +45,7 @@ def engine_bodies(world: World) -> int:
 
 def assert_empty(world: World) -> None:
     """Nothing is left of what was to be there."""
-    assert not world.models and not world._client.auto_disable.bodies and not world.lights
+    assert not world.models and not world._client.auto_disable.bodies and not world.scene.lights
     assert not world._client.planes._places
     assert engine_bodies(world) == 0
     world.step(100)

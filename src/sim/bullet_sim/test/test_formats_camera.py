@@ -3,8 +3,8 @@
 import pytest
 
 from bullet_sim.description import CameraDescription, Fog, Lens, Noise, SceneDescription
-from bullet_sim.formats.sdf.camera import read_camera
 from bullet_sim.formats.sdf.scene import read_scene
+from bullet_sim.formats.sdf.sensor import read_camera
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim.pose import Pose
 

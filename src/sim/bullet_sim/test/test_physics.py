@@ -275,7 +275,7 @@ def test_a_model_that_cannot_be_shown_leaves_nothing_behind(world):
     link = replace(box_link("link", (0.1, 0.1, 0.1), 1.0), lights=(lamp, lamp))
     with pytest.raises(NameTaken):
         world.spawn(ModelDescription("twice_lit", links=(link,)))
-    assert (world.models, world.lights, world.scene.nodes) == ({}, {}, {})
+    assert (world.models, world.scene.lights, world.scene.nodes) == ({}, {}, {})
     world.spawn(box(), name="twice_lit")
 
 

@@ -1,8 +1,9 @@
 """The models and worlds that come with the simulator: as their scripts write them, of the size that
 their data say, and standing where they are put."""
 
-import importlib.util
+import importlib
 import math
+import sys
 from pathlib import Path
 
 import cv2
@@ -28,14 +29,8 @@ SPACING = 30.0  # m, between models that are tried in one world
 LIMIT = 0.001  # m, and rad
 
 
-def script(name: str):
-    """A file of scripts/ as a module."""
-    spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
+sys.path.append(str(SCRIPTS))
+script = importlib.import_module  # a file of scripts/
 PROPS = script("make_props").read_props()
 OTHERS = {path.name for path in (DATA_FOLDER / "models").iterdir()} - set(PROPS)
 

@@ -43,9 +43,9 @@ def test_a_robot_that_works(check):
 
 @pytest.mark.parametrize("where, matters", [
     ('<gazebo><plugin name="p" filename="libmy_own.so"/></gazebo>',
-     "what it moves or publishes is missing"),
+     "actuator or model plugin: what it moves will stand still, its topics will be missing"),
     ('<gazebo reference="base"><sensor name="s" type="ray"><plugin name="p" '
-     'filename="libmy_own.so"/></sensor></gazebo>', "its topics will be missing"),
+     'filename="libmy_own.so"/></sensor></gazebo>', "sensor: its topics will be missing"),
 ])
 def test_an_unknown_plugin_is_named_with_what_is_lost(check, where, matters):
     code, said = check("robot.urdf", ROBOT.format(where))

@@ -66,5 +66,5 @@ def test_every_registered_type_has_what_a_controller_needs():
         made = registry.find(kind)
         assert issubclass(made, registry.Controller), kind
         assert made.__doc__, kind
-    assert registry.nearest("effort_controllers/JointPositonController") == (
-        "effort_controllers/JointPositionController")
+    assert registry.hint("effort_controllers/JointPositonController") == (
+        "; did you mean effort_controllers/JointPositionController?")

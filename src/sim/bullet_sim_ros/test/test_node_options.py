@@ -8,7 +8,6 @@ import rosgraph
 import rospy
 
 from bullet_sim_ros import log_bridge, node
-from bullet_sim_ros.network import open_network
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
@@ -85,7 +84,7 @@ def test_an_engine_that_gazebo_does_not_know_is_an_error_line(caplog, engine, sa
 def test_without_a_ros_network_it_says_so(caplog):
     # conforms: ~enable_ros_network
     with caplog.at_level(logging.INFO):
-        open_network(None, None, NodeParameters(enable_ros_network=False))
+        node.open_network(None, None, NodeParameters(enable_ros_network=False))
     assert "ROS gazebo topics/services are disabled" in caplog.text
 
 
@@ -95,7 +94,8 @@ def test_a_verbose_simulator_also_says_what_it_loads(monkeypatch, verbose, told)
     core, said = logging.getLogger("bullet_sim"), []
     monkeypatch.setattr(core, "handlers", [])
     monkeypatch.setattr(core, "propagate", True)
-    monkeypatch.setitem(log_bridge._SENDERS, logging.INFO, lambda _form, text: said.append(text))
+    monkeypatch.setattr(logging.getLogger("rosout"), "log", lambda _level, _form, text:
+                        said.append(text))
     before = core.level
     try:
         log_bridge.forward_core_log(verbose)

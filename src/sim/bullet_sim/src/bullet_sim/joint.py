@@ -19,7 +19,7 @@ class BodyJoint:
 
     second_axis: "Joint | None" = None  # of a universal or revolute2 joint
 
-    def __init__(self, description: JointDescription, body: Body):
+    def __init__(self, description: JointDescription, body: Body | None):
         self.description = description
         self.name = description.name
         self._body = body
@@ -97,20 +97,8 @@ class Joint(BodyJoint):
 class PassiveJoint(BodyJoint):
     """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
 
-    @property
-    def position(self) -> float:
-        """Always 0: there is no single angle."""
-        return 0.0
-
-    @property
-    def velocity(self) -> float:
-        """Always 0."""
-        return 0.0
-
-    @property
-    def motor(self) -> tuple[float, float]:
-        """It has none."""
-        return 0.0, 0.0
+    position = velocity = 0.0  # as there is no single angle
+    motor = (0.0, 0.0)  # it has none
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """A ball goes back to the described pose; what is fixed stays."""
@@ -133,8 +121,7 @@ class LoopBall(PassiveJoint):
     """A ball that closes a loop."""
 
     def __init__(self, description: JointDescription):
-        self.description = description
-        self.name = description.name
+        super().__init__(description, None)
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """No effect: its links' poses decide, and the loop's other joints set those."""

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bullet_sim.actors import Actor
-from bullet_sim.description import LightDescription, ModelDescription, WorldDescription
+from bullet_sim.description import ModelDescription, WorldDescription
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.link import Link
 from bullet_sim.model import Model
@@ -24,9 +24,8 @@ from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
-from bullet_sim.scopes import carried_lights, find_frame, find_link, light_name
+from bullet_sim.scopes import carried_lights, find_link, light_name
 from bullet_sim.timed_forces import TimedForces
-from bullet_sim.twist import Twist
 
 _log = logging.getLogger(__name__)
 
@@ -54,7 +53,7 @@ class World:
         self._logged_errors: set[str] = set()  # of the engine, without a known cause
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
-            self.add_light(light)
+            self.scene.add_light(light)
         for model in self.description.models:
             try:
                 self.spawn(model)
@@ -159,8 +158,8 @@ class World:
         for link in model.links.values():
             self.scene.add_link((model.name, link.name), link.description.visuals, link.pose)
             for light in link.description.lights:
-                self.add_light(replace(light, name=light_name(link, light),
-                                       pose=link.pose * light.pose))
+                self.scene.add_light(replace(light, name=light_name(link, light),
+                                             pose=link.pose * light.pose))
 
     def delete(self, name: str) -> None:
         """Remove a model. UnknownName without one of that name."""
@@ -173,8 +172,8 @@ class World:
         self._note_moving()
         self.scene.remove_model(name)
         for light in carried_lights(model):
-            if light in self.lights:
-                self.remove_light(light)
+            if light in self.scene.lights:
+                self.scene.remove_light(light)
         self.forces.drop_model(model)
         with ExitStack() as stack:  # all are called, also if removing or one of them fails
             for function in reversed(self.each_removal):
@@ -193,34 +192,6 @@ class World:
         UnknownName without one.
         """
         return find_link(self.models, name)
-
-    def frame(self, name: str) -> tuple[Pose, Twist]:
-        """Pose and twist of a reference frame: a model, a link, or the world by its usual names.
-
-        UnknownName without one.
-        """
-        return find_frame(self.models, name)
-
-    @property
-    def lights(self) -> dict[str, LightDescription]:
-        """Those of the scene, by name."""
-        return self.scene.lights
-
-    def add_light(self, light: LightDescription) -> None:
-        """Add a light. NameTaken if there is one of that name."""
-        self.scene.add_light(light)
-
-    def change_light(self, light: LightDescription) -> None:
-        """Give the light of that name other properties, from the next picture on.
-
-        UnknownName without one.
-        """
-        self.remove_light(light.name)
-        self.add_light(light)
-
-    def remove_light(self, name: str) -> None:
-        """Remove a light. UnknownName without one of that name."""
-        self.scene.remove_light(name)
 
     # --- reset
 

@@ -2,20 +2,10 @@
 
 import logging
 
-import rospy
-
-_SENDERS = {
-    logging.DEBUG: rospy.logdebug,
-    logging.INFO: rospy.loginfo,
-    logging.WARNING: rospy.logwarn,
-    logging.ERROR: rospy.logerr,
-    logging.CRITICAL: rospy.logfatal,
-}
-
 
 class _ToRosout(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
-        _SENDERS.get(record.levelno, rospy.loginfo)("%s", record.getMessage())
+        logging.getLogger("rosout").log(record.levelno, "%s", record.getMessage())
 
 
 def forward_core_log(verbose: bool) -> None:

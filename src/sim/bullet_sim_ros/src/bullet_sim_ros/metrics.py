@@ -6,7 +6,7 @@ import rospy
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.simulation import Simulation
 
 PERIOD = 0.2  # s, wall, between messages

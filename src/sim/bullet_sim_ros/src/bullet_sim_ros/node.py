@@ -15,19 +15,34 @@ import rospy
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import load_world
+from bullet_sim.formats import Resources, load_world
 from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
-from bullet_sim_ros.network import open_network
+from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.package_paths import open_resources
-from bullet_sim_ros.params import read_node_parameters
+from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
+from bullet_sim_ros.scene_topic import SceneTopic
+from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.simulation import Simulation
 from bullet_sim_ros.state_log import StateLog
+from bullet_sim_ros.state_topics import StateTopics
+
+
+def open_network(simulation: Simulation, resources: Resources, parameters: NodeParameters) -> None:
+    """All of them, unless the parameter `~enable_ros_network` is false."""
+    if not parameters.enable_ros_network:
+        rospy.loginfo("ROS gazebo topics/services are disabled")
+        return
+    StateTopics(simulation, parameters.pub_state_frequency)
+    MetricsTopic(simulation)
+    simulation.each_turn.append(SceneTopic(simulation.world).update)
+    offer_services(simulation, resources)
+
 
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
 SWITCH_INTERVAL = 0.0005

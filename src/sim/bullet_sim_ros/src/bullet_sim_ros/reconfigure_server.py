@@ -8,7 +8,7 @@ from typing import Protocol
 import rospy
 from dynamic_reconfigure.server import Server
 
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -167,7 +167,7 @@ class Simulation:
     def sensors(self) -> list[PluginContext]:
         """The plugins that work for a sensor."""
         return [context for contexts in self._plugins.values() for context in contexts
-                if context.has_sensor]
+                if context.kind == "sensor"]
 
     def close(self) -> None:
         """Answer calls that still wait; release renderer and engine."""

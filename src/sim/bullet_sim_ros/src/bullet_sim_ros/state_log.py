@@ -31,20 +31,15 @@ class StateLog:
         """OSError if the file cannot be written."""
         self._world, self._lockstep = simulation.world, simulation.lockstep
         self._file: TextIO = path.open("w", encoding="utf-8", buffering=1)
-        simulation.mailbox.each_call.append(self._write_call)
+        simulation.mailbox.each_call.append(
+            lambda name, caller: self._write({"call": name, "caller": caller}))
         simulation.scheduler.add(RATE_HZ, self._write_state)
-        rospy.core.add_preshutdown_hook(self._write_shutdown)
+        rospy.core.add_preshutdown_hook(lambda reason: self._write({"shutdown": reason}))
 
     def _write_state(self) -> None:
         self._write({"time": round(self._world.time, 9), "poses": _poses(self._world),
                      "contacts": _touching(self._world),
                      "unanswered": self._lockstep.unanswered})
-
-    def _write_call(self, name: str, caller: str) -> None:
-        self._write({"call": name, "caller": caller})
-
-    def _write_shutdown(self, reason: str) -> None:
-        self._write({"shutdown": reason})
 
     def _write(self, values: dict) -> None:
         self._file.write(json.dumps(values) + "\n")

@@ -18,7 +18,7 @@ from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World
 from bullet_sim_ros.check.stand_ins import Graph, without_master
-from bullet_sim_ros.network import open_network
+from bullet_sim_ros.node import open_network
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import register_plugins

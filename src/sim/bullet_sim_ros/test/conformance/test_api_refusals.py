@@ -141,7 +141,7 @@ def test_a_name_with_colons_in_it(bench):
     assert bench.world.link("a::b::hand") is inner.links["hand"]
     assert bench.world.link("a::hand") is outer.links["hand"]
     bench.delete("a")
-    assert lamp[1] in bench.world.lights  # the other model's
+    assert lamp[1] in bench.world.scene.lights  # the other model's
 
 
 def test_a_link_of_what_is_held_to_the_world_goes_where_its_joint_lets_it(bench):

@@ -158,7 +158,7 @@ def test_robots_and_sensors_are_spawned_from_the_database(bench):
 
 def test_ground_and_sun_come_with_the_world(bench):
     # conforms: models: robots/ground_plane, models: robots/sun
-    assert "ground_plane" in bench.world.models and "sun" in bench.world.lights
+    assert "ground_plane" in bench.world.models and "sun" in bench.world.scene.lights
 
 
 def test_the_table_has_every_model():

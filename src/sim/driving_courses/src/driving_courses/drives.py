@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import Protocol
 from xml.etree.ElementTree import Element
@@ -67,7 +68,7 @@ class GazeboDiffDrive:
                 self._updated = world.time
 
 
-class ControlledDrive:
+class ControlledDrive(ABC):
     """What ros_control does at each step: read, let controllers command, write."""
 
     steers = False
@@ -89,8 +90,9 @@ class ControlledDrive:
         self._update(self._world.time, period)
         self._hardware.write(period)
 
+    @abstractmethod
     def _update(self, time: float, period: float) -> None:
-        raise NotImplementedError
+        """The controllers' turn, between reading and writing."""
 
 
 class DiffDriveController(ControlledDrive):
@@ -110,11 +112,13 @@ class DiffDriveController(ControlledDrive):
             BaseOptions(_limits(p["linear"]["x"]), _limits(p["angular"]["z"]),
                         p["cmd_vel_timeout"]))
         self._base.start(world.time)
-        self._update = self._base.update
 
     def command(self, speed: float, turn: float) -> None:
         """m/s and rad/s."""
         self._base.command(self._world.time, speed, turn)
+
+    def _update(self, time: float, period: float) -> None:
+        self._base.update(time, period)
 
 
 class RacecarDrive(ControlledDrive):

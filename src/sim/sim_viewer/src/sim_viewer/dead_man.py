@@ -30,19 +30,11 @@ class DeadMan:
 
     def __init__(self, hold: float = HOLD) -> None:
         self._hold = hold
-        self._driver: Hashable | None = None
-        self._until = math.inf
+        self.driver: Hashable | None = None
+        # When `expire` has a command to publish, s; infinite while nobody drives.
+        self.until = math.inf
         self._moving = False  # the last command that was published is no stop
         self._ousted: dict[Hashable, float] = {}  # who still presses in vain, and when last
-
-    @property
-    def driver(self) -> Hashable | None:
-        return self._driver
-
-    @property
-    def until(self) -> float:
-        """When `expire` has a command to publish; infinite while nobody drives."""
-        return self._until
 
     def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
         """A command of a client. Who comes last gets the handle, and its first command is a stop.
@@ -55,23 +47,23 @@ class DeadMan:
             raise DrivenByAnother
         self._ousted.pop(client, None)
         due = self.expire(now)
-        taken = self._driver not in (None, client)
+        taken = self.driver not in (None, client)
         if taken:
-            self._ousted[self._driver] = now
-        self._driver, self._until = client, now + self._hold
+            self._ousted[self.driver] = now
+        self.driver, self.until = client, now + self._hold
         return self._stop() if taken else [*due, *self._go(command)]
 
     def release(self, client: Hashable) -> list[Command]:
         """The client released its keys, or disconnected."""
         self._ousted.pop(client, None)
-        return self._let_go() if client == self._driver else []
+        return self._let_go() if client == self.driver else []
 
     def expire(self, now: float) -> list[Command]:
         """Nothing came from the driver for the length of a command."""
-        return self._let_go() if now >= self._until else []
+        return self._let_go() if now >= self.until else []
 
     def _let_go(self) -> list[Command]:
-        self._driver, self._until = None, math.inf
+        self.driver, self.until = None, math.inf
         return self._stop()
 
     def _stop(self) -> list[Command]:

@@ -26,26 +26,18 @@ def decode(message: Any, kind: type) -> Any:
     return read
 
 
-class Subscription:
+class Subscription(rospy.Subscriber):
     """`take(message, *args)` is called in rospy's threads, with messages of class `kind`."""
 
     def __init__(self, topic: str, kind: type, take: Callable[..., None], *args: Any):
-        self._topic, self._kind, self._take_read, self._args = topic, kind, take, args
-        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, tcp_nodelay=True)
-
-    def get_num_connections(self) -> int:
-        """How many publishers there are."""
-        return self._subscriber.get_num_connections()
-
-    def unregister(self) -> None:
-        """Let the topic go."""
-        self._subscriber.unregister()
+        self._kind, self._take_read, self._args = kind, take, args
+        super().__init__(topic, rospy.AnyMsg, self._take, tcp_nodelay=True)
 
     def _take(self, raw: Any) -> None:
         try:
             message = decode(raw, self._kind)
         except Exception as error:  # a publisher with another definition of the type
-            rospy.logwarn_throttle(10, f"{self._topic}: no {self._kind._type}: {error}")
+            rospy.logwarn_throttle(10, f"{self.name}: no {self._kind._type}: {error}")
             return
         self._take_read(message, *self._args)
 

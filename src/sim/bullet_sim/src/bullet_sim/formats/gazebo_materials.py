@@ -11,8 +11,5 @@ from bullet_sim.formats.resources import DATA_FOLDER
 def named_materials() -> dict[str, Material]:
     """All of them by full name."""
     table = tomllib.loads((DATA_FOLDER / "gazebo_materials.toml").read_text(encoding="utf-8"))
-    return {name: Material(**_as_fields(entry)) for name, entry in table.items()}
-
-
-def _as_fields(entry: dict) -> dict:
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()}
+    return {name: Material(**{key: tuple(value) if isinstance(value, list) else value
+                              for key, value in entry.items()}) for name, entry in table.items()}

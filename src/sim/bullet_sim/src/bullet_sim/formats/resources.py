@@ -88,12 +88,9 @@ class Resources:
         try:
             return self._first(name, self._plain_candidates(name, Path.cwd()))
         except ResourceNotFound as error:
-            raise ResourceNotFound(name, error.searched, self._worlds()) from None
-
-    def _worlds(self) -> list[str]:
-        """What `find_world` finds by name in the folders `worlds`."""
-        return sorted({f"worlds/{path.name}" for folder in self.resource_paths
-                       for path in (folder / "worlds").glob("*.world")})
+            there = {f"worlds/{path.name}" for folder in self.resource_paths
+                     for path in (folder / "worlds").glob("*.world")}
+            raise ResourceNotFound(name, error.searched, sorted(there)) from None
 
     def package_folder(self, package: str) -> Path:
         """Folder of a ROS package. ResourceNotFound if the package finder has none."""

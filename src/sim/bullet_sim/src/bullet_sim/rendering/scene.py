@@ -113,6 +113,11 @@ class Scene(SceneState):
         del self.lights[name]
         self.version = next(_versions)
 
+    def change_light(self, light: LightDescription) -> None:
+        """Give the light of that name other properties; UnknownName without one."""
+        self.remove_light(light.name)
+        self.lights[light.name] = light
+
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
         """Visuals whose mesh cannot be read are left out, with one warning each.
 

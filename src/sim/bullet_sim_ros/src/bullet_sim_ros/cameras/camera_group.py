@@ -3,12 +3,13 @@
 import logging
 import math
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 
 from std_msgs.msg import Empty
 
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.cameras.settings import CameraSettings
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -27,6 +28,9 @@ class CameraGroup:
         self._context = context
         self._cameras = cameras
         self._triggered = False
+        self._drawn: Future | None = None  # the last picture
+        self._expects_answers = False
+        context.on_close(self._close)
 
     def capture_at_rate(self, sensor_hz: float, thinned_hz: float = 0.0) -> None:
         """At the sensor's rate, thinned to another one (0: not), while somebody listens."""
@@ -62,14 +66,41 @@ class CameraGroup:
         """In the loop; pictures are drawn and sent by the drawing thread."""
         pictures = any(camera.pictures_wanted() for camera in self._cameras)
         if pictures:
-            self._context.expect_answer()
+            self._expects_answers = True
+            self._context.services.lockstep.expect()
         states = [camera.camera.capture() for camera in self._cameras]
 
         def publish() -> None:
             for camera, state in zip(self._cameras, states, strict=True):
                 camera.publish(state, pictures)
 
-        self._context.draw(publish)
+        self._draw(publish)
+
+    def _draw(self, job: Callable[[], None]) -> None:
+        """Have `job` done by the drawing thread; first waits for this group's job before it.
+
+        What that one failed with is raised here. In lockstep the world waits for the picture anyway
+        and the job is done at once.
+        """
+        services = self._context.services
+        if services.lockstep.topics:
+            services.drawing.settle()  # the renderer does one thing at a time
+            job()
+            return
+        if self._drawn is not None and not self._drawn.done():
+            with services.world.profiler.measure("wait"):
+                self._drawn.exception()
+        if self._drawn is not None:
+            self._drawn.result()
+        self._drawn = services.drawing.submit(job)
+
+    def _close(self) -> None:
+        """Before the topics are closed, which the last picture still needs."""
+        if self._expects_answers:
+            self._context.services.lockstep.cancel()
+        if self._drawn is not None:
+            self._drawn.exception()
+        self._drawn = None
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:

@@ -9,7 +9,7 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 from bullet_sim.sensors.camera import CameraReading, CaptureState
 from bullet_sim_ros import convert
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 FARTHEST = float(np.finfo(np.float32).max)  # m; beyond is nothing at all
 

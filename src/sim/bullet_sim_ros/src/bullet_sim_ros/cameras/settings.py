@@ -3,12 +3,10 @@
 import logging
 import math
 
-from sensor_msgs.msg import CameraInfo
-
 from bullet_sim.description import CameraDescription
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -38,7 +36,7 @@ class CameraSettings:
         self.info_topic = self.topic("cameraInfoTopicName", "camera_info")
         self.rate_hz = p.number("updateRate", 0.0)
         self.encoding = self._encoding()
-        self._info = convert.camera_info_to_msg(
+        self.info = convert.camera_info_to_msg(
             description, 0.0, self.frame, centre_x=p.number("Cx", 0.0),
             centre_y=p.number("Cy", 0.0), focal_length=self._focal_length_px(),
             baseline=p.number("hackBaseline", 0.0) if baseline is None else baseline,
@@ -47,10 +45,6 @@ class CameraSettings:
     def topic(self, tag: str, default: str) -> str:
         """The topic that a tag names, in the camera's namespace."""
         return names.join(self.namespace, self._context.parameters.text(tag, default))
-
-    def info(self) -> CameraInfo:
-        """The calibration, without a stamp."""
-        return self._info
 
     def _encoding(self) -> str:
         format = self._description.format

@@ -6,11 +6,15 @@ import sys
 from pathlib import Path
 
 import rospkg
-from workspace_needs.workspace import WorkspaceError
+from workspace_needs.verdicts import Verdict, judge
+from workspace_needs.workspace import WorkspaceError, source_folder
 
 from bullet_sim_ros.check.findings import (
+    ABSENT,
     ACCEPTED,
+    PROBLEM,
     UNCHECKED,
+    WORKS,
     Finding,
     is_serious,
     problem,
@@ -18,7 +22,6 @@ from bullet_sim_ros.check.findings import (
 )
 from bullet_sim_ros.check.launches import LaunchChecker
 from bullet_sim_ros.check.texts import TextChecker
-from bullet_sim_ros.check.workspaces import workspace_findings
 from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 
@@ -134,3 +137,31 @@ def _is_robot(path: Path, folder: Path) -> bool:
     included = {Path(name).name for other in folder.rglob("*.xacro")
                 for name in INCLUDED.findall(other.read_text("utf-8", "replace"))}
     return path.name not in included and "<link" in path.read_text("utf-8", "replace")
+
+
+def workspace_findings(path: Path) -> list[Finding]:
+    """A few lines a package; WorkspaceError where there is none below `path`."""
+    source = source_folder(path)
+    try:
+        verdicts = judge(source)
+    except WorkspaceError as error:
+        return [Finding(f"workspace {path}", "build", PROBLEM, str(error))]
+    return [finding for verdict in verdicts for finding in _of_package(verdict, path)]
+
+
+def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
+    where = f"package {verdict.name} ({verdict.folder})"
+    found = [Finding(where, "build", PROBLEM, f"it is left out: {key}: {why}")
+             for key, why in verdict.stops.items()]
+    found += [Finding(where, file, ABSENT, f"left out: {why}")
+              for file, why in verdict.left_out.items()]
+    found += [Finding(where, name, ABSENT, f"{key} needs it: make deps WS={workspace}")
+              for name, key in verdict.missing.items()]
+    found += [Finding(where, key, ABSENT, f"it will be without: {why}")
+              for key, why in verdict.lacks.items()]
+    found += [Finding(where, name, UNCHECKED, "no list here has it; the build stops there if "
+                      "CMake does not find it either")
+              for name in verdict.unsure]
+    if not verdict.stops and not verdict.missing:
+        found.append(Finding(where, "build", WORKS))
+    return found

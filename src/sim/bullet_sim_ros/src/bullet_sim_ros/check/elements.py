@@ -7,9 +7,8 @@ from xml.etree.ElementTree import Element
 from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, WORKS, Entry, Row
 from bullet_sim_ros.plugin_host.registry import NOT_NEEDED
+from bullet_sim_ros.plugin_host.unknown import MATTERS
 
-MATTERS = {"sensor": "its topics will be missing", "model": "what it moves or publishes is missing",
-           "world": "what it does to the world is missing", "visual": "only what is seen differs"}
 LIGHTS = ("point", "spot", "directional")
 
 

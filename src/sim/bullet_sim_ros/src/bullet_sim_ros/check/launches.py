@@ -1,8 +1,9 @@
 """Checks launch files without starting anything: their nodes, worlds and robots."""
 
 import itertools
+import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +13,6 @@ import rospkg
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources
 from bullet_sim.formats.xml_text import decoded, read_bytes
-from bullet_sim_ros.check.controllers import controller_findings
 from bullet_sim_ros.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem
 from bullet_sim_ros.check.launch_files import (
     Launch,
@@ -22,6 +22,7 @@ from bullet_sim_ros.check.launch_files import (
 )
 from bullet_sim_ros.check.parameter_commands import NotRun
 from bullet_sim_ros.check.texts import TextChecker
+from bullet_sim_ros.control import controllers, registry  # noqa: F401  (controllers register)
 from bullet_sim_ros.interface import Row
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
@@ -134,3 +135,28 @@ class LaunchChecker:
                     launch.parameters, namespace)
         return [problem(where, f"spawn_model -param {name}",
                         f"no parameter {full}; a <param name=\"{name}\"> has to stand before it")]
+
+
+KIND = re.compile(r"\w+/\w+")
+PACKAGE = re.compile(r"\w*controllers?(_\w+)?/")
+
+
+def controller_findings(parameters: Mapping[str, object], spawned: Collection[str],
+                        rows: Mapping[str, Row], where: str) -> Iterator[Finding]:
+    """One for each controller.
+
+    Other things have types as well. A type of a package that is not named after controllers only
+    counts where a spawner was given the name, one of `spawned`.
+    """
+    known = rows["controllers"].tags
+    for name, kind in parameters.items():
+        namespace, _, last = name.rpartition("/")
+        if last != "type" or not isinstance(kind, str) or not KIND.fullmatch(kind):
+            continue
+        part = f"controller {namespace} ({kind})"
+        if registry.find(kind) is not None:
+            row = known.get(kind)
+            yield Finding(where, part, row.status if row else WORKS, row.how if row else "")
+        elif PACKAGE.match(kind) or namespace.rpartition("/")[2] in spawned:
+            yield Finding(where, part, ABSENT,
+                          f"there is no such type of controller here{registry.hint(kind)}")

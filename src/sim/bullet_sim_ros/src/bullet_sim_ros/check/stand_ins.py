@@ -31,8 +31,8 @@ class Graph:
         self.services: dict[str, tuple[type, Callable]] = {}
         self.parameters: dict[str, object] = {}
 
-    def parameter(self, name: str) -> object:
-        """A parameter or the tree below a name; KeyError if there is none."""
+    def get_param(self, name: str, *default: object) -> object:
+        """A parameter or the tree below a name; KeyError without it and a default."""
         name = rospy.resolve_name(name).rstrip("/")
         if name in self.parameters:
             return self.parameters[name]
@@ -44,18 +44,9 @@ class Graph:
                 for part in path:
                     branch = branch.setdefault(part, {})
                 branch[last] = value
-        if not tree:
-            raise KeyError(name)
-        return tree
-
-    def get_param(self, name: str, *default: object) -> object:
-        """As rospy's; KeyError without parameter and default."""
-        try:
-            return self.parameter(name)
-        except KeyError:
-            if default:
-                return default[0]
-            raise
+        if tree or not default:
+            return tree or self.parameters[name]
+        return default[0]
 
     def has_param(self, name: str) -> bool:
         """As rospy's."""

@@ -1,16 +1,18 @@
 """Checks robot and world texts: reads and spawns them as the simulator would, and listens."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from xml.etree.ElementTree import ParseError, fromstring
+from xml.etree.ElementTree import Element, ParseError, fromstring
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
+from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.xml_text import read_bytes
+from bullet_sim.formats.xml_values import child_text, read_xml_file
 from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
 from bullet_sim_ros.check.findings import Finding, problem
-from bullet_sim_ros.check.included import included
 from bullet_sim_ros.check.parameter_commands import expanded
 from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
 
@@ -127,3 +129,23 @@ def is_for_show(text: str) -> bool:
         return False
     return root.tag == "robot" and root.find("link") is not None and (
         root.find("link/inertial") is None)
+
+
+def included(root: Element, folder: Path | None, resources: Resources,
+             seen: set[Path]) -> Iterator[tuple[str, Element]]:
+    """URI and root element of each included file, at any depth, once.
+
+    Without those that come with the simulator; what cannot be read, its loader complains of.
+    """
+    for include in root.iter("include"):
+        uri = child_text(include, "uri")
+        try:
+            file = model_file(resources.resolve(uri, folder))
+            if file in seen or DATA_FOLDER in file.parents:
+                continue
+            seen.add(file)
+            inner = read_xml_file(file)
+        except SimulationError:
+            continue
+        yield uri, inner
+        yield from included(inner, file.parent, resources, seen)

@@ -11,9 +11,6 @@ class LoopActionServer(actionlib.ActionServer):
 
     STATUS_RATE = 5.0  # Hz, simulated; actionlib's default
 
-    def __init__(self, name: str, spec: type, on_goal, on_cancel):
-        super().__init__(name, spec, on_goal, on_cancel, auto_start=False)
-
     def initialize(self) -> None:
         """Open the topics; the timer that comes with them is ended at once."""
         super().initialize()

@@ -12,7 +12,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 
 class ControllerContext:
@@ -35,12 +35,11 @@ class ControllerContext:
         self.manager_namespace = manager_namespace  # absolute, /racecar
         self.namespace = names.join(manager_namespace, name)  # absolute, /racecar/<controller>
         self.parameters = ControllerParameters(self.namespace)
-        self.parameter = self.parameters.value
         self.joints: dict[str, JointHandle] = hardware.joints
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed
         self.tasks: list[tuple[Rate, Callable[[], None]]] = []
-        self.services = context.services
+        self.services, self.mailbox = context.services, context.services.mailbox
         self._hardware = hardware
         self._context = context
 
@@ -87,20 +86,13 @@ class ControllerContext:
         """A service; `handler(request)` runs in a ROS thread."""
         self._context.serve(names.join(self.namespace, name), kind, handler)
 
-    def in_loop(self, function: Callable):
-        """From a ROS thread: run `function` in the loop and give back what it returns."""
-        return self.services.mailbox.call(function)
-
-    def post(self, function: Callable[[], None]) -> None:
-        """From any thread: have `function` run in the loop, without waiting."""
-        self.services.mailbox.post(function)
-
     def action(self, name: str, spec: type, on_goal: Callable,
                on_cancel: Callable) -> LoopActionServer:
         """An action server; `on_goal(goal_handle)` and `on_cancel(goal_handle)` run in the loop."""
         server = LoopActionServer(names.join(self.namespace, name), spec,
-                                  lambda handle: self.post(lambda: on_goal(handle)),
-                                  lambda handle: self.post(lambda: on_cancel(handle)))
+                                  lambda handle: self.mailbox.post(lambda: on_goal(handle)),
+                                  lambda handle: self.mailbox.post(lambda: on_cancel(handle)),
+                                  auto_start=False)
         self.on_close(server.stop)
         self.every(server.STATUS_RATE, server.publish_status)
         server.start()

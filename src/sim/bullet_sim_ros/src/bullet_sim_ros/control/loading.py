@@ -16,12 +16,10 @@ def make_controller(name: str, context: ControllerContext) -> Loaded:
             f"'{context.namespace}')? Parameter {context.parameters.where('type')} is not set")
     made = registry.find(str(kind))
     if made is None:
-        close = registry.nearest(str(kind))
         raise ManagerError(
             f"Could not load controller '{name}' because controller type '{kind}' does not "
-            "exist." + (f" Did you mean '{close}'?" if close else "")
-            + " Use 'rosservice call controller_manager/list_controller_types' to get the "
-            "available types")
+            f"exist{registry.hint(str(kind)) or '.'} Use 'rosservice call "
+            "controller_manager/list_controller_types' to get the available types")
     try:
         return Loaded(name, str(kind), made(context), context)
     except Exception as error:

@@ -1,5 +1,8 @@
 """A PID of a controller: gains from parameters, changeable at run time, its state on a topic."""
 
+from collections.abc import Callable
+from dataclasses import asdict
+
 from control_msgs.msg import PidState
 from rospy import Duration
 
@@ -7,7 +10,19 @@ from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
-from bullet_sim_ros.control.gains_reconfigure import offer_gains
+from bullet_sim_ros.reconfigure_server import Owner, Value, offer_values
+
+RANGES = {"p": (-1e5, 1e5, "Proportional gain"), "i": (-1e5, 1e5, "Integral gain"),
+          "d": (-1e3, 1e3, "Derivative gain"), "i_clamp_max": (0.0, 1e5, "Greatest integral term"),
+          "i_clamp_min": (-1e5, 0.0, "Least integral term"),
+          "antiwindup": (False, True, "Clamp the integral of the error, not only its term")}
+
+
+def offer_gains(owner: Owner, namespace: str, gains: PidGains,
+                change: Callable[[PidGains], None]) -> None:
+    """`change(gains)` is called in a ROS thread, at once and whenever somebody changes them."""
+    values = {name: Value(now, *RANGES[name]) for name, now in asdict(gains).items()}
+    offer_values(owner, namespace, values, lambda new: change(PidGains(**new)))
 
 
 def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:
@@ -32,7 +47,7 @@ def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
     def change(gains: PidGains) -> None:
         def set_gains() -> None:
             pid.gains = gains
-        context.post(set_gains)
+        context.mailbox.post(set_gains)
 
     offer_gains(context, context.parameters.where(group), pid.gains, change)
     return pid

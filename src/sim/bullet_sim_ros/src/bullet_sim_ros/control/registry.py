@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 
+from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.control.controller_context import ControllerContext
 
 BASE_CLASS = "controller_interface::ControllerBase"
@@ -51,7 +51,6 @@ def types() -> list[str]:
     return sorted(_registry)
 
 
-def nearest(kind: str) -> str | None:
-    """The registered type that a mistyped one most likely means."""
-    close = difflib.get_close_matches(kind, _registry, 1, cutoff=0.6)
-    return close[0] if close else None
+def hint(kind: str) -> str:
+    """The end of a line: the type that a mistyped one most likely means, if there is one."""
+    return did_you_mean(kind, _registry, 0.6)

@@ -10,7 +10,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.control")
 

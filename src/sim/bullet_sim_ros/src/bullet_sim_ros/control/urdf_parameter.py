@@ -8,7 +8,7 @@ import rospy
 
 from bullet_sim_ros import params
 from bullet_sim_ros.errors import format_error
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.control")
 

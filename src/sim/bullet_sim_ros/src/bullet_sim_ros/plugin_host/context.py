@@ -3,7 +3,6 @@
 import logging
 import math
 from collections.abc import Callable
-from concurrent.futures import Future
 
 import rospy
 from rosgraph.names import is_legal_name
@@ -32,15 +31,8 @@ class PluginContext(PluginScope):
         self.parameters = PluginParameters(model.name if model else "(world)", description)
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
-        self._drawn: Future | None = None
-        self._closed = False
-        self._expects_answers = False
+        self.closed = False  # whether the plugin has ended; for any thread
         self._task: PeriodicTask | None = None  # the last that `every` was asked for
-
-    @property
-    def closed(self) -> bool:
-        """Whether the plugin has ended. For any thread."""
-        return self._closed
 
     @property
     def updates(self) -> int:
@@ -63,7 +55,7 @@ class PluginContext(PluginScope):
 
     def change_rate(self, rate_hz: float) -> None:
         """Do what `every` was last asked for at another rate, from now on."""
-        if self._task is not None and not self._closed:
+        if self._task is not None and not self.closed:
             self.services.scheduler.change_rate(self._task, rate_hz)
 
     def every_reading(self, rate_hz: float, action: Callable[[], None],
@@ -100,31 +92,9 @@ class PluginContext(PluginScope):
         for action in self._resets:
             action()
 
-    def draw(self, job: Callable[[], None]) -> None:
-        """Have `job` done by the drawing thread; first waits for this plugin's job before it.
-
-        What that one failed with is raised here. In lockstep the world waits for the picture anyway
-        and the job is done at once.
-        """
-        if self.services.lockstep.topics:
-            self.services.drawing.settle()  # the renderer does one thing at a time
-            job()
-            return
-        if self._drawn is not None and not self._drawn.done():
-            with self.world.profiler.measure("wait"):
-                self._drawn.exception()
-        if self._drawn is not None:
-            self._drawn.result()
-        self._drawn = self.services.drawing.submit(job)
-
-    def expect_answer(self) -> None:
-        """A frame is about to be sent: in lockstep the world then waits for the answer."""
-        self._expects_answers = True
-        self.services.lockstep.expect()
-
     def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
         def run() -> None:
-            if self._closed:
+            if self.closed:
                 return
             try:
                 action()
@@ -194,15 +164,11 @@ class PluginContext(PluginScope):
 
     def close(self) -> None:
         """End all topics and services of the plugin."""
-        self._closed = True
-        if self._expects_answers:
-            self.services.lockstep.cancel()
-        if self._drawn is not None:
-            self._drawn.exception()  # waits: its topics are still needed
+        self.closed = True
         while self._closers:
             self._closers.pop()()
         # What it calls leads back to it: the plugin's arrays would wait for the collector.
-        self._task, self._drawn = None, None
+        self._task = None
         self._resets.clear()
 
 

@@ -1,16 +1,18 @@
 """From library file name to class, and the loading of all plugins of a model."""
 
+import functools
 import logging
 from collections.abc import Callable
 from pathlib import PurePosixPath
 
+from bullet_sim.description import SENSOR_TYPES, SensorDescription
+from bullet_sim.errors import did_you_mean
 from bullet_sim.model import Model
 from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.interface import Row, read_interface, rows_by_name
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.sensor_types import warn_of_sensor
 from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
-from bullet_sim_ros.plugin_host.unread_tags import warn_of_unread_tags
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -72,3 +74,53 @@ def _load(context: PluginContext) -> bool:
         return False
     warn_of_unread_tags(context)
     return True
+
+
+# Robots carry these in plugins of any kind, whether or not the plugin reads them.
+EVERY_PLUGIN = frozenset(("robotNamespace", "alwaysOn", "always_on", "updateRate", "update_rate",
+                          "visualize", "plugin"))
+
+
+def warn_of_unread_tags(context: PluginContext) -> None:
+    """One warning for each tag that the plugin has not read and the interface table has not.
+
+    Tags of the table that have no effect, or are read later, are no warning.
+    """
+    unread = [tag for tag in context.parameters.unread() if tag not in EVERY_PLUGIN]
+    if not unread:
+        return
+    row = _documented().get(PurePosixPath(context.description.filename).name)
+    known = set(row.tags) if row else set()
+    for tag in unread:
+        if tag not in known:
+            names = sorted(map(_inner, known | context.parameters.read))
+            log.warning("%s: <%s> is ignored, as by Gazebo: the plugin has no such tag%s",
+                        context.describe(), _inner(tag),
+                        did_you_mean(_inner(tag), names, 0.75, "<{}>"))
+
+
+def _inner(path: str) -> str:
+    """`a><b` of `a/b`."""
+    return path.replace("/", "><")
+
+
+@functools.cache
+def _documented() -> dict[str, Row]:
+    return rows_by_name(read_interface())
+
+
+# Gazebo simulates these, but no plugin of gazebo_plugins brings them to ROS.
+GAZEBO_ONLY = ("logical_camera", "rfid", "rfidtag", "sonar", "wireless_receiver",
+               "wireless_transmitter", "altimeter", "magnetometer", "gps", "air_pressure")
+
+
+def warn_of_sensor(model: str, sensor: SensorDescription) -> None:
+    """One line for a sensor whose type is not simulated, unless a plugin simulates it."""
+    if sensor.type in SENSOR_TYPES or (sensor.type in GAZEBO_ONLY and sensor.plugins):
+        return
+    if sensor.type in GAZEBO_ONLY:
+        log.warning("model %s: sensor %s: type %s is not simulated; without a plugin it has no ROS "
+                    "topic in Gazebo either", model, sensor.name, sensor.type)
+        return
+    log.error("model %s: sensor %s: there is no type %r; there are %s", model, sensor.name,
+              sensor.type, ", ".join((*SENSOR_TYPES, *GAZEBO_ONLY)))

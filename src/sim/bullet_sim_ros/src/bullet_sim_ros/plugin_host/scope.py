@@ -30,19 +30,13 @@ class PluginScope:
         return _inside(self._model, "a <model>, not in the world")
 
     @property
-    def in_world(self) -> bool:
-        """Whether the plugin is in the world itself."""
-        return self._model is None
-
-    @property
-    def has_sensor(self) -> bool:
-        """Whether the plugin is in a sensor."""
-        return self._sensor is not None
-
-    @property
-    def in_visual(self) -> bool:
-        """Whether the plugin is in a visual."""
-        return self._visual is not None
+    def kind(self) -> str:
+        """What the plugin is in: `visual`, `sensor`, `model` or `world`."""
+        if self._visual is not None:
+            return "visual"
+        if self._sensor is not None:
+            return "sensor"
+        return "world" if self._model is None else "model"
 
     @property
     def visual(self) -> Visual:

@@ -30,11 +30,18 @@ CONSEQUENCES = {
     "libRayPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
     "libImuSensorPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
 }
+# What is missing without one that is named by none of these, by where it is.
+MATTERS = {
+    "sensor": "sensor: its topics will be missing",
+    "visual": "looks: what it shows will be missing",
+    "model": "actuator or model plugin: what it moves will stand still, its topics will be missing",
+    "world": "world plugin: what it does to the world will be missing, models are not touched",
+}
 
 
 def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str]) -> None:
     """One warning for each file name and model (or world)."""
-    place = "" if context.in_world else context.model.name
+    place = "" if context.kind == "world" else context.model.name
     if (place, filename) in context.services.warned:
         return
     context.services.warned.add((place, filename))
@@ -47,10 +54,4 @@ def consequence(context: PluginContext, filename: str) -> str:
     for beginning, text in CONSEQUENCES.items():
         if filename.startswith(beginning):
             return text
-    if context.in_visual:
-        return "looks: what it shows will be missing"
-    if context.has_sensor:
-        return "sensor: its topics will be missing"
-    if context.in_world:
-        return "world plugin: what it does to the world will be missing, models are not touched"
-    return "actuator or model plugin: what it moves will stand still, its topics will be missing"
+    return MATTERS[context.kind]

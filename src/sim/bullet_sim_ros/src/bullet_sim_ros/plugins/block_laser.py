@@ -5,9 +5,7 @@ from geometry_msgs.msg import Point32
 from sensor_msgs.msg import ChannelFloat32, PointCloud
 
 from bullet_sim.sensors.ray_fan import RayFan
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 
 @plugin("libgazebo_ros_block_laser.so")

@@ -7,8 +7,7 @@ from bullet_sim_ros.cameras.camera_group import CameraGroup
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.cameras.depth_camera_publisher import FARTHEST, DepthCameraPublisher
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

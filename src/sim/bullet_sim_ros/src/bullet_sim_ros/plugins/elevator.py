@@ -8,8 +8,7 @@ from std_msgs.msg import String
 
 from bullet_sim.mechanisms.elevator import Elevator
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from geometry_msgs.msg import Wrench
 
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 NONE = (0.0, 0.0, 0.0)
 

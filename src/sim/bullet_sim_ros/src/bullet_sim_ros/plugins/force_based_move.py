@@ -8,10 +8,7 @@ from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.force_based_move import ForceDrive, ForceGains
 from bullet_sim_ros import convert
-from bullet_sim_ros.plugin_host.commands import subscribe_commands
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import open_odometry
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
 
 VARIANCE = 1e-3  # m^2
 YAW_VARIANCES = (0.01, 100.0)  # rad^2: going straight, and turning

@@ -4,9 +4,7 @@ import numpy as np
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 
 from bullet_sim.sensors.net_force import NetForce
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 
 @plugin("libgazebo_ros_ft_sensor.so")

@@ -5,9 +5,8 @@ import math
 
 from bullet_sim.mechanisms.grasp import Grasp, GraspParameters
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
-from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -8,8 +8,7 @@ from bullet_sim.mechanisms.spring_damper import SpringDamper
 from bullet_sim.pose import Pose
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 WORLD = "world"
 

@@ -10,9 +10,8 @@ from std_msgs.msg import Bool, Float32
 from bullet_sim.mechanisms.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugin_host.plugin_tags import read_numbers
-from bullet_sim_ros.plugin_host.registry import plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -35,7 +34,8 @@ class HarnessPlugin:
         self._harness = Harness(context.world, link, self._axis(winch))
         topics = names.join(f"/{context.model.name}", "harness")
         context.subscribe(names.join(topics, "velocity"), Float32, self._take_speed, queue_size=1)
-        context.subscribe(names.join(topics, "detach"), Bool, self._take_detach, queue_size=1)
+        context.subscribe(names.join(topics, "detach"), Bool,
+                          lambda msg: self._harness.detach if msg.data else None, queue_size=1)
         context.each_step(self._harness.update)
         context.on_close(self._harness.detach)
 
@@ -62,6 +62,3 @@ class HarnessPlugin:
             log.warning("%s: a speed that is not finite is ignored", self._context.describe())
             return None
         return lambda: self._harness.command(msg.data)
-
-    def _take_detach(self, msg: Bool) -> Callable[[], None] | None:
-        return self._harness.detach if msg.data else None

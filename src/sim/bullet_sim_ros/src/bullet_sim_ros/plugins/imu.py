@@ -13,9 +13,7 @@ from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix, plugin
 
 
 @plugin("libgazebo_ros_imu.so")

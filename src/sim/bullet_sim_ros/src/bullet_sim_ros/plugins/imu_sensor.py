@@ -6,9 +6,7 @@ from sensor_msgs.msg import Imu as ImuMsg
 from bullet_sim.pose import multiply, quaternion_from_rpy
 from bullet_sim.sensors.imu import ImuSensor
 from bullet_sim_ros import convert
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix, plugin
 
 
 @plugin("libgazebo_ros_imu_sensor.so")

@@ -12,8 +12,7 @@ from bullet_sim.mechanisms.joint_poses import JointPose, JointPoses
 from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError, format_error
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -8,9 +8,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint, PassiveJoint
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -27,18 +25,14 @@ class JointStatePublisherPlugin(SensorPlugin):
         super().__init__(context, JointState, "joint_states", "", tf_prefix=no_tf_prefix,
                          namespace=p.namespace(missing=model, empty=model), queue_size=1000)
         names = p.text("jointName").replace(" ", "").split(",")
-        found = [_find_joint(context, name.strip()) for name in names if name.strip()]
-        self._joints = [joint for joint in found if joint is not None]
+        self._joints: list[Joint | PassiveJoint] = []
+        for name in filter(None, map(str.strip, names)):
+            try:
+                self._joints.append(context.model.joint(name))
+            except SimulationError as error:
+                log.error("%s: %s", context.describe(), error)
         self.publish_at(p.number("updateRate", 100.0), whole_steps=False)
 
     def measure(self) -> JointState:
         """Positions and rates now."""
         return convert.joints_to_msg(sample_joints(self.world, self._joints))
-
-
-def _find_joint(context: PluginContext, name: str) -> Joint | PassiveJoint | None:
-    try:
-        return context.model.joint(name)
-    except SimulationError as error:
-        log.error("%s: %s", context.describe(), error)
-        return None

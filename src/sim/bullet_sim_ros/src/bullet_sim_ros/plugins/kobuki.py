@@ -1,23 +1,23 @@
 """libgazebo_ros_kobuki.so: TurtleBot2's base with wheels, gyroscope, bumpers and cliff sensors."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Collection, Sequence
 
 from geometry_msgs.msg import Twist
-from kobuki_msgs.msg import MotorPower
+from kobuki_msgs.msg import MotorPower, SensorState
+from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Empty
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.kobuki import Kobuki
 from bullet_sim.link import Link
-from bullet_sim.sensors.imu import ImuSensor
-from bullet_sim_ros import names, params
+from bullet_sim.sensors.imu import ImuReading, ImuSensor
+from bullet_sim.sensors.joint_states import sample_joints
+from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.commands import subscribe_commands
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugins.kobuki_core import CoreTopic
-from bullet_sim_ros.plugins.kobuki_events import BumperTopic, CliffTopic, WheelDropTopic
-from bullet_sim_ros.plugins.kobuki_output import KobukiOutput
+from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
+from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugins.kobuki_events import BaseTopic, BumperTopic, CliffTopic, WheelDropTopic
 
 RATE = 50.0  # Hz: what the real base does; gazebo_ros_kobuki.cpp, OnUpdate, is at each step
 SIDES = ("left", "center", "right")
@@ -58,9 +58,11 @@ class KobukiPlugin:
     def _subscribe(self, base: str) -> None:
         commands = names.join(base, "commands")
         subscribe_commands(self._context, commands, "velocity", self._command, queue_size=10)
-        for name, kind, take in (("motor_power", MotorPower, self._take_power),
-                                 ("reset_odometry", Empty, self._take_reset)):
-            self._context.subscribe(names.join(commands, name), kind, take, queue_size=10)
+        self._context.subscribe(
+            names.join(commands, "motor_power"), MotorPower, queue_size=10,
+            take=lambda msg: lambda: self._kobuki.switch(msg.state == MotorPower.ON))
+        self._context.subscribe(names.join(commands, "reset_odometry"), Empty, queue_size=10,
+                                take=lambda _msg: self._kobuki.reset_odometry)
 
     def _number(self, tag: str) -> float:
         self._context.parameters.required(tag)
@@ -83,8 +85,77 @@ class KobukiPlugin:
     def _command(self, msg: Twist) -> None:
         self._kobuki.command(msg.linear.x, msg.angular.z)
 
-    def _take_power(self, msg: MotorPower) -> Callable[[], None]:
-        return lambda: self._kobuki.switch(msg.state == MotorPower.ON)
 
-    def _take_reset(self, _msg: Empty) -> Callable[[], None]:
-        return self._kobuki.reset_odometry
+POSE_COVARIANCE = convert.diagonal((0.1, 0.1, 1e6, 1e6, 1e6, 0.05))  # m^2 and rad^2
+GYRO_COVARIANCE = convert.diagonal((1e6, 1e6, 0.05))
+
+
+class KobukiOutput:
+    """Frames are odom, base_footprint and base_link, with the tf_prefix."""
+
+    def __init__(
+        self, context: PluginContext, kobuki: Kobuki, namespace: str, base: str, transform: bool
+    ):
+        self._context, self._kobuki = context, kobuki
+        prefix = params.tf_prefix(namespace)
+        odom, footprint, self._base_link = (
+            names.frame(prefix, name) for name in ("odom", "base_footprint", "base_link"))
+        self._states = context.advertise(names.join(namespace, "joint_states"), JointState,
+                                         queue_size=1)
+        self._odometry = OdometryOutput(context, names.join(namespace, "odom"), odom, footprint,
+                                        transform=transform, pose_covariance=POSE_COVARIANCE)
+        self._imu = context.advertise(names.join(base, "sensors/imu_data"), Imu, queue_size=1)
+
+    def publish(self) -> None:
+        """What somebody listens to."""
+        if self._states.get_num_connections():
+            msg = convert.joints_to_msg(sample_joints(self._context.world, self._kobuki.wheels))
+            msg.header.frame_id, msg.effort = self._base_link, [0.0, 0.0]
+            self._states.publish(msg)
+        if self._odometry.wanted():
+            self._odometry.publish(self._kobuki.odometry())
+        if self._imu.get_num_connections():
+            self._imu.publish(self._imu_msg(self._kobuki.imu_reading()))
+
+    def _imu_msg(self, reading: ImuReading) -> Imu:
+        msg = convert.imu_to_msg(reading.orientation, reading.angular_velocity,
+                                 reading.linear_acceleration)
+        msg.orientation_covariance = msg.angular_velocity_covariance = GYRO_COVARIANCE
+        return convert.stamped(msg, reading.time, self._base_link)
+
+
+TICKS = 2578.33 / math.tau  # of a wheel's encoder, a rad: 52 a turn of the motor, geared
+BATTERY = 165  # 0.1 V: full, and simulated ones stay so
+BITS = {"right": SensorState.BUMPER_RIGHT, "center": SensorState.BUMPER_CENTRE,
+        "left": SensorState.BUMPER_LEFT}  # those of the cliff sensors, too
+WHEEL_BITS = {"right": SensorState.WHEEL_DROP_RIGHT, "left": SensorState.WHEEL_DROP_LEFT}
+WORD = 0xFFFF
+
+
+class CoreTopic(BaseTopic):
+    """`sensors/core`. Currents, duty cycles, buttons and inputs are not simulated: they are 0."""
+
+    def __init__(self, context: PluginContext, base: str, kobuki: Kobuki, bumper: BumperTopic,
+                 cliffs: Sequence[CliffTopic], drop: WheelDropTopic):
+        super().__init__(context, base, "sensors/core", SensorState)
+        self._kobuki = kobuki
+        self._bumper, self._drop = bumper, drop
+        self._cliffs = {cliff.side: cliff for cliff in cliffs}
+
+    def publish(self) -> None:
+        """After a step."""
+        time = self._context.world.time
+        cliffs = {side: self._cliffs[side].read() for side in BITS}
+        left, right = (int(joint.position * TICKS) & WORD for joint in self._kobuki.wheels)
+        msg = SensorState(
+            time_stamp=round(time * 1000) & WORD, bumper=_bits(self._bumper.pressed(), BITS),
+            wheel_drop=_bits(self._drop.dropped(), WHEEL_BITS),
+            cliff=_bits([side for side, (cliff, _) in cliffs.items() if cliff], BITS),
+            left_encoder=left, right_encoder=right, charger=SensorState.DISCHARGING,
+            battery=BATTERY, bottom=[reading for _, reading in cliffs.values()],
+            current=[0, 0], analog_input=[0, 0, 0, 0])
+        self._topic.publish(convert.stamped(msg, time))
+
+
+def _bits(sides: Collection[str], bits: dict[str, int]) -> int:
+    return sum(bit for side, bit in bits.items() if side in sides)

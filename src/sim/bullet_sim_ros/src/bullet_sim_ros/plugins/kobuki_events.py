@@ -11,28 +11,28 @@ from bullet_sim.mechanisms.kobuki_bumpers import SECTORS, pressed_bumpers
 from bullet_sim.mechanisms.wheel_drop import WheelDrop
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext
 
 CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading for a distance in m
 
 
-class EventTopic:
-    """`look` publishes what has changed since it last looked."""
+class BaseTopic:
+    """Of events, `look` publishes what has changed since it last looked."""
 
     def __init__(self, context: PluginContext, base: str, name: str, kind: type):
         self._context = context
-        self._topic = context.advertise(names.join(base, f"events/{name}"), kind, queue_size=1)
+        self._topic = context.advertise(names.join(base, name), kind, queue_size=1)
 
     def wanted(self) -> int:
         """Whether anybody listens: contacts and rays cost time."""
         return self._topic.get_num_connections()
 
 
-class BumperTopic(EventTopic):
+class BumperTopic(BaseTopic):
     """Each of the three that has changed."""
 
     def __init__(self, context: PluginContext, base: str, link: Link):
-        super().__init__(context, base, "bumper", BumperEvent)
+        super().__init__(context, base, "events/bumper", BumperEvent)
         self._link = link
         self._pressed: set[str] = set()
 
@@ -52,11 +52,11 @@ class BumperTopic(EventTopic):
         self._pressed = pressed
 
 
-class WheelDropTopic(EventTopic):
+class WheelDropTopic(BaseTopic):
     """Each of the two wheels that lost the floor or found it."""
 
     def __init__(self, context: PluginContext, base: str, kobuki: Kobuki):
-        super().__init__(context, base, "wheel_drop", WheelDropEvent)
+        super().__init__(context, base, "events/wheel_drop", WheelDropEvent)
         model = context.model
         self._drop = WheelDrop({
             side: f"{model.name}::{joint.description.child}"
@@ -79,7 +79,7 @@ class WheelDropTopic(EventTopic):
         self._dropped = dropped
 
 
-class CliffTopic(EventTopic):
+class CliffTopic(BaseTopic):
     """When the floor under one sensor goes away or comes back.
 
     FormatError of rays that cannot be.
@@ -88,7 +88,7 @@ class CliffTopic(EventTopic):
     def __init__(self, context: PluginContext, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):
         """`threshold` in m: a floor this far down is none."""
-        super().__init__(context, base, "cliff", CliffEvent)
+        super().__init__(context, base, "events/cliff", CliffEvent)
         self.side = side
         self._threshold = threshold
         self._laser = Laser(context.world, link, sensor)

@@ -4,9 +4,7 @@ from sensor_msgs.msg import LaserScan
 
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import convert, params
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 
 @plugin("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")

@@ -8,8 +8,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.physics.weld import Weld
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import format_error
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -6,8 +6,7 @@ from bullet_sim.control.pid import Pid
 from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

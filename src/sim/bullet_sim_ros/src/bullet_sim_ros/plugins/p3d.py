@@ -5,9 +5,7 @@ from nav_msgs.msg import Odometry
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim_ros import convert
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 INERTIAL = ("world", "/world", "map", "/map")
 

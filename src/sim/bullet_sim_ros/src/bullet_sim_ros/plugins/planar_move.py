@@ -3,10 +3,7 @@
 from geometry_msgs.msg import Twist
 
 from bullet_sim.drives.planar import PlanarDrive, PlanarOdometry
-from bullet_sim_ros.plugin_host.commands import subscribe_commands
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import open_odometry
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
 
 
 @plugin("libgazebo_ros_planar_move.so")

@@ -5,8 +5,7 @@ import logging
 from std_msgs.msg import Int32, String
 
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

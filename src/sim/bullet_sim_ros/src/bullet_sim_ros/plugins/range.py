@@ -3,9 +3,7 @@
 from sensor_msgs.msg import Range
 
 from bullet_sim.sensors.ray_fan import RayFan
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 
 @plugin("libgazebo_ros_range.so")

@@ -19,8 +19,7 @@ from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.steer_bot import open_steer_bot
 from bullet_sim_ros.control.urdf_parameter import with_urdf
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.control")
 

@@ -1,7 +1,6 @@
 """libgazebo_ros_template.so: an example to copy from; it loads and does nothing."""
 
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 
 @plugin("libgazebo_ros_template.so")

@@ -5,8 +5,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.mechanisms.vacuum import Vacuum, VacuumParameters
 from bullet_sim_ros import names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 
 @plugin("libgazebo_ros_vacuum_gripper.so")

@@ -7,9 +7,7 @@ from sensor_msgs.msg import PointCloud2, PointField
 
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import params
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"),
                   ("ring", "<u2"), ("time", "<f4")])  # as velodyne_pointcloud lays points out

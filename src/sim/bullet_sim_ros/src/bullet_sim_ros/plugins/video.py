@@ -11,8 +11,7 @@ from bullet_sim.rendering.frame import LARGEST_PX
 from bullet_sim_ros import names
 from bullet_sim_ros.cameras.encodings import decode
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 _ABOVE = 0.51  # heights of the visual, from its middle: 1 % of it above its upper side
 _ABOVE_PLANE = 0.001  # m

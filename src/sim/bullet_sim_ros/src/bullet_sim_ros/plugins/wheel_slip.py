@@ -3,8 +3,7 @@
 import logging
 
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -8,9 +8,9 @@ import rospy
 
 from bullet_sim.formats import Resources
 from bullet_sim_ros.services import forces, joints, lights, links, physics, states, worlds
+from bullet_sim_ros.services.answers import offer_registered
 from bullet_sim_ros.services.models import offer_model_services
 from bullet_sim_ros.services.physics_reconfigure import PhysicsReconfigure
-from bullet_sim_ros.services.registry import offer_registered
 from bullet_sim_ros.simulation import Simulation
 
 __all__ = ["forces", "joints", "lights", "links", "offer_services", "physics", "states", "worlds"]

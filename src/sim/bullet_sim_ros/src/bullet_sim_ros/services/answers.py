@@ -1,6 +1,7 @@
 """How a service call reaches the loop and how its failure comes back."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import rospy
@@ -8,6 +9,10 @@ import rospy
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.mailbox import Closed, Mailbox
+from bullet_sim_ros.simulation import Simulation
+
+Handler = Callable[[Simulation, Any, Any], None]
+_registry: list[tuple[str, type, Handler]] = []
 
 
 class CallFails(Exception):
@@ -35,6 +40,21 @@ def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any],
         return response
 
     rospy.Service(name, kind, answer)
+
+
+def service(name: str, kind: type) -> Callable[[Handler], Handler]:
+    """Register `handler(simulation, request, response)`, which fills the response in the loop."""
+    def register(handler: Handler) -> Handler:
+        _registry.append((name, kind, handler))
+        return handler
+
+    return register
+
+
+def offer_registered(simulation: Simulation) -> None:
+    """Advertise all that were registered."""
+    for name, kind, handler in _registry:
+        offer(simulation.mailbox, name, kind, partial(handler, simulation))
 
 
 def done(response, message: str) -> None:

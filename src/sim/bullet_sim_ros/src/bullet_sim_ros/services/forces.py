@@ -7,9 +7,8 @@ from bullet_sim.timed_forces import Effort, Span, Wrench
 from bullet_sim.twist import add, cross
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import done
+from bullet_sim_ros.services.answers import done, service
 from bullet_sim_ros.services.lookup import check_sane, find_frame, find_joint, find_link
-from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 

@@ -5,9 +5,8 @@ from gazebo_msgs.srv import GetJointProperties, SetJointProperties
 
 from bullet_sim.joint import Joint
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done
+from bullet_sim_ros.services.answers import ServiceError, done, service
 from bullet_sim_ros.services.lookup import find_joint
-from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 USED = ("damping", "hiStop", "loStop", "fmax", "vel")  # of gazebo_msgs/ODEJointProperties

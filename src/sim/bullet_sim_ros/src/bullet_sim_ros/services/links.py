@@ -11,9 +11,8 @@ from bullet_sim.scopes import INERTIAL_FRAMES
 from bullet_sim.twist import twist_difference
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done
+from bullet_sim_ros.services.answers import ServiceError, done, service
 from bullet_sim_ros.services.lookup import LINK_UNKNOWN, check_sane, find_link, seen_from
-from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")

@@ -30,9 +30,9 @@ def offer_model_services(simulation, resources: Resources) -> None:
         pose = spawn_pose(simulation.world, request)
         light = load_light(request.model_xml, resources, name or None)
         if light is not None:
-            if light.name in simulation.world.lights:
+            if light.name in simulation.world.scene.lights:
                 raise ServiceError(TAKEN)
-            simulation.world.add_light(light)
+            simulation.world.scene.add_light(light)
             done(response, SPAWNED)
             return
         description = load_model(request.model_xml, resources, name or None)

@@ -1,26 +1,17 @@
 """Step, update rate and gravity; the numbers of ODE that Bullet has no use for are only kept."""
 
+from gazebo_msgs.msg import ODEPhysics
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Vector3
 
 from bullet_sim.errors import prefixed
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done
-from bullet_sim_ros.services.registry import service
+from bullet_sim_ros.services.answers import ServiceError, done, service
+from bullet_sim_ros.services.physics_reconfigure import FIELDS
 from bullet_sim_ros.simulation import Simulation
 
-# Fields of gazebo_msgs/ODEPhysics and of our PhysicsDescription.
-ODE = {
-    "auto_disable_bodies": "auto_disable_bodies",
-    "sor_pgs_precon_iters": "precon_iterations",
-    "sor_pgs_iters": "iterations",
-    "sor_pgs_w": "sor",
-    "contact_surface_layer": "contact_surface_layer",
-    "contact_max_correcting_vel": "contact_max_correcting_vel",
-    "cfm": "cfm",
-    "erp": "erp",
-    "max_contacts": "max_contacts",
-}
+# Fields of gazebo_msgs/ODEPhysics, which Physics.cfg names alike, and of our PhysicsDescription.
+ODE = {name: FIELDS[name][0] for name in ODEPhysics.__slots__ if FIELDS[name][0]}
 
 
 @service(names.GET_PHYSICS_PROPERTIES, GetPhysicsProperties)

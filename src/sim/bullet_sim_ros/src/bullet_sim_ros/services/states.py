@@ -8,9 +8,8 @@ from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.services.answers import ServiceError, done
+from bullet_sim_ros.services.answers import ServiceError, done, service
 from bullet_sim_ros.services.lookup import check_sane, find_frame, find_model, find_part, seen_from
-from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 

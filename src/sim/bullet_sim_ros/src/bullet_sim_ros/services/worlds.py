@@ -7,9 +7,8 @@ from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
 from bullet_sim_ros import names
-from bullet_sim_ros.services.answers import done
+from bullet_sim_ros.services.answers import done, service
 from bullet_sim_ros.services.lookup import find_part
-from bullet_sim_ros.services.registry import service
 from bullet_sim_ros.simulation import Simulation
 
 

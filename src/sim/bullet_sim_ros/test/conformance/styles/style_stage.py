@@ -131,7 +131,7 @@ class Stage:
             parser.add_argument(flag, type=float, default=0.0)
         told = parser.parse_args(words)
         text = Path(told.file).read_text(encoding="utf-8") if told.file else \
-            self.graph.parameter(absolute(namespace, told.param))
+            self.graph.get_param(absolute(namespace, told.param))
         pose = pose_of((told.x, told.y, told.z, told.R, told.P, told.Y))
         self.spawn(told.model, text, told.urdf, pose, told.robot_namespace)
         if told.J:

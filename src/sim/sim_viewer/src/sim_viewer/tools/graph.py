@@ -1,5 +1,6 @@
 """Nodes, topics and what flows between them, laid out as rqt_graph draws it."""
 
+from collections import defaultdict
 from typing import Any
 
 import rospy
@@ -52,7 +53,7 @@ def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str
     flows = _flows(state)
     if text:
         flows = [flow for flow in flows if any(text in name for name in flow)]
-    edges = _node_edges(flows) if view == "nodes" else _topic_edges(flows, view == "all")
+    edges = _edges(flows, view)
     if len(edges) > MOST_EDGES:
         raise Refused(f"{len(edges)} arrows are more than can be drawn; filter by part of a name")
     alone = [] if text else _nodes(state)
@@ -97,25 +98,20 @@ def _nodes(state: SystemState) -> list[str]:
     return sorted({node for part in parts for nodes in part.values() for node in nodes})
 
 
-def _node_edges(flows: list[Flow]) -> dict[tuple[str, str], set[str]]:
-    """From publisher to subscriber; each arrow has its topics."""
-    edges: dict[tuple[str, str], set[str]] = {}
-    for source, topic, target in flows:
-        if source and target:
-            edges.setdefault((_node(source), _node(target)), set()).add(topic)
-    return edges
+def _edges(flows: list[Flow], view: str) -> dict[tuple[str, str], set[str]]:
+    """From publisher to subscriber, but for nodes alone by way of the topic; with their topics.
 
-
-def _topic_edges(flows: list[Flow], all_topics: bool) -> dict[tuple[str, str], set[str]]:
-    """From publisher to topic to subscriber; without `all_topics` only those with both."""
-    edges: dict[tuple[str, str], set[str]] = {}
+    Only in the view `all` those whose other end is missing, too.
+    """
+    edges: dict[tuple[str, str], set[str]] = defaultdict(set)
     for source, topic, target in flows:
-        if not all_topics and not (source and target):
-            continue
-        if source:
-            edges.setdefault((_node(source), "t" + topic), set()).add(topic)
-        if target:
-            edges.setdefault(("t" + topic, _node(target)), set()).add(topic)
+        if source and target and view == "nodes":
+            edges[_node(source), _node(target)].add(topic)
+        elif view == "all" or (source and target and view != "nodes"):
+            if source:
+                edges[_node(source), "t" + topic].add(topic)
+            if target:
+                edges["t" + topic, _node(target)].add(topic)
     return edges
 
 

@@ -2,14 +2,16 @@
 
 from xml.etree.ElementTree import Element
 
+import bullet_sim.formats.xml_values as xml
 from bullet_sim.description import (
     CAMERA_TYPES,
     RAY_TYPES,
+    CameraDescription,
+    Lens,
     PluginDescription,
     RayDescription,
     SensorDescription,
 )
-from bullet_sim.formats.sdf.camera import read_camera
 from bullet_sim.formats.sdf.noise import read_imu, read_noise
 from bullet_sim.formats.xml_values import fields, flag, integer, number, pose
 
@@ -54,4 +56,61 @@ def _ray(element: Element, where: str) -> RayDescription:
         **fields(number, element, "resolution min_angle max_angle", usual, where, up, "vertical_"),
         **fields(number, element, "min max resolution", usual, where, "range/", "range_"),
         noise=read_noise(element.find("noise"), where),
+    )
+
+
+DISTORTION = ("k1", "k2", "p1", "p2", "k3")  # the order of OpenCV and of camera_info
+LENSES = {  # type: c1, c2, function of r = c1 f fun(theta / c2)
+    "gnomonical": (1.0, 1.0, "tan"),
+    "stereographic": (2.0, 2.0, "tan"),
+    "equidistant": (1.0, 1.0, "id"),
+    "equisolid_angle": (2.0, 2.0, "sin"),
+    "orthographic": (1.0, 1.0, "sin"),
+}
+USUAL_LENS = "stereographic"
+FUNCTIONS = ("sin", "tan", "id")
+
+
+def read_camera(element: Element, sensor: str) -> CameraDescription:
+    """One camera; `sensor` names its sensor in errors."""
+    name = element.get("name", "")
+    where = f"{sensor} <camera name={name!r}>" if name else f"{sensor} <camera>"
+    usual = CameraDescription()
+    return CameraDescription(
+        name=name,
+        pose=xml.pose(element, where),
+        horizontal_fov=xml.number(element, "horizontal_fov", usual.horizontal_fov, where),
+        **xml.fields(xml.integer, element, "width height", usual, where, "image/"),
+        format=xml.child_text(element, "image/format", usual.format),
+        **xml.fields(xml.number, element, "near far", usual, where, "clip/"),
+        noise=read_noise(element.find("noise"), where),
+        distortion=tuple(
+            xml.number(element, f"distortion/{key}", 0.0, where) for key in DISTORTION),
+        distortion_centre=xml.vector(element, "distortion/center", usual.distortion_centre, where),
+        lens=_lens(element.find("lens"), f"{where} <lens>"),
+    )
+
+
+def _lens(element: Element | None, where: str) -> Lens:
+    if element is None:
+        return Lens()
+    usual = Lens()
+    kind = xml.one_of((*LENSES, "custom"), "lens", xml.child_text(element, "type", USUAL_LENS),
+                      USUAL_LENS, f"{where} <type>")
+    own = "custom_function/"
+    if kind == "custom":
+        function = xml.one_of(FUNCTIONS, "function", xml.child_text(
+            element, own + "fun", usual.function), usual.function, f"{where} <fun>")
+        c1 = xml.number(element, own + "c1", 1.0, where)
+        c2 = xml.number(element, own + "c2", 1.0, where)
+    else:
+        c1, c2, function = LENSES[kind]
+    return Lens(
+        c1=c1,
+        c2=c2,
+        function=function,
+        **(xml.fields(xml.number, element, "c3 f", usual, where, own) if kind == "custom" else {}),
+        scale_to_hfov=xml.flag(element, "scale_to_hfov", usual.scale_to_hfov),
+        cutoff_angle=xml.number(element, "cutoff_angle", usual.cutoff_angle, where),
+        env_texture_size=xml.integer(element, "env_texture_size", usual.env_texture_size, where),
     )

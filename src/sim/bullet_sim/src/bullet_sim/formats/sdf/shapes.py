@@ -19,14 +19,12 @@ NEVER_BOUNCES, FASTEST_BOUNCE = 1e5, 1e3  # m/s; the first is SDF's default
 
 def read_visual(element: Element, source: Source, link: str) -> description.Visual | None:
     """A visual; None, with one line given, where its shape cannot be had."""
-    name = element.get("name", "")
-    where = _part(link, element)
-    shape = or_without(read_geometry, element.find("geometry"), source, where)
+    where, shape = _shape(element, source, link)
     if shape is None:
         return None
     material = element.find("material")
     return description.Visual(
-        name=name,
+        name=element.get("name", ""),
         geometry=shape,
         pose=xml.pose(element, where),
         material=None if material is None else read_material(material, source, where),
@@ -38,9 +36,7 @@ def read_visual(element: Element, source: Source, link: str) -> description.Visu
 
 def read_collision(element: Element, source: Source, link: str) -> description.Collision | None:
     """A collision; None, with one line given, where its shape cannot be had."""
-    name = element.get("name", "")
-    where = _part(link, element)
-    shape = or_without(read_geometry, element.find("geometry"), source, where)
+    where, shape = _shape(element, source, link)
     if shape is None:
         return None
     if _is_flat(shape):
@@ -48,7 +44,7 @@ def read_collision(element: Element, source: Source, link: str) -> description.C
                          "volume to collide with, left out; make it larger than 0")
         return None
     return description.Collision(
-        name=name,
+        name=element.get("name", ""),
         geometry=shape,
         pose=xml.pose(element, where),
         surface=read_surface(element.find("surface"), where),
@@ -69,10 +65,12 @@ def _is_flat(shape: description.Geometry) -> bool:
     return False
 
 
-def _part(link: str, element: Element) -> str:
-    """How errors call a visual or collision; in URDF most have no name."""
+def _shape(element: Element, source: Source, link: str
+           ) -> tuple[str, description.Geometry | None]:
+    """How errors call a visual or collision, in URDF most have no name; and its shape."""
     name = element.get("name", "")
-    return f"{link}, {element.tag} {name!r}" if name else f"{link}, <{element.tag}>"
+    where = f"{link}, {element.tag} {name!r}" if name else f"{link}, <{element.tag}>"
+    return where, or_without(read_geometry, element.find("geometry"), source, where)
 
 
 def read_surface(element: Element | None, where: str) -> description.Surface:

@@ -1,6 +1,7 @@
 """Reads URDF joints that move, or that are kept although fixed, with their `<gazebo>` tags."""
 
 import logging
+from dataclasses import replace
 from functools import partial
 from xml.etree.ElementTree import Element
 
@@ -24,36 +25,18 @@ def read_urdf_joint(joint: UrdfJoint, parent: str, extensions: Extensions) -> Jo
 
     FormatError for numbers that are none.
     """
-    if joint.type == "fixed":
-        return _kept_fixed(joint, parent, extensions)
     where = f"joint {joint.name!r}"
-    return JointDescription(
-        name=joint.name,
-        type=joint.type,
-        parent=parent,
-        child=joint.child,
-        axis=_axis(joint.element, where),
-        provide_feedback=extensions.says(joint.name, "provideFeedback"),
-        **_limits(joint, where),
-        **_dynamics(joint.element, where),
-        **_springs(joint.name, extensions),
-    )
-
-
-def _kept_fixed(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointDescription:
-    """`preserveFixedJoint` wins; `disableFixedJointLumping` makes a joint that cannot turn."""
-    turns = extensions.says(joint.name, "disableFixedJointLumping") and not extensions.says(
-        joint.name, "preserveFixedJoint"
-    )
-    limits = {"lower": 0.0, "upper": 0.0} if turns else {}
-    return JointDescription(
-        name=joint.name,
-        type="revolute" if turns else "fixed",
-        parent=parent,
-        child=joint.child,
-        provide_feedback=extensions.says(joint.name, "provideFeedback"),
-        **limits,
-    )
+    described = JointDescription(
+        name=joint.name, type=joint.type, parent=parent, child=joint.child,
+        provide_feedback=extensions.says(joint.name, "provideFeedback"))
+    if joint.type != "fixed":
+        return replace(
+            described, axis=_axis(joint.element, where), **_limits(joint, where),
+            **_dynamics(joint.element, where), **_springs(joint.name, extensions))
+    if (extensions.says(joint.name, "preserveFixedJoint")  # which wins
+            or not extensions.says(joint.name, "disableFixedJointLumping")):
+        return described
+    return replace(described, type="revolute", lower=0.0, upper=0.0)  # that cannot turn
 
 
 def _axis(element: Element, where: str) -> Vector3:

@@ -17,26 +17,30 @@ from bullet_sim_ros.control.registry import Controller, controller
 log = logging.getLogger("bullet_sim.control")
 
 
+TYPES = {"position_controllers/GripperActionController": "position",
+         "effort_controllers/GripperActionController": "effort"}
+
+
+@controller(*TYPES)
 class GripperActionController(Controller):
     """Stalled is aborted; the joint keeps its effort.
 
-    gripper_action_controller_impl.h, checkForSuccess.
+    gripper_action_controller_impl.h, checkForSuccess. A position is commanded, and max_effort only
+    reported; an effort is that of a PID with `gains/<joint>` on the position, up to max_effort.
     """
-
-    interface = ""
 
     def __init__(self, context: ControllerContext):
         super().__init__(context)
         p = context.parameters
-        self._handle = context.claim(self.interface, p.text("joint"))
-        self._gripper = gripper.Gripper(self._handle, self._make_move(), _options(p))
+        interface, joint = TYPES[p.text("type")], p.text("joint")
+        handle = context.claim(interface, joint)
+        move = (gripper.move_by_position(handle) if interface == "position" else
+                gripper.move_by_effort(handle, open_pid(context, f"gains/{joint}")))
+        self._gripper = gripper.Gripper(handle, move, _options(p))
         self._goal = GoalSlot()
         self._running = False
         self._pace = Rate(p.number("action_monitor_rate", 20.0))
         context.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
-
-    def _make_move(self):
-        return gripper.move_by_position(self._handle)
 
     def start(self, time: float) -> None:
         """Hold what is there."""
@@ -78,24 +82,6 @@ class GripperActionController(Controller):
         if self._goal.holds(handle):
             self._gripper.hold()
             self._goal.preempt()
-
-
-@controller("position_controllers/GripperActionController")
-class PositionGripper(GripperActionController):
-    """The position is commanded; max_effort is only reported."""
-
-    interface = "position"
-
-
-@controller("effort_controllers/GripperActionController")
-class EffortGripper(GripperActionController):
-    """A PID with `gains/<joint>` on the position, up to max_effort."""
-
-    interface = "effort"
-
-    def _make_move(self):
-        pid = open_pid(self.context, f"gains/{self._handle.joint.name}")
-        return gripper.move_by_effort(self._handle, pid)
 
 
 def _options(parameters: ControllerParameters) -> gripper.GripperOptions:

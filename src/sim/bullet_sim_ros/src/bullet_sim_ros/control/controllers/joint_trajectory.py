@@ -1,7 +1,6 @@
 """joint_trajectory_controller: joints that follow a trajectory, by topic or by action."""
 
 import logging
-from collections.abc import Callable
 
 import rospy
 from actionlib import ServerGoalHandle
@@ -41,23 +40,33 @@ CODES = {
     Verdict.LEFT_PATH: Result.PATH_TOLERANCE_VIOLATED,
     Verdict.MISSED_GOAL: Result.GOAL_TOLERANCE_VIOLATED,
 }
+TYPES = {"position_controllers/JointTrajectoryController": "position",
+         "velocity_controllers/JointTrajectoryController": "velocity",
+         "effort_controllers/JointTrajectoryController": "effort",
+         "pos_vel_controllers/JointTrajectoryController": None}
 
 
+@controller(*TYPES)
 class JointTrajectoryController(Controller):
     """After a violated tolerance the trajectory goes on; only the goal ends.
 
-    joint_trajectory_controller_impl.h, checkPathTolerances.
+    joint_trajectory_controller_impl.h, checkPathTolerances. Positions are commanded; velocities and
+    efforts are those of a PID on the position, and feed-forward. No simulated joint takes position
+    and velocity at once (default_robot_hw_sim.cpp, initSim).
 
     PluginError of parameters that are missing or wrong.
     """
 
-    interface = ""
-
     def __init__(self, context: ControllerContext):
         super().__init__(context)
         p = context.parameters
-        names = p.texts("joints")
-        self._drives = [self._make_drive(name) for name in names]
+        names, interface = p.texts("joints"), TYPES[p.text("type")]
+        if interface is None:
+            raise PluginError(
+                "it needs joints with hardware_interface/PosVelJointInterface, which the simulated "
+                "robot does not have; position_controllers/JointTrajectoryController does the same "
+                "with hardware_interface/PositionJointInterface")
+        self._drives = [self._make_drive(interface, name) for name in names]
         self._follower = TrajectoryFollower(
             [context.joint(name) for name in names], self._drives,
             p.number("stop_trajectory_duration", 0.0), p.flag("allow_partial_joints_goal", False))
@@ -69,8 +78,10 @@ class JointTrajectoryController(Controller):
         self._goal_pace = Rate(p.number("action_monitor_rate", 20.0))
         self._open_topics()
 
-    def _make_drive(self, joint: str):
-        handle, p = self.context.claim(self.interface, joint), self.context.parameters
+    def _make_drive(self, interface: str, joint: str) -> PositionDrive | PidDrive:
+        handle, p = self.context.claim(interface, joint), self.context.parameters
+        if interface == "position":
+            return PositionDrive(handle)
         return PidDrive(handle, open_pid(self.context, f"gains/{joint}"),
                         p.number(f"velocity_ff/{joint}", 0.0))
 
@@ -80,7 +91,8 @@ class JointTrajectoryController(Controller):
         context.serve("query_state", QueryTrajectoryState, self._query_state)
         context.action("follow_joint_trajectory", FollowJointTrajectoryAction, self._take_goal,
                        self._take_cancel)
-        context.subscribe("command", JointTrajectory, self._take_command, queue_size=1)
+        context.subscribe("command", JointTrajectory, lambda msg: lambda: self._follow(msg),
+                          queue_size=1)
 
     # --- in the loop
 
@@ -150,48 +162,10 @@ class JointTrajectoryController(Controller):
 
     # --- in ROS threads
 
-    def _take_command(self, msg: JointTrajectory) -> Callable[[], None]:
-        return lambda: self._follow(msg)
-
     def _query_state(self, request: QueryTrajectoryStateRequest) -> QueryTrajectoryStateResponse:
         if not self._running:
             raise rospy.ServiceException(f"{self.context.describe()} is not running")
-        states = self.context.in_loop(lambda: self._follower.sample(request.time.to_sec()))
+        states = self.context.mailbox.call(lambda: self._follower.sample(request.time.to_sec()))
         return QueryTrajectoryStateResponse(
             self._follower.names, [state.position for state in states],
             [state.velocity for state in states], [state.acceleration for state in states])
-
-
-@controller("position_controllers/JointTrajectoryController")
-class PositionTrajectory(JointTrajectoryController):
-    """Positions are commanded."""
-
-    interface = "position"
-
-    def _make_drive(self, joint: str):
-        return PositionDrive(self.context.claim(self.interface, joint))
-
-
-@controller("velocity_controllers/JointTrajectoryController")
-class VelocityTrajectory(JointTrajectoryController):
-    """Velocities by a PID on the position, and feed-forward."""
-
-    interface = "velocity"
-
-
-@controller("effort_controllers/JointTrajectoryController")
-class EffortTrajectory(JointTrajectoryController):
-    """Efforts by a PID on the position, and feed-forward."""
-
-    interface = "effort"
-
-
-@controller("pos_vel_controllers/JointTrajectoryController")
-class PositionVelocityTrajectory(JointTrajectoryController):
-    """No simulated joint takes both commands at once (default_robot_hw_sim.cpp, initSim)."""
-
-    def _make_drive(self, joint: str):
-        raise PluginError(
-            "it needs joints with hardware_interface/PosVelJointInterface, which the simulated "
-            "robot does not have; position_controllers/JointTrajectoryController does the same "
-            "with hardware_interface/PositionJointInterface")

@@ -4,8 +4,7 @@ import numpy as np
 from geometry_msgs.msg import Point, PointStamped
 from hector_uav_msgs.msg import Altimeter
 
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 
 # International barometric formula: pressure = qnh (1 - altitude / SCALE)^EXPONENT

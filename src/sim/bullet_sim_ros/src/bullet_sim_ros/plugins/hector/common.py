@@ -9,19 +9,17 @@ from bullet_sim.link import Link
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
-from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters, read_numbers
-from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
         "gaussian_noise": "gaussianNoise", "scale_error": "scaleError"}
-RANGES = {"gaussian_noise": (0.0, 10.0), "offset": (0.0, 10.0), "drift": (0.0, 10.0),
-          "drift_frequency": (0.0, 1.0), "scale_error": (0.0, 2.0)}
-TELLS = {"gaussian_noise": "Standard deviation of the white noise",
-         "offset": "Constant offset", "drift": "Standard deviation of the drift",
-         "drift_frequency": "Reciprocal of the drift's time constant, Hz",
-         "scale_error": "Factor on the true value"}
+RANGES = {"gaussian_noise": (0.0, 10.0, "Standard deviation of the white noise"),
+          "offset": (0.0, 10.0, "Constant offset"),
+          "drift": (0.0, 10.0, "Standard deviation of the drift"),
+          "drift_frequency": (0.0, 1.0, "Reciprocal of the drift's time constant, Hz"),
+          "scale_error": (0.0, 2.0, "Factor on the true value")}
 
 
 def find_link(context: PluginContext) -> Link:
@@ -104,7 +102,7 @@ class HectorError(ErrorModel):
         means = {name: math.fsum(values) / len(values)
                  for name, values in vars(self.parameters).items()}
         offer_changes(self._context, namespace, {
-            name: Value(means[name], *RANGES[name], TELLS[name]) for name in RANGES}, self._set)
+            name: Value(means[name], *RANGES[name]) for name in RANGES}, self._set)
 
     def _set(self, values: dict[str, float]) -> None:
         size = len(self.parameters.offset)

@@ -9,8 +9,7 @@ from sensor_msgs.msg import NavSatFix, NavSatStatus
 from bullet_sim.description import SphericalDescription
 from bullet_sim.sensors.geo_reference import GeoReference
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 

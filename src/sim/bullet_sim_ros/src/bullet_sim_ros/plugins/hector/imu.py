@@ -11,8 +11,7 @@ from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.error_model import attitude_error
 from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 
 

@@ -7,8 +7,7 @@ from geometry_msgs.msg import Vector3, Vector3Stamped
 from sensor_msgs.msg import MagneticField
 
 from bullet_sim.pose import conjugate, rotate
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.plugins.hector.gps import world_heading
 

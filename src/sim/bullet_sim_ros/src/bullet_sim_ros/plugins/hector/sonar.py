@@ -4,8 +4,7 @@ import numpy as np
 from sensor_msgs.msg import Range
 
 from bullet_sim.sensors.ray_fan import RayFan
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.registry import plugin
+from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 
 
