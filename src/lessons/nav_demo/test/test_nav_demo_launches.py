@@ -10,12 +10,13 @@ import yaml
 PACKAGE = Path(__file__).resolve().parents[1]
 NAVIGATION = PACKAGE.parents[1] / "navigation"
 LAUNCHES = sorted(PACKAGE.glob("launch/*.launch"))
+STATE = {"/joint_state_publisher", "/robot_state_publisher"}
 NODES = {  # launch: the nodes it starts where there is no screen
-    "nav01_slam": {"/slam_gmapping"}, "nav02_map_save": {"/map_saver"},
+    "nav01_slam": {"/slam_gmapping", *STATE}, "map_save": {"/map_save"},
     "nav03_map_server": {"/map_server"}, "nav04_amcl": {"/amcl"},
-    "nav04_test": {"/map_server", "/amcl"}, "nav05_path": {"/move_base"},
-    "nav05_test": {"/map_server", "/amcl", "/move_base"},
-    "nav06_auto_slam": {"/slam_gmapping", "/move_base"},
+    "nav04_test": {"/map_server", "/amcl", *STATE}, "nav05_path": {"/move_base"},
+    "nav05_test": {"/map_server", "/amcl", "/move_base", *STATE},
+    "nav06_auto_slam": {"/slam_gmapping", "/move_base", *STATE},
 }
 RVIZ = {"nav01_slam": "map", "nav03_map_server": "map", "nav04_test": "map", "nav05_test": "nav",
         "nav06_auto_slam": "nav"}  # launch: the configuration
@@ -58,7 +59,13 @@ def test_maps_are_given_by_name_or_by_path():
         "/map/my_map.yaml")
 
 
-def test_parameters_are_known():
+@pytest.mark.parametrize("name", ["nav01_slam", "nav04_test", "nav05_test", "nav06_auto_slam"])
+def test_the_state_publishers_can_be_left_to_the_car(name):
+    assert set(load(name, "state_publishers:=false", "rviz:=false")[0]) == NODES[name] - STATE
+
+
+@pytest.mark.parametrize("folder", ["param", "param_room"])
+def test_parameters_are_known(folder):
     """A misspelt name would be silently without effect."""
     known = {
         "/slam_gmapping/": table("gmapping", "slam_gmapping"),
@@ -69,8 +76,11 @@ def test_parameters_are_known():
         "/move_base/local_costmap/scan/": table("costmap_2d", "source"),
     }
     known |= {space.replace("local", "global"): names for space, names in known.items()}
-    given = load("nav05_test")[1] | load("nav06_auto_slam")[1]
+    given = load("nav05_test", f"param:={folder}")[1] | \
+        load("nav06_auto_slam", f"param:={folder}")[1]
+    largest = given["/move_base/TrajectoryPlannerROS/max_vel_x"].value
+    assert largest == {"param": 0.5, "param_room": 0.3}[folder]
     for name in given:
         space, _, last = name.rpartition("/")
-        if space:
+        if space and space != "/joint_state_publisher":
             assert last in known[f"{space}/"], name
