@@ -64,8 +64,7 @@ def test_the_state_publishers_can_be_left_to_the_car(name):
     assert set(load(name, "state_publishers:=false", "rviz:=false")[0]) == NODES[name] - STATE
 
 
-@pytest.mark.parametrize("folder", ["param", "param_room"])
-def test_parameters_are_known(folder):
+def test_parameters_are_known():
     """A misspelt name would be silently without effect."""
     known = {
         "/slam_gmapping/": table("gmapping", "slam_gmapping"),
@@ -76,10 +75,7 @@ def test_parameters_are_known(folder):
         "/move_base/local_costmap/scan/": table("costmap_2d", "source"),
     }
     known |= {space.replace("local", "global"): names for space, names in known.items()}
-    given = load("nav05_test", f"param:={folder}")[1] | \
-        load("nav06_auto_slam", f"param:={folder}")[1]
-    largest = given["/move_base/TrajectoryPlannerROS/max_vel_x"].value
-    assert largest == {"param": 0.5, "param_room": 0.3}[folder]
+    given = load("nav05_test")[1] | load("nav06_auto_slam")[1]
     for name in given:
         space, _, last = name.rpartition("/")
         if space and space != "/joint_state_publisher":
