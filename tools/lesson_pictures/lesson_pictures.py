@@ -3,7 +3,7 @@
 
   lesson_pictures.py [course|nav_demo|turtlebot3_slam|turtlebot3_navigation|racecar]
 
-course, which is meant without a word: the windows of learning_topic's lessons 01 to 06. The others:
+course, which is meant without a word: the windows of learning_topic's lessons 01 to 07. The others:
 rviz on the way, each as its launch files open it, on a screen that nobody sees.
 """
 

@@ -51,10 +51,11 @@ class Lesson:
 LESSONS = (
     Lesson("01follower.py", windows=0),
     Lesson("02follower_opencv.py"),
-    Lesson("03follower_color_filter.py"),
+    Lesson("03follower_color_filter.py", windows=2),
     Lesson("04follower_line_finder.py", windows=2),
     Lesson("05follower_proporation.py", drive_time=9.0),
     Lesson("06follower_pid.py", drive_time=9.0),
+    Lesson("07follower_ground.py", drive_time=9.0),
 )
 
 

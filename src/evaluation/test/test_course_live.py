@@ -32,7 +32,7 @@ def processes_of(out: Path) -> dict[int, str]:
 
 @pytest.mark.timeout(LAP_LIMIT + 30)
 @pytest.mark.parametrize(
-    "follower, worst_rms", [("05follower_proporation.py", 0.06), ("06follower_pid.py", 0.02)]
+    "follower, worst_rms", [("05follower_proporation.py", 0.06), ("07follower_ground.py", 0.02)]
 )
 def test_a_follower_closes_its_lap_near_the_line(tmp_path, follower, worst_rms):
     out = tmp_path / "out"
@@ -67,7 +67,7 @@ def drive_fast(out: Path, *options: str) -> dict:
     }
 
 
-@pytest.mark.parametrize("follower", ["05follower_proporation.py", "06follower_pid.py"])
+@pytest.mark.parametrize("follower", ["06follower_pid.py", "07follower_ground.py"])
 def test_a_fast_drive_is_repeated_to_the_bit(tmp_path, follower):
     options = ("--camera", "320x240", "--seed", "5", "--follower", follower)
     first = drive_fast(tmp_path / "first", *options)

@@ -314,7 +314,7 @@ def test_even_a_killed_run_leaves_nothing(start):
         (("--laps", "1.5"), "got '1.5'"),
         (("--duration", "0"), "--duration (DURATION=) must be seconds of simulated time"),
         (("--duration", "nan"), "got 'nan'"),
-        (("--follower", "07nothing.py"), "there are: 05follower_proporation.py, 06follower_pid.py"),
+        (("--follower", "08nothing.py"), "there are: 05follower_proporation.py, 06follower_pid.py"),
         (("--launch-arg", "x_pos=1"), "--launch-arg must look like name:=value, got 'x_pos=1'"),
         (("--track", "nowhere.yaml"), "nowhere.yaml: No such file or directory"),
         (("--camera", "640"), "--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480"),

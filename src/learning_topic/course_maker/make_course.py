@@ -15,14 +15,18 @@ def main() -> int:
     packages = rospkg.RosPack()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--track", type=Path, help="YAML file (evaluation's tracks/course.yaml)")
-    parser.add_argument("--model", type=Path, help="folder to write (default: the lesson's course)")
+    parser.add_argument("--model", type=Path,
+                        help="folder to write (default: the course of learning_topic and its copy "
+                             "in turtlebot3_gazebo)")
     options = parser.parse_args()
     try:
         track = options.track or Path(packages.get_path("evaluation")) / "tracks" / "course.yaml"
-        lessons = Path(packages.get_path("learning_topic")) if options.model is None else Path()
-        model = options.model or lessons / "models" / "turtlebot3_autorace" / "course"
-        for path in write_model(load_track_file(track), model):
-            print(f"{path}: {path.stat().st_size} bytes")
+        models = [options.model] if options.model else [
+            Path(packages.get_path(name)) / "models" / "turtlebot3_autorace" / "course"
+            for name in ("learning_topic", "turtlebot3_gazebo")]
+        for model in models:
+            for path in write_model(load_track_file(track), model):
+                print(f"{path}: {path.stat().st_size} bytes")
     except (TrackError, OSError, rospkg.ResourceNotFound) as error:
         print(f"make_course: {error}", file=sys.stderr)
         return 1

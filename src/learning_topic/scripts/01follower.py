@@ -5,23 +5,12 @@ import rospy
 from sensor_msgs.msg import Image
 
 
-class Follower:
-    def __init__(self):
-        # A buffer larger than one image: without it the images seen are old ones.
-        # 缓冲区要大于一帧图像，否则收到的是旧图像。
-        self.image_sub = rospy.Subscriber(
-            "camera/rgb/image_raw", Image, self.image_callback, queue_size=1, buff_size=2**24
-        )
-
-    def image_callback(self, msg):
-        """Called once for each image.  每来一帧图像调用一次。"""
+def image_callback(msg):
+    """Called once for each image.  每来一帧图像调用一次。"""
 
 
-def main():
-    rospy.init_node("follower")
-    Follower()
-    rospy.spin()
-
-
-if __name__ == "__main__":
-    main()
+rospy.init_node("follower")
+# A buffer larger than one image: without it the images seen are old ones.
+# 缓冲区要大于一帧图像，否则收到的是旧图像。
+rospy.Subscriber("camera/rgb/image_raw", Image, image_callback, queue_size=1, buff_size=2**24)
+rospy.spin()

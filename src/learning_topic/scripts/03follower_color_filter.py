@@ -22,6 +22,7 @@ class Follower:
     def __init__(self):
         self.bridge = cv_bridge.CvBridge()
         cv2.namedWindow("showYellowOnly", cv2.WINDOW_NORMAL)
+        cv2.namedWindow("masked", cv2.WINDOW_NORMAL)
         self.image_sub = rospy.Subscriber(
             "camera/rgb/image_raw", Image, self.image_callback, queue_size=1, buff_size=2**24
         )
@@ -30,7 +31,10 @@ class Follower:
         # Say bgr8: the camera sends rgb8, and red and blue would be swapped.
         # 必须写明 bgr8：相机发来的是 rgb8，否则红蓝颠倒。
         image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
-        cv2.imshow("showYellowOnly", yellow_mask(image))
+        mask = yellow_mask(image)
+        masked = cv2.bitwise_and(image, image, mask=mask)  # black where it is not yellow  非黄为黑
+        cv2.imshow("showYellowOnly", mask)
+        cv2.imshow("masked", masked)
         cv2.waitKey(3)  # ms
 
 

@@ -13,7 +13,7 @@ import rostest
 from rosgraph_msgs.msg import Log
 from stand_in_camera import WIDTH, StandInCamera, stands, wait_until
 
-TIMES = 5
+TIMES = 4
 PERIOD = 1 / 30  # s from image to image
 
 
@@ -53,6 +53,9 @@ class LessonsEnd(unittest.TestCase):
 
     def test_lesson_6_ends_standing(self):
         self.ends_standing("06follower_pid.py")
+
+    def test_lesson_7_ends_standing(self):
+        self.ends_standing("07follower_ground.py")
 
     def test_lesson_5_says_that_no_images_come(self):
         said = []

@@ -30,6 +30,9 @@ class LessonsWindows(unittest.TestCase):
         shown = window("/lesson_03/windows/showYellowOnly")[:, :, 0]
         self.assertEqual(np.flatnonzero(shown.all(axis=0)).tolist(), list(range(195, 206)))
         self.assertEqual(np.count_nonzero(shown), 11 * HEIGHT)
+        masked = window("/lesson_03/windows/masked")
+        self.assertEqual(masked[10, 200].tolist(), [0, 255, 255])
+        self.assertEqual(np.count_nonzero(masked.any(axis=2)), 11 * HEIGHT)
 
     def test_lesson_4_marks_the_line(self):
         shown = window("/lesson_04/windows/showImage")

@@ -10,6 +10,7 @@ from geometry_msgs.msg import Twist
 RATE_HZ = 10
 DRIVE_GAIN = 0.5  # m/s per m of distance
 TURN_GAIN = 4.0  # rad/s per rad of bearing
+WAIT = rospy.Duration(3.0)  # for the frames, at the start  开始时等待坐标变换
 
 
 def follow(x, y):
@@ -29,7 +30,7 @@ def main():
     while not rospy.is_shutdown():
         try:
             # turtle1 as turtle2 sees it.  turtle1 在 turtle2 坐标系中的位置
-            target = buffer.lookup_transform("turtle2", "turtle1", rospy.Time(0))
+            target = buffer.lookup_transform("turtle2", "turtle1", rospy.Time(0), WAIT)
             publisher.publish(follow(target.transform.translation.x,
                                      target.transform.translation.y))
         except tf2_ros.TransformException as error:

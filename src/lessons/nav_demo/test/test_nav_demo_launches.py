@@ -10,14 +10,15 @@ import yaml
 PACKAGE = Path(__file__).resolve().parents[1]
 NAVIGATION = PACKAGE.parents[1] / "navigation"
 LAUNCHES = sorted(PACKAGE.glob("launch/*.launch"))
+STATE = {"/joint_state_publisher", "/robot_state_publisher"}
 NODES = {  # launch: the nodes it starts where there is no screen
-    "nav01_slam": {"/slam_gmapping"}, "nav02_map_save": {"/map_saver"},
+    "nav01_slam": {"/slam_gmapping", *STATE}, "map_save": {"/map_save"},
     "nav03_map_server": {"/map_server"}, "nav04_amcl": {"/amcl"},
-    "nav04_test": {"/map_server", "/amcl"}, "nav05_path": {"/move_base"},
-    "nav05_test": {"/map_server", "/amcl", "/move_base"},
-    "nav05_robust": {"/map_server", "/amcl", "/move_base"},
-    "nav07_own_planner": {"/map_server", "/amcl", "/move_base"},
-    "nav06_auto_slam": {"/slam_gmapping", "/move_base"},
+    "nav04_test": {"/map_server", "/amcl", *STATE}, "nav05_path": {"/move_base"},
+    "nav05_test": {"/map_server", "/amcl", "/move_base", *STATE},
+    "nav05_robust": {"/map_server", "/amcl", "/move_base", *STATE},
+    "nav07_own_planner": {"/map_server", "/amcl", "/move_base", *STATE},
+    "nav06_auto_slam": {"/slam_gmapping", "/move_base", *STATE},
 }
 RVIZ = {"nav01_slam": "map", "nav03_map_server": "map", "nav04_test": "map", "nav05_test": "nav",
         "nav05_robust": "nav", "nav06_auto_slam": "nav",
@@ -61,6 +62,11 @@ def test_maps_are_given_by_name_or_by_path():
         "/map/my_map.yaml")
 
 
+@pytest.mark.parametrize("name", ["nav01_slam", "nav04_test", "nav05_test", "nav06_auto_slam"])
+def test_the_state_publishers_can_be_left_to_the_car(name):
+    assert set(load(name, "state_publishers:=false", "rviz:=false")[0]) == NODES[name] - STATE
+
+
 def test_parameters_are_known():
     """A misspelt name would be silently without effect."""
     known = {
@@ -76,5 +82,5 @@ def test_parameters_are_known():
     assert given["/move_base/base_global_planner"].value == "nav_demo/BreadthFirst"
     for name in given:
         space, _, last = name.rpartition("/")
-        if space:
+        if space and space != "/joint_state_publisher":
             assert last in known[f"{space}/"], name

@@ -6,11 +6,13 @@ import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1]
 CAR = PACKAGE / "urdf" / "xacro" / "demo05_car.urdf.xacro"
 PLAIN = sorted((PACKAGE / "urdf").glob("*.urdf"))
+WHOLE = sorted((PACKAGE / "urdf" / "xacro").glob("demo*"))
 
 
 def expanded(path):
@@ -26,17 +28,12 @@ def joints(path):
             for joint in ElementTree.fromstring(expanded(path)).findall("joint")}
 
 
-@pytest.mark.parametrize("path", [*PLAIN, CAR], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*PLAIN, *WHOLE], ids=lambda path: path.name)
 def test_check_urdf_takes_it(path, tmp_path):
     file = tmp_path / "model.urdf"
     file.write_text(expanded(path), encoding="utf-8")
     done = subprocess.run(["check_urdf", str(file)], text=True, capture_output=True, check=False)
     assert done.returncode == 0 and "Successfully Parsed XML" in done.stdout, done.stdout
-
-
-def test_the_joint_lesson():
-    camera = ElementTree.fromstring(expanded(PLAIN[2])).find("joint[@name='camera2base_link']")
-    assert camera.get("type") == "continuous" and camera.find("axis").get("xyz") == "0 0 1"
 
 
 def test_the_car_stands_on_the_ground():
@@ -46,14 +43,17 @@ def test_the_car_stands_on_the_ground():
         return float(found[name][1].split()[2])
     base = height("base_link2base_footprint")
     assert base + height("left_wheel2base_link") == pytest.approx(0.0325)  # the wheel's radius
-    assert base + height("front_caster2base_link") == pytest.approx(0.0075)
+    assert base + height("front_wheel2base_link") == pytest.approx(0.0075)
 
 
-def test_the_gear_is_what_its_script_makes():
-    script = runpy.run_path(str(PACKAGE / "scripts" / "make_gear.py"))
-    triangles = script["gear"]()
-    assert (PACKAGE / "meshes" / "gear.stl").read_bytes() == script["stl"](triangles)
-    # Each edge has a triangle on either side, so the gear is closed.
+def test_the_mesh_is_what_its_script_makes():
+    script = runpy.run_path(str(PACKAGE / "scripts" / "make_mesh.py"))
+    triangles = script["car"]()
+    assert (PACKAGE / "meshes" / "autolabor_mini.stl").read_bytes() == script["stl"](triangles)
+    # Each edge has a triangle on either side, so all solids are closed.
     edges = [(tuple(p), tuple(q)) for a, b, c in triangles for p, q in ((a, b), (b, c), (c, a))]
     assert sorted(edges) == sorted((q, p) for p, q in edges)
-    assert max(math.hypot(x, y) for t in triangles for x, y, _ in t) == pytest.approx(0.10)
+    volume = sum(np.linalg.det(triangle) for triangle in triangles) / 6  # of outward faces: > 0
+    wheel = 12 * math.sin(math.tau / 24) * 0.05**2 * 0.03
+    assert volume == pytest.approx(0.15 * 0.10 * 0.30 + 4 * wheel)
+    assert min(y for triangle in triangles for _x, y, _z in triangle) == pytest.approx(0.0)

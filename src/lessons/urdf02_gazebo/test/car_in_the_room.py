@@ -91,7 +91,7 @@ class Car(unittest.TestCase):
         self.assertAlmostEqual(car.position.z, 0.0, delta=0.003)  # it neither sinks nor hops
         buffer = tf2_ros.Buffer()
         listener = tf2_ros.TransformListener(buffer)
-        for frame in ("laser", "camera_optical", "kinect_optical", "left_wheel"):
+        for frame in ("laser", "camera_optical", "kinect_optical", "left_wheel", "front_wheel"):
             self.assertTrue(buffer.can_transform("odom", frame, rospy.Time(0),
                                                  rospy.Duration(LIMIT)), frame)
         listener.unregister()

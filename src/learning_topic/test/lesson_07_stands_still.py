@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 6 follows, turns to where the line was lost, and stands still without images."""
+"""Lesson 7 follows, turns to where the line was lost, and stands still without images."""
 
 import sys
 import time
@@ -10,11 +10,11 @@ import rostest
 from stand_in_camera import WIDTH, StandInCamera, stands
 
 
-class Lesson06(unittest.TestCase):
+class Lesson07(unittest.TestCase):
     def test_follows_searches_and_stands_still(self):
         camera = StandInCamera(WIDTH // 2 + 200)
         right = camera.next_command(lambda c: c.linear.x > 0, "driving")
-        self.assertAlmostEqual(right.linear.x, 0.1)  # the parameter, not the file
+        self.assertAlmostEqual(right.linear.x, 0.1)  # the parameter, not the script's
         self.assertLess(right.angular.z, 0)
 
         camera.column = None
@@ -39,5 +39,5 @@ class Lesson06(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("lesson_06_stands_still")
-    rostest.rosrun("learning_topic", "lesson_06", Lesson06, sys.argv)
+    rospy.init_node("lesson_07_stands_still")
+    rostest.rosrun("learning_topic", "lesson_07", Lesson07, sys.argv)
