@@ -29,16 +29,18 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
     with half.open("w", encoding="utf-8-sig", newline="") as file:  # Excel needs the mark
         writer = csv.writer(file)
         writer.writerow(["student", "points", "of", *cases, "sandbox",
-                         "why points were lost"])
+                         "why points were lost", "note"])
         for student, rows in marks.items():
             points = {mark.case: mark.points for mark in rows}
             writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
                              *[points.get(case, "") for case in cases],
-                             "no" if kind is Kind.NONE else "yes", _cell(_lost(rows))])
+                             "no" if kind is Kind.NONE else "yes", _cell(_lost(rows)),
+                             _notes(rows)])
     half.replace(out / MARKS)
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
-        f"<td>{mean([mark.points for mark in rows]):g}</td><td>{escape(_lost(rows))}</td>"
+        f"<td>{mean([mark.points for mark in rows]):g}</td><td>{escape(_lost(rows))}"
+        f"{_line(_notes(rows))}</td>"
         f"<td>{''.join(_thumbnail(mark, out) for mark in rows)}</td></tr>\n"
         for student, rows in marks.items())
     warning = ("<p><b>These submissions ran without a sandbox.</b></p>" if kind is Kind.NONE
@@ -81,7 +83,7 @@ def _case_part(mark: Mark, out: Path, folder: Path) -> str:
     film = f'<p><video src="{_film(mark)}" controls width="512"></video></p>' if (
         folder / _film(mark)).exists() else ""
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
-            f"{lost}{picture}{film}{_output(mark, out)}")
+            f"{lost}{_line(mark.note)}{picture}{film}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:
@@ -103,6 +105,14 @@ def _lost(rows: Sequence[Mark]) -> str:
     several = len(rows) > 1
     return "; ".join(f"{mark.case}: {each}" if several else each
                      for mark in rows for each in mark.lost)
+
+
+def _notes(rows: Sequence[Mark]) -> str:
+    return "; ".join(dict.fromkeys(mark.note for mark in rows if mark.note))
+
+
+def _line(text: str) -> str:
+    return f"<p>{escape(text)}</p>" if text else ""
 
 
 def _cell(text: str) -> str:
