@@ -13,7 +13,6 @@ from evaluation.picture import path_picture
 from evaluation.trial.report import write_json
 from marking.case_files import PATH_PICTURE, REPORT, CaseFile
 
-
 BY_TIME = "by time"  # outcome: it does not answer each image, and has to drive in real time
 
 
