@@ -19,7 +19,7 @@ from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import REPORT, Case, Trial
+from evaluation.trial.protocol import REPORT, Case, ReportedTrial
 from marking.case_files import CaseFile
 from marking.course_up import STARTUP_LIMIT
 from marking.drive_report import BY_TIME
@@ -47,7 +47,7 @@ class MarkedCase(Case):
     seed: int
 
 
-class MarkingTrial(Trial):
+class MarkingTrial(ReportedTrial):
     """Submissions times tracks times seeds."""
 
     program = "mark"
