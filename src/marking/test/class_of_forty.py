@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Marks forty made-up submissions twice and checks every row: minutes, and what is not as designed.
 
     source devel/setup.bash
