@@ -10,7 +10,7 @@ import time
 from dataclasses import asdict, dataclass
 
 from evaluation.session.failure import RunError
-from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.protocol import Case, ReportedTrial
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Nap:
     files: int  # in the folder that the case got
 
 
-class SleepTrial(Trial):
+class SleepTrial(ReportedTrial):
     """Each case starts a process in a session of its own, notes its number, and sleeps."""
 
     program = "sleep_trial"

@@ -8,7 +8,7 @@ import pytest
 
 from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.runner import run_trial
 from evaluation.trial.table import cell, table
 
@@ -21,7 +21,7 @@ class Square:
     value: int
 
 
-class Squares(Trial):
+class Squares(ReportedTrial):
     """Squares numbers; `fails` at one of them, and `most` is the largest good one."""
 
     program = "squares"

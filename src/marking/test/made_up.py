@@ -10,7 +10,7 @@ import stat
 import sys
 import tarfile
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import yaml
@@ -60,6 +60,30 @@ def slave_api(method: str) -> str:
                 f"xmlrpc.client.ServerProxy(node).{method}")
 
 
+# The lesson with a command in a loop of its own, as on a robot, not in answer to an image.
+_KEEPS, _, _ = LESSON.replace(
+    "self.cmd_vel_pub.publish(command)", "self.command = command").replace(
+    "        self.bridge =", "        self.command = Twist()\n        self.bridge =").rpartition(
+    "    rospy.spin()")
+_SEND = "follower.cmd_vel_pub.publish(follower.command)"
+RATE_LOOP = _KEEPS + f'''    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        {_SEND}
+        rate.sleep()
+
+
+main()
+'''
+TIMER = _KEEPS + f'''    rospy.Timer(rospy.Duration(0.1), lambda _: {_SEND})
+    rospy.spin()
+
+
+main()
+'''
+SLEEPS_FIRST = LESSON.replace(
+    "follower = Follower()", "rospy.sleep(1.0)\n    follower = Follower()")
+IN_REAL_TIME = "real time"
+
 CALLED, PUBLISHED = "it called ", "it published "
 # Student: (program, what the row says, least points, most points)
 PROGRAMS: dict[str, tuple[str, str, float, float]] = {
@@ -70,6 +94,9 @@ PROGRAMS: dict[str, tuple[str, str, float, float]] = {
     "wrong_shebang": (LESSON.replace("/usr/bin/env python3", "/opt/python2"), "", 85, 100),
     "reads_pose": (call("/gazebo/get_model_state", "GetModelState",
                         "'turtlebot3_waffle', 'world'"), "", 85, 100),
+    "rate_loop": (RATE_LOOP, IN_REAL_TIME, 80, 100),
+    "timer": (TIMER, IN_REAL_TIME, 80, 100),
+    "sleeps_first": (SLEEPS_FIRST, IN_REAL_TIME, 80, 100),
     "slow": (SLOW, "on average", 70, 95),
     "lost": (LOST, "left the course", 0, 30),
     "stands": (STANDS, "never moved", 0, 15),
@@ -182,6 +209,21 @@ ARCHIVES: dict[str, tuple[bytes, str, float, float]] = {
     "two.zip": (_zip({"a.py": LESSON, "b.py": LESSON}), "which program drives?", 0, 0),
     "report.docx": (b"PK", "no Python file", 0, 0),
 }
+
+
+def wrong_rows(rows: Sequence[Mapping[str, str]],
+               expected: Mapping[str, tuple[str, float, float]]) -> list[str]:
+    """A line for each row of marks.csv that is not as designed."""
+    found = {row["student"]: row for row in rows}
+    wrong = [f"{student}: {'no such row' if student in expected else 'a row too many'}"
+             for student in sorted(set(found) ^ set(expected))]
+    for student in sorted(set(found) & set(expected)):
+        (says, least, most), row = expected[student], found[student]
+        if says not in f"{row['why points were lost']}; {row['note']}" or not (
+                least <= float(row["points"]) <= most):
+            wrong.append(f"{student}: {row['points']} points, {row['why points were lost']} "
+                         f"{row['note']}; expected {least:g} to {most:g} and {says!r}")
+    return wrong
 
 
 def write_rules(path: Path, **limits: float) -> Path:

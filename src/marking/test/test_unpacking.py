@@ -4,7 +4,7 @@ import zipfile
 
 import made_up
 import pytest
-from marking.submissions import find_submissions, prepare
+from marking.submissions import digest, find_submissions, prepare
 from marking.unpacking import UnpackError, unpack
 
 PATTERNS = ("follower.py", "*follow*.py", "main.py")
@@ -55,3 +55,16 @@ def test_a_link_in_a_folder_is_refused(tmp_path):
     [submission] = find_submissions(tmp_path / "in")
     with pytest.raises(UnpackError, match="symbolic link"):
         prepare(submission, tmp_path / "out", PATTERNS)
+
+
+def test_a_changed_submission_has_another_digest(tmp_path):
+    folder = tmp_path / "ann"
+    folder.mkdir()
+    (folder / "a.py").write_text("1")
+    first = digest(folder)
+    assert digest(folder) == first
+    (folder / "a.py").write_text("2")
+    changed = digest(folder)
+    (folder / "a.py").rename(folder / "b.py")
+    (folder / "link").symlink_to("/etc/passwd")
+    assert len({first, changed, digest(folder), digest(folder / "b.py")}) == 4

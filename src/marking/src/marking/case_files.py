@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from racecar_description.track.closed_line import build_track
@@ -11,6 +11,7 @@ from racecar_description.track.track_file import load_track_file
 
 from evaluation.lap import LapScorer
 from evaluation.session.course_file import Course
+from marking.rules import Limits
 from marking.venues import driven
 
 CASE, REPORT, PATH_PICTURE, OUTPUT, FILM = (
@@ -30,10 +31,22 @@ class CaseFile:
     track: str  # path
     film: bool
     launch_args: list[str]  # for roslaunch, name:=value
+    timed: bool = False  # driven by time: the world hardly waits for an answer
 
     def write(self, folder: Path) -> None:
         """Into the case's folder."""
         (folder / CASE).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
+
+    def by_time(self, limits: Limits) -> CaseFile:
+        """The same in real time, for a program that commands by a timer of its own.
+
+        The world still waits a moment after each image, so that a timer that goes by simulated
+        time has its command there before time goes on.
+        """
+        changed = {"real_time_factor": "1", "lockstep_timeout": f"{limits.timed_answer_s:g}"}
+        kept = [each for each in self.launch_args if each.partition(":=")[0] not in changed]
+        return replace(self, timed=True, launch_args=[
+            *kept, *(f"{name}:={value}" for name, value in changed.items())])
 
     def driven(self) -> Course:
         """The course that is driven."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import sys
 import time
@@ -36,6 +37,7 @@ class CourseUp:
         """RunError if it does not come up; the simulator writes the state log."""
         self._launched, self._case, self._course = launched, case, case.driven()
         self._watching = {ME}  # who sees the camera and is no driver
+        self._own_nodes: frozenset[str] = frozenset()
         self._registered: list | None = None  # at the master, since
         self._since = 0.0  # s, wall
         launched.start_roscore()
@@ -53,8 +55,9 @@ class CourseUp:
         registered = [*publishers, *subscribers, *services]
         master_log = Tail(self._launched.log_folder / "latest" / "master.log")
         master_log.skip()
+        self._own_nodes = frozenset(node for _, nodes in registered for node in nodes)
         return conduct.Course(
-            frozenset(node for _, nodes in registered for node in nodes
+            frozenset(node for node in self._own_nodes
                       if not any(word in node for word in MAY_FINISH)),
             frozenset(name for name, _ in [*publishers, *subscribers]),
             frozenset(name for name, _ in services),
@@ -76,6 +79,11 @@ class CourseUp:
         missing = missing_connection(found, ME, course)
         # Without the nodes' names: anonymous ones differ from run to run.
         return f"made {missing.partition(' from ')[0]}" if missing else None
+
+    def has_driver(self) -> bool:
+        """Whether the submission has a node at the master."""
+        registered = itertools.chain(*self._master.getSystemState())
+        return any(node not in self._own_nodes for _, nodes in registered for node in nodes)
 
     def _is_ready(self) -> bool:
         """The robot is there, and all that stands between it and a driver."""

@@ -51,7 +51,7 @@ class MarkedDrive:
         self._robot, self._scorer = case.robot(), case.scorer()
         self._state_log = Tail(folder / STATE_LOG)
         self._contacts: Counter[str] = Counter()
-        self._fault, self._time_is_up = "", False
+        self._fault, self._time_is_up, self._again = "", False, False
 
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
@@ -73,7 +73,7 @@ class MarkedDrive:
         if course.film:
             launched.end(course.film, FILM_TIME)
         return write_report(self._folder, self._case, self._scorer, self._conduct.violations,
-                            self._fault, self._contacts)
+                            self._fault, self._contacts, self._again)
 
     def _drive(self, launched: Launched, course: CourseUp, box: Box) -> None:
         began = time.monotonic()
@@ -81,8 +81,13 @@ class MarkedDrive:
             if self._is_over(launched, box):
                 return
             if time.monotonic() - began > self._limits.start_s:
-                self._fault = f"after {self._limits.start_s:g} s it had not {missing}"
-                return
+                if not course.has_driver():
+                    self._fault = f"after {self._limits.start_s:g} s it had not {missing}"
+                    return
+                if not self._case.timed:  # it may wait for time to go on
+                    self._again = True
+                    return
+                break
             time.sleep(LOOK_PERIOD)
         # Beside the watching: a submission may have put a service of its own in that one's place.
         threading.Thread(target=rospy.ServiceProxy(names.UNPAUSE, Empty), daemon=True).start()
@@ -94,11 +99,14 @@ class MarkedDrive:
                 return
             if time.monotonic() - began > self._limits.wall_s:
                 self._fault = f"it was not done after {self._limits.wall_s:g} s"
+        if self._case.timed and self._scorer.verdict is Verdict.STALLED:
+            missing = course.missing_link()
+            self._fault = f"it had not {missing}" if missing else ""
 
     def _is_over(self, launched: Launched, box: Box) -> bool:
         """Whether the submission did what ends a case, or has ended itself."""
         self._read_logs()
-        if self._conduct.violations or self._fault:
+        if self._conduct.violations or self._fault or self._again:
             return True
         try:
             launched.check(None)
@@ -123,9 +131,8 @@ class MarkedDrive:
         for line in self._state_log.lines():
             entry = json.loads(line)
             self._conduct.see_state(entry)
-            if entry.get("unanswered", 0) > self._limits.unanswered:
-                self._fault = (f"it left more than {self._limits.unanswered:g} images without a "
-                               f"command within {self._limits.answer_s:g} s: answer every image")
+            if not self._case.timed and entry.get("unanswered", 0) > self._limits.unanswered:
+                self._again = True
             sample = sample_of(entry, self._robot)
             if sample is not None and sample.time > self._limits.simulated_s:
                 self._time_is_up = True

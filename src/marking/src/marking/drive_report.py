@@ -13,12 +13,15 @@ from evaluation.picture import path_picture
 from evaluation.trial.report import write_json
 from marking.case_files import PATH_PICTURE, REPORT, CaseFile
 
+BY_TIME = "by time"  # outcome: it does not answer each image, and has to drive in real time
+
 
 def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Sequence[str],
-                 fault: str, contacts: Mapping[str, int]) -> dict:
+                 fault: str, contacts: Mapping[str, int], again: bool = False) -> dict:
     """Write both into the folder; returns the report.
 
     `contacts` counts, for each model that was touched, the lines of the state log that say so.
+    `again`: the case has to be driven by time.
     """
     total, verdict = drive.total, drive.verdict
     why = drive.why
@@ -26,7 +29,7 @@ def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Seq
         why = f"{drive.driven_share:.0%} of the lap were driven in time"
     way = len(drive.laps) + (drive.driven_share if verdict is not Verdict.CLOSED else 0.0)
     report = {
-        "outcome": "not allowed" if violations else "fault" if fault else
+        "outcome": "not allowed" if violations else "fault" if fault else BY_TIME if again else
                    "time is up" if verdict is Verdict.DRIVING else verdict.value,
         "violations": list(violations),
         "fault": fault,

@@ -17,6 +17,8 @@ class Mark:
     points: float
     lost: tuple[str, ...]
     folder: str  # relative to the results'; "": nothing was driven
+    note: str = ""  # what else has to be known of it, in one line
+    submission_sha256: str = ""  # of what was handed in
 
 
 def by_student(marks: Sequence[Mark]) -> dict[str, list[Mark]]:

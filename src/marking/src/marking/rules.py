@@ -39,6 +39,7 @@ class Limits:
     wall_s: float
     answer_s: float
     unanswered: float
+    timed_answer_s: float
     cpu_s: float
     memory_mb: float
     processes: float

@@ -39,7 +39,8 @@ def available() -> Kind:
     kind = Kind.ROOT if os.getuid() == 0 else Kind.USER
     if not shutil.which("bwrap"):
         raise RunError("no sandbox: bubblewrap is not installed: apt-get install bubblewrap")
-    probe = [*namespace(kind), *sandbox(kind, Limits(*[64.0] * len(fields(Limits)))), "true"]
+    probe = [*namespace(kind), *sandbox(kind, Limits(*[64.0] * len(fields(Limits)))),
+             sys.executable, "-c", ""]
     done = subprocess.run(probe, capture_output=True, text=True, timeout=60, check=False)
     if done.returncode:
         why = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
@@ -89,15 +90,16 @@ def _view(limits: Limits, folder: Path | None) -> list[str]:
     above = {str(each): None for path in shown() for each in reversed(path.parents)}
     return [
         # Folders above a mount are closed to others unless they are made before it.
-        *_each(("--perms", "755", "--dir"), ["/etc", "/etc/ssl", "/home", *list(above)[1:]]),
+        *_each(("--perms", "755", "--dir"), ["/etc", "/etc/ssl", "/home"]),
+        "--proc", "/proc", "--dev", "/dev",
+        *_each(("--perms", "1777", *size, "--tmpfs"), ["/tmp", "/dev/shm", HOME]),
+        *_each(("--perms", "755", "--dir"), list(above)[1:]),  # the workspace may lie in /tmp
         "--ro-bind", "/usr", "/usr",
         *[word for name in ("bin", "lib", "lib64", "sbin") if os.path.islink(f"/{name}")
           for word in ("--symlink", f"usr/{name}", f"/{name}")],
         *[word for path in (*(f"/etc/{name}" for name in ETC), *map(str, shown()))
           for word in ("--ro-bind-try", path, path)],
         *(["--ro-bind", str(folder), SUBMISSION] if folder else []),
-        "--proc", "/proc", "--dev", "/dev",
-        *_each(("--perms", "1777", *size, "--tmpfs"), ["/tmp", "/dev/shm", HOME]),
         "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME,
     ]  # fmt: skip
 

@@ -17,9 +17,11 @@ from marking.sandbox import Kind
 
 MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # which a spreadsheet would compute
-STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}img{max-width:32em}"
-         "td,th{text-align:left;padding:.2em 1em;border-bottom:1px solid #ccc;"
-         "vertical-align:top}pre{white-space:pre-wrap;background:#f4f4f4;padding:.5em}</style>")
+STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}"
+         "img,video{max-width:100%}table{border-collapse:collapse}ul{margin:0;padding-left:1em}"
+         "td,th{text-align:left;padding:.4em 1em;border-bottom:1px solid #ccc;"
+         "vertical-align:top}td:nth-child(2){text-align:right}td:first-child{white-space:nowrap}"
+         "pre{white-space:pre-wrap;background:#f4f4f4;padding:.5em}</style>")
 
 
 def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, out: Path) -> None:
@@ -29,22 +31,26 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
     with half.open("w", encoding="utf-8-sig", newline="") as file:  # Excel needs the mark
         writer = csv.writer(file)
         writer.writerow(["student", "points", "of", *cases, "sandbox",
-                         "why points were lost"])
+                         "why points were lost", "note"])
         for student, rows in marks.items():
             points = {mark.case: mark.points for mark in rows}
             writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
                              *[points.get(case, "") for case in cases],
-                             "no" if kind is Kind.NONE else "yes", _cell(_lost(rows))])
+                             "no" if kind is Kind.NONE else "yes", _cell("; ".join(_lost(rows))),
+                             _notes(rows)])
     half.replace(out / MARKS)
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
-        f"<td>{mean([mark.points for mark in rows]):g}</td><td>{escape(_lost(rows))}</td>"
+        f"<td>{mean([mark.points for mark in rows]):g}</td><td>{_list(_lost(rows))}"
+        f"{_line(_notes(rows))}</td>"
         f"<td>{''.join(_thumbnail(mark, out) for mark in rows)}</td></tr>\n"
         for student, rows in marks.items())
     warning = ("<p><b>These submissions ran without a sandbox.</b></p>" if kind is Kind.NONE
                else "")
+    class_mean = mean([mean([mark.points for mark in rows]) for rows in marks.values()])
     (out / PAGE).write_text(
-        _page("Marks", f"{warning}<p>Course: {escape(rules.course)}; {rules.points.most:g} points; "
+        _page("Marks", f"{warning}<p>Course: {escape(rules.course)}. Submissions: {len(marks)}; "
+              f"mean: {class_mean:g} of {rules.points.most:g} points. "
               f'<a href="{MARKS}">{MARKS}</a></p><table><tr><th>student</th><th>points</th>'
               f"<th>why points were lost</th><th>path</th></tr>\n{body}</table>"), encoding="utf-8")
 
@@ -74,14 +80,14 @@ def _film(mark: Mark) -> str:
 
 
 def _case_part(mark: Mark, out: Path, folder: Path) -> str:
-    lost = "".join(f"<li>{escape(each)}</li>" for each in mark.lost)
-    lost = f"<p>Lost:</p><ul>{lost}</ul>" if lost else ""
+    lost = f"<p>Why points were lost:</p>{_list(mark.lost)}" if mark.lost else ""
     picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
         folder / _picture(mark)).exists() else ""
-    film = f'<p><video src="{_film(mark)}" controls width="512"></video></p>' if (
+    film = f'<p><video src="{_film(mark)}" controls></video></p>' if (
         folder / _film(mark)).exists() else ""
-    return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(mark.outcome)}</h2>"
-            f"{lost}{picture}{film}{_output(mark, out)}")
+    outcome = "laps closed" if mark.outcome == "closed" else mark.outcome
+    return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(outcome)}</h2>"
+            f"{lost}{_line(mark.note)}{picture}{film}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:
@@ -95,14 +101,26 @@ def _output(mark: Mark, out: Path) -> str:
 def _thumbnail(mark: Mark, out: Path) -> str:
     folder = f"students/{mark.student}"
     path, film = f"{folder}/{_picture(mark)}", f"{folder}/{_film(mark)}"
-    image = f'<img style="width:8em" src="{_link(path)}" alt="">' if (out / path).exists() else ""
+    image = (f'<a href="{_link(path)}"><img style="width:10em" src="{_link(path)}" alt="path"></a>'
+             if (out / path).exists() else "")
     return image + (f'<br><a href="{_link(film)}">film</a>' if (out / film).exists() else "")
 
 
-def _lost(rows: Sequence[Mark]) -> str:
+def _lost(rows: Sequence[Mark]) -> list[str]:
     several = len(rows) > 1
-    return "; ".join(f"{mark.case}: {each}" if several else each
-                     for mark in rows for each in mark.lost)
+    return [f"{mark.case}: {each}" if several else each for mark in rows for each in mark.lost]
+
+
+def _list(lines: Sequence[str]) -> str:
+    return f"<ul>{''.join(f'<li>{escape(each)}</li>' for each in lines)}</ul>" if lines else ""
+
+
+def _notes(rows: Sequence[Mark]) -> str:
+    return "; ".join(dict.fromkeys(mark.note for mark in rows if mark.note))
+
+
+def _line(text: str) -> str:
+    return f"<p>{escape(text)}</p>" if text else ""
 
 
 def _cell(text: str) -> str:

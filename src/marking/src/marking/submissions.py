@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,6 +44,21 @@ def find_submissions(folder: Path) -> list[Submission]:
     if not found:
         raise RunError(f"--submissions (SUBMISSIONS=) {folder}: there is nothing in it")
     return list(found.values())
+
+
+def digest(source: Path) -> str:
+    """SHA-256 over the names and bytes of a submission's files; links count by where they lead."""
+    sums = hashlib.sha256()
+    paths = [] if source.is_symlink() else sorted(source.rglob("*"))
+    for path in [source, *paths]:
+        sums.update(os.fsencode(path.relative_to(source)) + b"\0")
+        with contextlib.suppress(OSError):  # what cannot be read is said when it is unpacked
+            if path.is_symlink():
+                sums.update(os.fsencode(os.readlink(path)))
+            elif path.is_file():
+                with path.open("rb") as file:
+                    sums.update(hashlib.file_digest(file, "sha256").digest())
+    return sums.hexdigest()
 
 
 def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Path:

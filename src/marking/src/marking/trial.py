@@ -19,20 +19,22 @@ from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import REPORT, Case, Trial
+from evaluation.trial.protocol import REPORT, Case, ReportedTrial
 from marking.case_files import CaseFile
 from marking.course_up import STARTUP_LIMIT
+from marking.drive_report import BY_TIME
 from marking.mark import Mark, by_student
 from marking.points import mean, points_of
 from marking.rules import load_rules
 from marking.sandbox import Kind, available, namespace, shown
 from marking.sheets import write_marks, write_student_pages
-from marking.submissions import find_submissions, prepare
+from marking.submissions import digest, find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
 from marking.venues import COURSES, make_scene
 
 NOT_RUN, SUBMISSION = "not run", "submission"
+TIMED = "driven in real time: it did not answer each image with a command"
 TRIES = 3  # of a case in which the course itself could not be run
 
 
@@ -45,7 +47,7 @@ class MarkedCase(Case):
     seed: int
 
 
-class MarkingTrial(Trial):
+class MarkingTrial(ReportedTrial):
     """Submissions times tracks times seeds."""
 
     program = "mark"
@@ -101,6 +103,7 @@ class MarkingTrial(Trial):
         self._session, self._case, self._fault = session, case, ""
         folder = self._folder(case)
         folder.mkdir(parents=True, exist_ok=True)
+        self._digest = digest(self._submissions[case.student].source)
         try:
             program = prepare(self._submissions[case.student], folder / SUBMISSION,
                               self._rules.program)
@@ -109,15 +112,23 @@ class MarkingTrial(Trial):
             return
         self._scene = scene = make_scene(
             self._rules, case.track, case.seed, self._out / "scenes" / _case_name(case))
-        CaseFile(str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
-                 str(folder / SUBMISSION), str(program), str(scene.track), self._film,
-                 scene.launch_args).write(folder)
+        self._file = CaseFile(
+            str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
+            str(folder / SUBMISSION), str(program), str(scene.track), self._film,
+            scene.launch_args)
 
     def run(self) -> dict:
         """The report of the drive, or what went wrong before it."""
         if self._fault:
             return {"outcome": "fault", "violations": [], "fault": self._fault}
+        report = self._drive(self._file)
+        if report["outcome"] == BY_TIME:
+            report = self._drive(self._file.by_time(self._rules.limits)) | {"note": TIMED}
+        return report
+
+    def _drive(self, file: CaseFile) -> dict:
         folder = self._folder(self._case)
+        file.write(folder)
         command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
                    str(folder)]
         environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": "localhost"}
@@ -137,7 +148,8 @@ class MarkingTrial(Trial):
         points, lost = points_of(record, self._rules.points)
         folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
         return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
-                    tuple(map(one_line, lost)), folder)
+                    tuple(map(one_line, lost)), folder, record.get("note", ""),
+                    self._digest)
 
     def passed(self, results: Sequence[Mark]) -> bool:
         return all(mark.outcome != NOT_RUN for mark in results)
@@ -163,8 +175,14 @@ class MarkingTrial(Trial):
     def from_values(self, values: dict) -> list[Mark]:
         if values["rules_sha256"] != self._rules_digest:
             raise RunError(f"{self._out}: was marked by other rules; choose another --out")
-        return [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
-                if each["outcome"] != NOT_RUN]
+        marks = [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
+                 if each["outcome"] != NOT_RUN]
+        changed = {student for student, rows in by_student(marks).items()
+                   if (there := self._submissions.get(student))
+                   and {digest(there.source)} != {mark.submission_sha256 for mark in rows}}
+        for student in sorted(changed):
+            print(f"{student}: the submission has changed, it is marked again", flush=True)
+        return [mark for mark in marks if mark.student not in changed]
 
     def pictures(self, results: Sequence[Mark], out: Path) -> list[str]:
         marks = by_student(results)

@@ -43,7 +43,7 @@ class LocalisationCase(protocol.Case):
     amount: int  # its number, or s, simulated
 
 
-class LocalisationTrial(protocol.Trial):
+class LocalisationTrial(protocol.ReportedTrial):
     """All cases in one simulator, which is brought up for the first of them."""
 
     program = "localisation_trials"

@@ -9,12 +9,12 @@ import numpy as np
 from evaluation.house.ground import Ground
 from evaluation.house.records import Contact, Records
 from evaluation.mapping.map_agreement import MapAgreement, map_agreement
-from evaluation.mapping.trajectory_error import TrajectoryError, trajectory_error
 from evaluation.mapping.true_map import visible_walls
 from evaluation.navigation.driver import Way
 from evaluation.session.failure import RunError
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
+from nav_algorithms.trajectory_error import TrajectoryError, trajectory_error
 
 MOST_ATE = 0.05  # m
 LEAST_AGREEMENT = 0.95  # share

@@ -89,19 +89,9 @@ class Trial(ABC):
     def values(self, results: Sequence[Any]) -> dict:
         """What report.json holds."""
 
-    def from_values(self, values: dict) -> list[Any]:
-        """The results of a report.json, as `values` wrote them; KeyError, TypeError, ValueError."""
-        raise NotImplementedError
-
+    @abstractmethod
     def earlier(self, options: argparse.Namespace) -> list[Any]:
-        """The results to go on with; RunError if there are none."""
-        path = options.out / REPORT
-        try:
-            return self.from_values(json.loads(path.read_text(encoding="utf-8")))
-        except OSError as error:
-            raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
-        except (ValueError, KeyError, TypeError) as error:
-            raise RunError(f"{path}: no report of {self.program}: {error!r}") from error
+        """The results to go on with; RunError if there are none and there should be."""
 
     def pictures(self, results: Sequence[Any], out: Path) -> list[str]:
         """Draw pictures of the results; returns their names."""
@@ -126,6 +116,24 @@ class Trial(ABC):
         options.out = options.out.resolve()
         self.check(options)
         return options
+
+
+class ReportedTrial(Trial):
+    """A trial whose report.json holds all of its results: --resume reads them there."""
+
+    @abstractmethod
+    def from_values(self, values: dict) -> list[Any]:
+        """The results of a report.json, as `values` wrote them; KeyError, TypeError, ValueError."""
+
+    def earlier(self, options: argparse.Namespace) -> list[Any]:
+        """The results to go on with; RunError if there are none."""
+        path = options.out / REPORT
+        try:
+            return self.from_values(json.loads(path.read_text(encoding="utf-8")))
+        except OSError as error:
+            raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
+        except (ValueError, KeyError, TypeError) as error:
+            raise RunError(f"{path}: no report of {self.program}: {error!r}") from error
 
 
 def try_case(trial: Trial, session: Session, case: Case) -> Any:

@@ -13,7 +13,7 @@ from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.yards.chart import write_chart
 from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
@@ -44,7 +44,7 @@ class YardCase(Case):
     repeat: int
 
 
-class YardTrial(Trial):
+class YardTrial(ReportedTrial):
     """All drives in one simulator, which is brought up for the first of them."""
 
     program = "navigation_trials"
