@@ -135,7 +135,7 @@ def test_from_loaded_to_unloaded():
                  "load the controller configuration on the parameter server (namespace: "
                  "'/r/untyped')?", "/r/untyped/type"]),
     ("unknown", ["Could not load controller 'unknown' because controller type 'test/Recorde' does "
-                 "not exist.", "Did you mean 'test/Recorder'?", "list_controller_types"]),
+                 "not exist", "did you mean test/Recorder?", "list_controller_types"]),
     ("refusing", ["Initializing controller 'refusing' failed", "joint 'x' is bent"]),
 ])
 def test_what_cannot_be_loaded(name, parts):
