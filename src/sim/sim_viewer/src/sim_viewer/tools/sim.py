@@ -58,7 +58,8 @@ async def step(context: Any, steps: int = 1) -> dict[str, float]:
     exact = name + names.STEP in state.services
     try:
         return await context.node.shared(Calls).run(
-            name, lambda: _step_exactly(name, steps) if exact else _step_by_clock(name, clock, steps))
+            name, lambda: (_step_exactly(name, steps) if exact
+                           else _step_by_clock(name, clock, steps)))
     finally:
         context.node.shared(SharedPause).forget()
 
