@@ -1,0 +1,29 @@
+"""A simulator that is halted answers no service: what its pages cost the server then."""
+
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+from sim_viewer.context import WORKERS
+from sim_viewer.tools import sim
+
+DEADLINE = sim.ANSWER_TIME + 1.0  # s; the second is for a busy machine
+
+
+def test_a_halted_simulator_is_asked_once_and_keeps_no_worker(monkeypatch):
+    asked, going_on = [], threading.Event()
+
+    def halted(name, kind):
+        asked.append(name)
+        going_on.wait()
+        raise sim.Refused("gone")
+
+    monkeypatch.setattr(sim, "call", halted)
+    pause = sim.SharedPause()
+    with ThreadPoolExecutor(WORKERS) as workers:
+        for _ in range(2):
+            began = time.monotonic()
+            assert set(workers.map(pause.read, ["/gazebo"] * WORKERS)) == {None}
+            assert time.monotonic() - began < DEADLINE
+    assert len(asked) == 1
+    going_on.set()
