@@ -28,7 +28,7 @@ RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
 
 @operation("pause", control=True)
 async def pause(context: Any, paused: bool = True) -> None:
-    """Stop simulated time, or let it go on."""
+    """Stop simulated time, or let it go on. Refused where no simulator answers."""
     name = await _find_simulator(context)
     await _call(context, name + (names.PAUSE if paused else names.UNPAUSE))
     context.node.shared(SharedPause).forget()
