@@ -1,4 +1,4 @@
-"""After each camera frame the world waits until an answer to it has come."""
+"""After each camera frame, or message of a sensor, the world waits for the answer to it."""
 
 import time
 from collections.abc import Callable
@@ -18,7 +18,9 @@ class Lockstep:
     same topic, its own subscription calls `receive` after it has posted its command in the mailbox.
     """
 
-    def __init__(self, topics: str, timeout: float, mailbox: Mailbox):
+    def __init__(self, topics: str, timeout: float, mailbox: Mailbox, sensor: str = ""):
+        """`sensor`: the topic after whose messages it waits; empty: after each camera frame."""
+        self._sensor = rospy.resolve_name(sensor) if sensor else ""
         self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
         self.unanswered = 0  # frames that the world has gone on without an answer to
         self._timeout = timeout  # s, wall
@@ -37,9 +39,15 @@ class Lockstep:
                     topic, rospy.AnyMsg, lambda _msg, topic: self.receive(topic),
                     callback_args=topic, tcp_nodelay=True)
 
-    def expect(self) -> None:
-        """A frame was taken for somebody: wait for the answer before the next step."""
+    def expect(self, sensor: str = "") -> bool:
+        """A frame, or a message on this topic, was taken for somebody; whether it has an answer.
+
+        If so, the world waits for it before the next step.
+        """
+        if sensor != self._sensor:
+            return False
         self._expected = set(self.topics)
+        return True
 
     def subscribe(self, topic: str, plugin: object) -> None:
         """A plugin is about to subscribe; it will call `receive` after each message."""
@@ -86,8 +94,9 @@ class Lockstep:
             return
         self._next_warning = now + WARNING_PERIOD
         rospy.logwarn(
-            "lockstep: no message on %s within %g s of a camera frame; going on without. Does the "
-            "follower answer every image there?", ", ".join(sorted(self._expected)), self._timeout)
+            "lockstep: no message on %s within %g s of a %s; going on without. Does the follower "
+            "answer every one there?", ", ".join(sorted(self._expected)), self._timeout,
+            f"message on {self._sensor}" if self._sensor else "camera frame")
 
 
 def split(topics: str) -> list[str]:

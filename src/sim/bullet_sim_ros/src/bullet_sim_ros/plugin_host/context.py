@@ -117,10 +117,13 @@ class PluginContext(PluginScope):
             self._drawn.result()
         self._drawn = self.services.drawing.submit(job)
 
-    def expect_answer(self) -> None:
-        """A frame is about to be sent: in lockstep the world then waits for the answer."""
-        self._expects_answers = True
-        self.services.lockstep.expect()
+    def expect_answer(self, sensor: str = "") -> None:
+        """A frame, or a message on this topic, is about to be sent.
+
+        In lockstep the world then waits for the answer.
+        """
+        if self.services.lockstep.expect(sensor):
+            self._expects_answers = True
 
     def _guarded(self, action: Callable[[], None]) -> Callable[[], None]:
         def run() -> None:
