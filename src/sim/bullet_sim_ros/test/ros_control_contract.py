@@ -116,7 +116,7 @@ class RosControl(unittest.TestCase):
         for name, *parts in (
             ("missing", "type was not specified", "/bench/missing/type"),
             ("mistyped", "'effort_controllers/JointPositonController' does not exist",
-             "Did you mean 'effort_controllers/JointPositionController'"),
+             "did you mean effort_controllers/JointPositionController?"),
             ("no_joint", "Initializing controller 'no_joint' failed", "left_weel", "left_wheel,"),
             ("other_interface", "right_wheel", "takes velocity commands", "left_wheel, pendulum"),
             ("no_gains", "/bench/no_gains/pid/p is not set"),

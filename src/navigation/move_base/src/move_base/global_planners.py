@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ def path_message(path: np.ndarray, frame: str, stamp: rospy.Time) -> Path:
     return message
 
 
-class GlobalPlanner(Plugin):
+class GlobalPlanner(Plugin, ABC):
     """Subclasses set SETTINGS and plan in `_plan`."""
 
     SETTINGS: type
@@ -58,9 +59,10 @@ class GlobalPlanner(Plugin):
                                                  rospy.Time.now()))
         return path
 
+    @abstractmethod
     def _plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
               goal: np.ndarray) -> np.ndarray | None:
-        raise NotImplementedError
+        """Path (N, 3) in the costmap's frame, or None."""
 
 
 class Navfn(GlobalPlanner):

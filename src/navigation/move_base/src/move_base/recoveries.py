@@ -5,6 +5,7 @@ Each is done in steps, one a period of the control loop, so that goals can be ca
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,7 +34,7 @@ class Rig:
     frequency: float
 
 
-class Recovery:
+class Recovery(ABC):
     """One behaviour with its parameters from `~NAME/`."""
 
     TABLE = ""
@@ -52,9 +53,9 @@ class Recovery:
         """Begins; the robot stands."""
         self.rig = rig
 
+    @abstractmethod
     def step(self) -> bool:
         """Does a little; whether it is done. Called only while the robot can see."""
-        raise NotImplementedError
 
 
 class ClearCostmap(Recovery):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
@@ -12,7 +14,7 @@ from nav_algorithms.local_planning.oscillation import Oscillation
 from nav_algorithms.local_planning.velocities import Command, Limits
 
 
-class LocalPlanner:
+class LocalPlanner(ABC):
     """Follows one path; `set_path` begins a new one. Subclasses choose the velocity.
 
     Upstream's planners forget with every plan which way they turned last, and whether the place was
@@ -74,11 +76,11 @@ class LocalPlanner:
             self.oscillation.reset()  # what it forbids may be the only way out
         return best
 
+    @abstractmethod
     def limits(self) -> Limits:
         """What is never exceeded."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:
         """The velocity to take. `near` (M, 3) is the path in the costmap, `goal` (3,) its end."""
-        raise NotImplementedError
