@@ -1,5 +1,6 @@
 """The film of a drive: one picture a period of simulated time, whatever the pace and the gaps."""
 
+import signal
 from pathlib import Path
 
 import cv2
@@ -12,8 +13,9 @@ from sensor_msgs.msg import Image
 
 from evaluation.course_run.film import CourseFilm
 from evaluation.lap import LapScorer, Sample
+from evaluation.session import encoders
 from evaluation.session.course_file import load_course
-from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, fit
+from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
 
 TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"
 PICTURE = np.zeros((9, 16, 3), np.uint8).tobytes()
@@ -48,3 +50,30 @@ def test_a_gap_is_filled(tmp_path):
 def test_the_camera_keeps_its_proportions(size_px, view_px):
     width, height = size_px
     assert fit(np.zeros((height, width, 3), np.uint8)).shape[1::-1] == view_px
+
+
+PAGE = np.zeros((360, 640, 3), np.uint8)
+
+
+@pytest.mark.parametrize("make", [encoders.FfmpegEncoder, encoders.OpenCvEncoder])
+def test_a_full_disk_is_said(tmp_path, make):
+    path = tmp_path / "run.mp4"
+    path.symlink_to("/dev/full")
+    encoder = make(path, 640, 360, 10)
+    for _ in range(20):
+        encoder.write(PAGE)
+    said = encoder.close()
+    assert "No space left" in said or "is the disk full?" in said
+
+
+def test_an_encoder_that_hangs_holds_nothing_up_and_leaves_no_broken_film(tmp_path, monkeypatch):
+    monkeypatch.setattr(encoders, "WRITE_TIME", 0.2)
+    monkeypatch.setattr(encoders, "FINISH_TIME", 0.2)
+    film = FilmFile(tmp_path / "run.mp4")
+    film._add(PAGE)
+    encoder = film._writer._process
+    encoder.send_signal(signal.SIGSTOP)
+    film._add(PAGE, times=20)
+    assert film.close() == "ffmpeg took no picture for 0.2 s"
+    assert encoder.poll() is not None
+    assert not film.codec and not (tmp_path / "run.mp4").exists()

@@ -204,6 +204,26 @@ def test_the_launch_file_is_told_what_was_asked_for(start):
     }
 
 
+def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
+        start, tmp_path, monkeypatch):
+    hanging = tmp_path / "bin" / "ffmpeg"
+    hanging.parent.mkdir()
+    hanging.write_text("#!/bin/sh\nexec sleep 1000\n")
+    hanging.chmod(0o755)
+    monkeypatch.setenv("PATH", str(hanging.parent), prepend=os.pathsep)
+    run = start(*FAKE)
+    run.wait_for_driving()
+    run.process.send_signal(signal.SIGINT)
+    wait_until((run.out / "report.json").exists, LIMIT, "the report")
+    time.sleep(0.5)
+    assert run.process.poll() is None
+    run.process.send_signal(signal.SIGINT)
+    assert run.wait(2 * end_time()) == 130, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert report["outcome"] == "ended early" and report["film"] is None
+    assert not (run.out / "run.mp4").exists()
+
+
 def test_results_of_the_run_before_are_kept(start, tmp_path):
     assert start(*FAKE).wait() == 0
     first = (tmp_path / "course" / "report.json").read_bytes()

@@ -114,15 +114,20 @@ def test_a_room_is_mapped_and_a_goal_in_it_reached(start):
         assert part["cpu_percent_of_a_core"]["move_base"] > 0.0
     assert cv2.imread(str(run.out / "map.png")).shape[1] == 1400
     assert cv2.VideoCapture(str(run.out / "run.mp4")).read()[0]
-    assert (run.out / "map.yaml").exists()
+    assert sorted(path.name for path in run.out.glob("*map*")) == [
+        "map.json", "map.pgm", "map.png", "map.yaml"]
     assert run.processes() == {}
 
 
-def test_ctrl_c_ends_everything_and_keeps_what_there_was(start):
+def test_ctrl_c_ends_everything_and_keeps_what_there_was(start, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "map.yaml").write_text("of the run before")
     run = start("--goals", "1")
     run.wait_for("way-point 1/2")
     run.process.send_signal(signal.SIGINT)
     assert run.process.wait(END_LIMIT) == 130, run.output
     assert run.output.splitlines()[-1] == "navigate: interrupted; all processes ended"
     assert json.loads((run.out / "report.json").read_text())["outcome"] == "ended early"
+    assert (out / "map.yaml").read_text() == "of the run before"
     assert run.processes() == {}

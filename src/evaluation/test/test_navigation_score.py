@@ -15,7 +15,8 @@ from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
 from evaluation.navigation.main import NavigationRun
 from evaluation.navigation.picture import CLEAR, map_picture
-from evaluation.navigation.report import lines, read_map_frame, summarize
+from evaluation.navigation.new_map import keep_map, place_for_map, read_map_frame
+from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import (
     Navigation,
     Pace,
@@ -170,13 +171,16 @@ def test_a_goal_that_is_only_called_reached_is_a_fault():
 
 
 def test_a_map_brings_its_frame_along(tmp_path, ground):
-    options = NavigationRun.parse(["--out", str(tmp_path)])
-    report = tmp_path / "report.json"
-    assert (read_map_frame(report) == 0).all()
-    write_json(summarize(options, ("passed", ""), Result(map_in_world=SHIFT)), report)
-    assert read_map_frame(report) == pytest.approx(SHIFT)
-    report.write_text('{"map_in_world": "here"}')
-    assert (read_map_frame(report) == 0).all()
+    made, kept = place_for_map(tmp_path), tmp_path / "map.yaml"
+    for map_file in (made, kept):
+        map_file.write_text(str(map_file))
+    assert (read_map_frame(kept) == 0).all()
+    keep_map(made, SHIFT)
+    assert kept.read_text() == str(made) and not made.exists()
+    (tmp_path / "report.json").write_text('{"map_in_world": [9, 9, 9]}')  # of a later run
+    assert read_map_frame(kept) == pytest.approx(SHIFT)
+    kept.with_suffix(".json").write_text('{"map_in_world": "here"}')
+    assert read_map_frame(kept) == pytest.approx([9, 9, 9])
 
 
 def test_report_table_and_picture_of_a_run(tmp_path, ground):

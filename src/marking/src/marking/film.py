@@ -31,8 +31,10 @@ def main(folder: Path) -> int:
             if sample is not None:
                 drive.add(sample)
         rospy.rostime.wallsleep(LOOK_PERIOD)
-    film.close()
-    return 0
+    fault = film.close()
+    if fault:
+        print(f"film: {fault}", file=sys.stderr)
+    return 1 if fault else 0
 
 
 if __name__ == "__main__":

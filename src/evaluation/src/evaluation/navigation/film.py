@@ -51,12 +51,12 @@ class Film(FilmFile):
         """Begin to film."""
         self._thread.start()
 
-    def close(self) -> None:
-        """Finish the file, if there is any picture."""
+    def close(self) -> str:
+        """Finish the file, if there is any picture; why it is not whole, or ""."""
         self.stop()
         if self._thread.ident is not None:
             self._thread.join()
-        super().close()
+        return super().close()
 
     def _look(self) -> None:
         """Ask for one picture: while somebody subscribes, the camera draws thirty a second."""

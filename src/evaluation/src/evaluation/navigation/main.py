@@ -14,9 +14,10 @@ from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.film import Film
+from evaluation.navigation.new_map import read_map_frame
 from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
-from evaluation.navigation.report import lines, read_map_frame, summarize
+from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import Result
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
@@ -26,7 +27,6 @@ from evaluation.trial.report import write_json
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 
-RESULTS = ("map.png", "run.mp4", "report.json")
 
 
 class NavigationRun(LiveDrive):
@@ -40,7 +40,7 @@ class NavigationRun(LiveDrive):
     usual_out = "out/navigate"
     vehicle = "robot"
     logs = "*simulator.log"
-    writes = (*RESULTS, "map.pgm", "map.yaml")
+    writes = ("map.png", "run.mp4", "report.json", "map.pgm", "map.yaml", "map.json")
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
@@ -70,7 +70,7 @@ class NavigationRun(LiveDrive):
         if options.map:
             try:
                 self.result.map = read_map(options.map)[0]
-                self.result.map_in_world = read_map_frame(options.map.parent / "report.json")
+                self.result.map_in_world = read_map_frame(options.map)
             except MapFileError as error:
                 raise RunError(str(error)) from error
         self._watch: Watch | None = None
@@ -112,7 +112,7 @@ class NavigationRun(LiveDrive):
         return self.result.faults
 
     def owned_files(self) -> Sequence[str]:
-        return RESULTS if self.options.map else self.writes
+        return self.writes[:3]  # a map is replaced by the next that is whole
 
     def figures(self, outcome: Outcome, log: list[str]) -> dict:
         return summarize(self.options, outcome, self.result)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import rospy
@@ -13,6 +14,7 @@ from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver
+from evaluation.navigation.new_map import keep_map, place_for_map
 from evaluation.navigation.score import (
     Navigation,
     Pace,
@@ -139,22 +141,24 @@ class MappingPart(Part):
             for number, (point, yaw) in enumerate(zip(points, yaws), start=1):
                 what = f"way-point {number}/{len(points)}"
                 ways.append(driver.drive_to(np.array([*point, yaw]), what))
-            self._save()
+            made = self._save()
         finally:
             result.paths[self.name] = np.array(watch.records.truth).reshape(-1, 4)[:, 1:3]
-        result.map = read_map(self._options.out / "map.yaml")[0]
+        result.map = read_map(made)[0]
         result.mapping = score_mapping(self._ground, result.map, watch.records, watch.scan.angles,
                                        house.laser_reach, ways, self._pace())
         result.map_in_world = result.mapping.trajectory.alignment
+        keep_map(made, result.map_in_world)
 
-    def _save(self) -> None:
-        """The map of the whole round, by map_saver."""
+    def _save(self) -> Path:
+        """The map of the whole round, by map_saver: its YAML file."""
         until = self._watch.records.now + LAST_MAP_LIMIT
         while self._watch.records.now < until:
             self._look("waiting for the last map")
-        name = str(self._options.out / "map")
-        self._launched.run("map_saver", ["rosrun", "map_server", "map_saver", "-f", name],
-                           SAVE_LIMIT)
+        made = place_for_map(self._options.out)
+        self._launched.run("map_saver", ["rosrun", "map_server", "map_saver", "-f",
+                                         str(made.with_suffix(""))], SAVE_LIMIT)
+        return made
 
 
 class NavigationPart(Part):

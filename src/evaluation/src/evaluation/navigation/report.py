@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 
@@ -46,15 +44,6 @@ def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Res
         "mapping": _mapping(mapping, speed) if mapping else None,
         "navigation": _navigation(navigation, speed) if navigation else None,
     }
-
-
-def read_map_frame(path: Path) -> np.ndarray:
-    """`map_in_world` (3,) of the report of the run that made a map; 0 where there is none."""
-    try:
-        found = np.array(json.loads(path.read_text(encoding="utf-8"))["map_in_world"], float)
-    except (OSError, ValueError, KeyError, TypeError):
-        return np.zeros(3)
-    return found if found.shape == (3,) else np.zeros(3)
 
 
 def lines(options: argparse.Namespace, result: Result) -> list[str]:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import select
 import shutil
 import subprocess
+import tempfile
+import time
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from evaluation.session.processes import end_with_parent
-
-FINISH_TIME = 1.0  # s, wall, for the encoder to end
+FINISH_TIME = 20.0  # s, wall, for the encoder to end
+WRITE_TIME = 10.0  # s, wall, for it to take a picture
 
 
 def open_encoder(
@@ -31,26 +34,51 @@ class FfmpegEncoder:
         words = (f"nice -n 10 ffmpeg -loglevel error -y -f rawvideo -pixel_format bgr24 -video_size"
                  f" {width}x{height} -framerate {rate_hz} -i - -c:v libx264 -preset ultrafast"
                  " -crf 24 -threads 1 -pix_fmt yuv420p -movflags +faststart")
+        # It ends when its input does: the thread that starts it may end long before the film.
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
         self._process = subprocess.Popen(
             [*words.split(), str(path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL, start_new_session=True, preexec_fn=end_with_parent)
+            stderr=self._said, bufsize=0, start_new_session=True)
+        os.set_blocking(self._process.stdin.fileno(), False)
+        self._fault = ""
 
     @property
     def process_id(self) -> int:
         return self._process.pid
 
     def write(self, page: np.ndarray) -> None:
+        """Add a picture; after a failure nothing more, the run and its score are not touched."""
+        if self._fault:
+            return
+        pipe, rest = self._process.stdin, memoryview(page.tobytes())
+        until = time.monotonic() + WRITE_TIME
         try:
-            self._process.stdin.write(page.tobytes())
+            while rest:
+                if not select.select([], [pipe], [], max(0.0, until - time.monotonic()))[1]:
+                    self._fault = f"ffmpeg took no picture for {WRITE_TIME:g} s"
+                    return
+                rest = rest[os.write(pipe.fileno(), rest):]
         except BrokenPipeError:
-            return  # the film is short; the run and its score are not touched
+            self._fault = self._reason()
 
-    def close(self) -> None:
+    def close(self) -> str:
+        """Finish the file; why it is not whole, or "". Ctrl-C ends the encoder at once."""
+        self._process.stdin.close()
         try:
-            self._process.communicate(timeout=FINISH_TIME)
+            self._process.wait(FINISH_TIME)
         except subprocess.TimeoutExpired:
+            self._fault = self._fault or f"ffmpeg did not end within {FINISH_TIME:g} s"
+        finally:
             self._process.kill()
             self._process.wait()
+        if self._process.returncode:
+            self._fault = self._fault or self._reason()
+        return self._fault
+
+    def _reason(self) -> str:
+        """Its first words, which name the cause."""
+        self._said.seek(0)
+        return f"ffmpeg: {self._said.readline().decode(errors='replace').strip() or 'it failed'}"
 
 
 class OpenCvEncoder:
@@ -59,11 +87,15 @@ class OpenCvEncoder:
     codec = "MPEG-4 by OpenCV"
 
     def __init__(self, path: Path, width: int, height: int, rate_hz: int):
+        self._path = path
         code = cv2.VideoWriter_fourcc(*"mp4v")
         self._writer = cv2.VideoWriter(str(path), code, rate_hz, (width, height))
 
     def write(self, page: np.ndarray) -> None:
         self._writer.write(page)
 
-    def close(self) -> None:
+    def close(self) -> str:
+        """Finish the file; why it is not whole, or ""."""
         self._writer.release()
+        whole = cv2.VideoCapture(str(self._path)).isOpened()
+        return "" if whole else "OpenCV could not write it: is the disk full?"

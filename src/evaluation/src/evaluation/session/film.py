@@ -49,12 +49,18 @@ class FilmFile:
         """Take no more pictures."""
         self._ended.set()
 
-    def close(self) -> None:
-        """Finish the file, if any picture came."""
+    def close(self) -> str:
+        """Finish the file, if any picture came; why it is not whole and so was removed, or ""."""
         self.stop()
-        with self._lock:
-            if self._writer is not None:
-                self._writer.close()
+        fault = "interrupted"
+        try:
+            with self._lock:
+                fault = self._writer.close() if self._writer is not None else ""
+        finally:
+            if fault:
+                self.codec = ""
+                self._path.unlink(missing_ok=True)
+        return fault
 
     def _add(self, page: np.ndarray, times: int = 1) -> None:
         """Write a page, (height, width, 3) BGR, unless the film has ended; all of one size."""

@@ -1,4 +1,4 @@
-"""Ctrl-C as an exception, once."""
+"""Ctrl-C as an exception, once at a time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
-    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end."""
+    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end.
+
+    Within it again: what then goes on may be interrupted, too.
+    """
 
     def interrupt(_number: int, _frame: object) -> None:
         for number in caught:

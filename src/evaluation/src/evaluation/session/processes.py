@@ -52,6 +52,7 @@ class Family:
 
     def __init__(self) -> None:
         self._children: list[Child] = []
+        self.spared: int | None = None  # process id of what is not asked to end with the others
         # Orphans come to us and not to init: a killed roslaunch cannot leave its nodes behind.
         _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
@@ -77,10 +78,6 @@ class Family:
 
     def __exit__(self, *_: object) -> None:
         self.stop()
-
-    def interrupt(self, spare: int | None = None) -> None:
-        """Ask all but one to end, and do not wait."""
-        self._send(signal.SIGINT, spare)
 
     def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
         """End one child that was started here, by force if it takes longer than this (s, wall)."""
@@ -109,20 +106,20 @@ class Family:
             else:
                 return
 
-    def _send(self, number: int, spare: int | None = None) -> None:
+    def _send(self, number: int) -> None:
         for pid in self._living():
-            if pid == spare:
-                continue
             try:
                 os.kill(pid, number)
             except ProcessLookupError:
                 continue
 
     def _living(self) -> list[int]:
-        """Process ids of all descendants; collects those that ended."""
+        """Process ids of all descendants but the spared one; collects those that ended."""
         own = {child.process.pid: child.process for child in self._children}
         living = []
         for each in psutil.Process().children(recursive=True):
+            if each.pid == self.spared:
+                continue
             try:
                 ended = each.status() == psutil.STATUS_ZOMBIE
             except psutil.NoSuchProcess:

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from evaluation.session.failure import RunError
 from evaluation.session.film import FilmFile
+from evaluation.session.interruption import interruptible
 from evaluation.session.launch import Launched
 from evaluation.session.processes import read_log
 from evaluation.session.session import Session
@@ -130,13 +131,11 @@ def run_live(drive: LiveDrive) -> int:
             early, outcome = ended, ("ended early", str(ended) or "interrupted")
         if drive.film is not None:
             drive.film.stop()
+        session.family.spared = drive.film.process_id if drive.film else None
         drive.end()
-        # They end while the film is being finished.
-        session.family.interrupt(spare=drive.film.process_id if drive.film else None)
-        if drive.film is not None:
-            drive.film.close()
-    if drive.was_seen:
-        _report(drive, outcome, launched.log_folder)
+    found = _report(drive, outcome, launched.log_folder) if drive.was_seen else None
+    with interruptible():
+        _finish_film(drive, found)
     if early is not None:
         raise early
     faults = drive.faults(outcome)
@@ -145,12 +144,24 @@ def run_live(drive: LiveDrive) -> int:
     return NOT_PASSED if faults else PASSED
 
 
-def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> None:
+def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> dict:
+    """Write and show the report, as if there were no film: it may not come to its end."""
     log = [line for path in sorted(log_folder.glob(drive.logs)) for line in read_log(path)]
     found = drive.figures(outcome, log)
-    found |= {"film": (drive.film.codec or None) if drive.film else None,
-              "versions": versions(Path(__file__).parent, log)}
+    found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
     drive.progress.say("\n" + "\n".join(drive.write(found)))
+    return found
+
+
+def _finish_film(drive: LiveDrive, found: dict | None) -> None:
+    """Have it whole, and in the report, or say why there is none; then name all files."""
+    fault = drive.film.close() if drive.film else ""
+    if fault:
+        print(f"{drive.program}: no film: {fault}", file=sys.stderr)
+    if found is None:
+        return
+    if drive.film and drive.film.codec:
+        drive.write(found | {"film": drive.film.codec})
     here = Path.cwd()
     made = [drive.out / name for name in drive.writes if (drive.out / name).exists()]
     shown = [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in made]
