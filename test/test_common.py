@@ -60,3 +60,8 @@ def test_a_trial_sets_up_what_its_arguments_need(tmp_path: Path, asked: str, opt
     done = subprocess.run(["bash", "-c", f". {common}; set_up_trial {asked}"], text=True,
                           capture_output=True, check=True)
     assert done.stdout.strip() == options
+
+
+def test_mending_apt_removes_no_package() -> None:
+    setup = (ROOT / "scripts/setup/debian.sh").read_text(encoding="utf-8")
+    assert setup.count("install -f") == setup.count("install -f --no-remove") == 1

@@ -11,7 +11,7 @@ as_root() {
 }
 apt() { as_root apt-get -q -y -o DPkg::Lock::Timeout=600 -o Acquire::Retries=2 -o Dpkg::Use-Pty=0 "$@"; }
 install_packages() { apt install --no-install-recommends "${missing[@]}"; }
-mend_and_install() { as_root dpkg --configure -a && apt install -f && install_packages; }
+mend_and_install() { as_root dpkg --configure -a && apt install -f --no-remove && install_packages; }
 debian_packages() {
   [ ${#missing[@]} -gt 0 ] || return 0
   step 2 "installing ${#missing[@]} Debian packages and what they depend on (some minutes, 360 MB on a bare machine)"

@@ -14,8 +14,8 @@ from evaluation.house.house_file import load_house
 from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
 from evaluation.navigation.main import NavigationRun
-from evaluation.navigation.picture import CLEAR, map_picture
 from evaluation.navigation.new_map import keep_map, place_for_map, read_map_frame
+from evaluation.navigation.picture import CLEAR, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import (
     Navigation,
@@ -29,7 +29,6 @@ from evaluation.navigation.score import (
 )
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
-from evaluation.trial.report import write_json
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
 

@@ -1,5 +1,8 @@
 """The pose that a node started again goes on from, on a parameter server of our own."""
 
+import http.client
+import xmlrpc.client
+
 import numpy as np
 import pytest
 import rospy
@@ -24,6 +27,17 @@ def test_what_was_saved_is_read_with_its_odometry():
     save_pose(POSE, SPREAD, ODOMETRY)
     for found, kept in zip(saved_pose(VALUES), (POSE, SPREAD, ODOMETRY), strict=True):
         assert np.array_equal(found, kept)
+
+
+@pytest.mark.parametrize("error", [
+    OSError(), xmlrpc.client.Fault(1, "no"), xmlrpc.client.ProtocolError("", 500, "", {}),
+    http.client.BadStatusLine(""), rospy.ROSException("no")])
+def test_a_master_that_answers_amiss_does_not_end_the_thread_that_saves(monkeypatch, error):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(rospy, "set_param", fail)
+    save_pose(POSE, SPREAD, ODOMETRY)
 
 
 @pytest.mark.parametrize("changes", [

@@ -28,7 +28,6 @@ from map_server.errors import MapFileError
 from map_server.map_files import read_map
 
 
-
 class NavigationRun(LiveDrive):
     """One run: who takes part in it and what was found."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import re
 import shutil
@@ -16,6 +15,7 @@ from pathlib import Path
 
 from evaluation.session.failure import RunError
 from evaluation.session.processes import INTERRUPT_TIME, Child, Family
+from evaluation.session.turn import take_turn
 
 USUAL_PORT = 11311
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
@@ -41,8 +41,7 @@ class Launched:
         self.log_folder.mkdir(parents=True)
         # From looking for a port to listening there: no other run may choose the same one.
         turn = log_folder if alone else Path(tempfile.gettempdir())
-        self._turn = (turn / f"course_run-{os.getuid()}.lock").open("w")
-        fcntl.flock(self._turn, fcntl.LOCK_EX)
+        self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
         self.port = free_port()
         self.master_uri = f"http://localhost:{self.port}"
         self._environment = dict(

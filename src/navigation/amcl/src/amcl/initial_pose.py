@@ -6,6 +6,8 @@ is wrong by what was driven since the last time, and sure of it.
 
 from __future__ import annotations
 
+import xmlrpc.client
+from http.client import HTTPException
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from nav_algorithms import poses
 
 SAVED = "~saved_pose"  # beside upstream's: {pose: [x, y, yaw], odometry: [x, y, yaw], stamp: s}
 LATELY = 60.0          # s of ROS time; after longer the odometry may have begun anew
+UNANSWERED = (OSError, xmlrpc.client.Error, HTTPException, rospy.ROSException)
 DRIFT = 0.2            # of the way, and of the turn, by the odometry since then
 
 
@@ -36,7 +39,7 @@ def initial_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def save_pose(pose: np.ndarray, covariance: np.ndarray, odometry: np.ndarray) -> None:
-    """To where initial_pose reads it; a master that does not answer is passed over.
+    """To where initial_pose reads it; a master that does not answer, or amiss, is passed over.
 
     `odometry` (3,) is the robot's pose in the odometry's frame at that time.
     """
@@ -47,7 +50,7 @@ def save_pose(pose: np.ndarray, covariance: np.ndarray, odometry: np.ndarray) ->
             rospy.set_param(f"~initial_cov_{axes}", float(value))
         rospy.set_param(SAVED, {"pose": pose.tolist(), "odometry": odometry.tolist(),
                                 "stamp": rospy.get_time()})
-    except OSError:
+    except UNANSWERED:
         rospy.logdebug("the pose could not be saved: no master")
 
 
@@ -58,7 +61,7 @@ def saved_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarr
         saved = rospy.get_param(SAVED, {})
         if saved["pose"] == pose.tolist() and 0 <= rospy.get_time() - saved["stamp"] < LATELY:
             return pose, covariance, np.array(saved["odometry"], float).reshape(3)
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, *UNANSWERED):
         pass  # nothing was saved, or not by us
     return None
 

@@ -137,7 +137,10 @@ class Bags:
                 child.interrupt()
 
     def _check_disk(self) -> None:
-        free = shutil.disk_usage(self.folder).free
+        try:
+            free = shutil.disk_usage(self.folder).free
+        except OSError as error:
+            raise Refused(f"{self.folder}: {error.strerror}") from None
         if free < LEAST_FREE:
             raise Refused(f"only {free >> 20} MiB are free in {self.folder}; "
                           f"recording needs {LEAST_FREE >> 20}")

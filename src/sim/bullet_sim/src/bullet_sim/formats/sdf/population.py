@@ -59,11 +59,12 @@ def _places(element: Element, name: str, where: str) -> list[Vector3]:
                 for step in steps]
     random = np.random.default_rng(zlib.crc32(name.encode()))
     tries = CANDIDATES if kind == "uniform" else 1
-    places: list[np.ndarray] = []
-    while len(places) < count:
-        drawn = [_drawn(random, size, inside) for _ in range(tries)]
-        places.append(max(drawn, key=lambda place: _distance(place, places)))
-    return [tuple(place.tolist()) for place in places]
+    places = np.empty((count, 3))
+    for number in range(count):
+        drawn = np.array([_drawn(random, size, inside) for _ in range(tries)])
+        gaps = np.linalg.norm(drawn[:, None] - places[:number], axis=2)
+        places[number] = drawn[gaps.min(axis=1, initial=math.inf).argmax()]
+    return [tuple(place) for place in places.tolist()]
 
 
 def _grid(element: Element, where: str) -> Iterator[Vector3]:
@@ -99,7 +100,3 @@ def _drawn(random: np.random.Generator, size: Vector3,
         place = random.uniform(-0.5, 0.5, 3) * size
         if inside(place):
             return place
-
-
-def _distance(place: np.ndarray, others: list[np.ndarray]) -> float:
-    return min((float(np.linalg.norm(place - other)) for other in others), default=math.inf)

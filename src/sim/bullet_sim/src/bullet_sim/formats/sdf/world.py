@@ -18,7 +18,7 @@ from bullet_sim.formats.sdf.frames import Frames, relative_to
 from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.light import read_light
 from bullet_sim.formats.sdf.model import read_model
-from bullet_sim.formats.sdf.population import read_population
+from bullet_sim.formats.sdf.population import MOST_MODELS, read_population
 from bullet_sim.formats.sdf.road import read_road
 from bullet_sim.formats.sdf.scene import read_scene
 from bullet_sim.formats.sdf.sensor import read_plugins
@@ -139,8 +139,15 @@ def read_entities(element: Element, source: Source) -> Entities:
         frames.add_element(frame, frame.get("attached_to", ""), f"frame {frame.get('name')!r}")
     found = []
     entities = Entities()
+    copies = 0
     for child in element:
-        for entity in or_without(_read, child, source) or ():
+        if child.tag == "population" and copies >= MOST_MODELS:
+            source.warn_once(f"<population>s of more than {MOST_MODELS} models; the rest is left"
+                             " out", "populations")
+            continue
+        read = or_without(_read, child, source) or ()
+        copies += len(read) if child.tag == "population" else 0
+        for entity in read:
             if isinstance(entity, Visual):
                 name = _own_name(entity.name, "road", entities.roads, source)
                 entities.roads[name] = entity
