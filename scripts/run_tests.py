@@ -5,7 +5,8 @@ and mostly waits for them: rostest files, and the pytest files marked `processes
 gets a session of its own, a free port for its master and a time limit. What it leaves running is
 killed and counts as a failure.
 Files that say `runs alone` measure time: they come last, one after the other.
-A few failed files run once more, alone: a busy machine starves processes. Both are reported.
+A few failed files that start processes run once more, alone: a busy machine starves them. They are
+called unsteady then; a hang or a process left running stays a failure.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from pathlib import Path
 import run_tests_processes as processes
 from run_tests_kinds import OUT, run_pytest, run_pytest_file, run_rostest, run_ruff
 from run_tests_processes import ROOT
-from run_tests_results import Result, show_failed, show_outputs, show_second, show_totals
+from run_tests_results import Result, show_failed, show_outputs, show_slowest, show_totals
+from run_tests_unsteady import judge_unsteady, read_known
 
 PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
 ALONE = re.compile(r"\bruns alone\b")
@@ -55,21 +57,26 @@ def run_file(file: Path, limit: float) -> list[Result]:
 
 def run_failed_again(results: list[Result], limit: float) -> list[Result]:
     """The results, those of failed files replaced by those of a second run alone; not if many."""
-    failed = [result for result in results if result.failures]
-    if len(failed) > MOST_SECOND:
+    if sum(bool(result.failures) for result in results) > MOST_SECOND:
         return results
-    return [second_run(result, limit) if result in failed else result for result in results]
+    return [second_run(result, limit) if may_run_again(result) else result for result in results]
+
+
+def may_run_again(result: Result) -> bool:
+    """Whether it failed, starts processes, and neither hung nor left one of them."""
+    file = ROOT / result.name
+    return bool(result.failures) and not result.final and file.is_file() and (
+        file.suffix == ".test" or bool(PROCESSES.search(file.read_text(encoding="utf-8"))))
 
 
 def second_run(first: Result, limit: float) -> Result:
     """What the file came to when run again; it keeps what the first run failed and printed."""
-    file = ROOT / first.name
-    if processes.stopping or not file.is_file():
+    if processes.stopping:
         return first
     folder = OUT / first.name.replace("/", ".")
     if folder.exists():
         folder.rename(folder.with_name(f"{folder.name}.first"))
-    second = run_file(file, limit)[0]
+    second = run_file(ROOT / first.name, limit)[0]
     second.first_failures, second.first_output = first.failures, first.output
     return second
 
@@ -112,7 +119,8 @@ def main() -> int:
     results = run_failed_again(results, args.limit)
     show_outputs(results)
     show_conformance()
-    show_second(results)
+    show_slowest(results)
+    results.append(Result("unsteady files", failures=judge_unsteady(results, read_known())))
     show_failed(results)
     return 0 if show_totals(results) else 1
 

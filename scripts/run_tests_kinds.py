@@ -12,7 +12,7 @@ from pathlib import Path
 
 import run_tests_processes as processes
 from run_tests_processes import ROOT, run_marked, unseen
-from run_tests_results import Result, note_end, pytest_cases, rostest_cases
+from run_tests_results import Result, note_end, note_left, pytest_cases, rostest_cases
 
 OUT = ROOT / "out" / "test"
 PROGRESS = re.compile(r"\[ *\d+%\]$")
@@ -118,7 +118,7 @@ def run_rostest(launch: Path, limit: float) -> Result:
         result.failures.append(f"{result.name}: not done after {limit:.0f} s")
     elif not result.failures and (code or not inner):
         result.failures.append(f"{result.name}: exit code {code}, {inner} tests ran")
-    result.failures += [f"{result.name}: left running: {command}" for command in left]
+    note_left(result, code, left)
     result.seconds = time.monotonic() - began
     if result.failures:
         result.output = log.read_text(errors="replace")

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 from pathlib import Path
+
+# What pytest and rostest say of a test that took too long.
+TIMED_OUT = re.compile(r"from pytest-timeout|max time \[[^]]*\] allotted")
+SLOWEST = 10
 
 
 @dataclass
@@ -16,6 +21,7 @@ class Result:
     passed: int = 0
     skipped: int = 0
     failures: list[str] = field(default_factory=list)
+    final: bool = False  # a process was left or a time limit reached: no second run mends that
     output: str = ""
     first_failures: list[str] = field(default_factory=list)  # of a run before this one
     first_output: str = ""
@@ -25,6 +31,8 @@ class Result:
         self.seconds += float(case.get("time") or 0.0)
         if case.find("failure") is not None or case.find("error") is not None:
             self.failures.append(f"{self.name}: {case.get('name')}")
+            said = "".join(ET.tostring(part, "unicode") for part in case)
+            self.final = self.final or bool(TIMED_OUT.search(said))
         elif case.find("skipped") is not None:
             self.skipped += 1
         else:
@@ -52,7 +60,13 @@ def note_end(result: Result, code: int, failed: bool, left: list[str]) -> None:
         result.failures.append(f"{result.name}: not done after {result.seconds:.0f} s")
     elif code not in (0, 1) or (code == 1 and not failed):
         result.failures.append(f"{result.name}: ended with exit code {code}")
+    note_left(result, code, left)
+
+
+def note_left(result: Result, code: int, left: list[str]) -> None:
+    """Count processes that a test left; like a test that was not done in time they are final."""
     result.failures += [f"{result.name}: left running: {command}" for command in left]
+    result.final = result.final or code == 124 or bool(left)
 
 
 def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
@@ -71,13 +85,12 @@ def show_outputs(results: list[Result]) -> None:
                 print("\n".join(f"  | {line}" for line in output.splitlines()))
 
 
-def show_second(results: list[Result]) -> None:
-    """A line for each test that failed at first and passed when its file ran again, alone."""
-    unsteady = [failure for result in results if not result.failures
-                for failure in result.first_failures]
-    if unsteady:
-        print("\nFailed beside others, passed alone:")
-        print("\n".join(f"  {failure}" for failure in unsteady))
+def show_slowest(results: list[Result]) -> None:
+    """The files that took longest, with seconds."""
+    files = sorted((result for result in results if result.seconds and "." in result.name),
+                   key=lambda result: -result.seconds)[:SLOWEST]
+    print("\nSlowest:")
+    print("\n".join(f"{result.seconds:7.1f} s  {result.name}" for result in files))
 
 
 def show_failed(results: list[Result]) -> None:

@@ -45,6 +45,15 @@ def test_every_documented_command_is_there(name: str) -> None:
         assert service in {"build": (None,), "down": (None,)}.get(verb, COMPOSE["services"]), words
 
 
+@pytest.mark.parametrize("name", ("docs/workers.md", "docs/workers.zh-CN.md"))
+def test_an_image_that_a_page_names_is_built(name: str) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
+    images = re.findall(r"^docker run (?:--\w+ (?:host )?)*(\S+)", text, re.MULTILINE)
+    built = {service["image"].replace("${SUITE:-bookworm}", "bookworm")
+             for service in COMPOSE["services"].values()}
+    assert images and set(images) <= built
+
+
 def test_the_page_is_published_to_this_machine_alone() -> None:
     published = [port for service in COMPOSE["services"].values()
                  for port in service.get("ports", [])]

@@ -1,19 +1,23 @@
 """The runner of the tests: what runs a second time, and what it then counts."""
 
 import sys
+import xml.etree.ElementTree as ET
+from datetime import date
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-FILES = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "test").glob("test_*.py"))]
+QUICK = "test/test_run_tests.py"  # starts no process
+FILES = sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("src/**/test/*.test"))
 
 
 @pytest.fixture
 def runner(monkeypatch, tmp_path):
     """The script as a module, its output in a folder of the test, and no file really run."""
     monkeypatch.syspath_prepend(str(ROOT / "scripts"))
-    for name in ("run_tests", "run_tests_kinds", "run_tests_processes", "run_tests_results"):
+    for name in ("run_tests", "run_tests_kinds", "run_tests_processes", "run_tests_results",
+                 "run_tests_unsteady"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     import run_tests
     monkeypatch.setattr(run_tests, "OUT", tmp_path)
@@ -37,23 +41,71 @@ def second(runner, monkeypatch, passed):
     return run
 
 
-def test_a_file_that_passes_alone_counts_and_is_named(runner, monkeypatch, capsys):
+def test_a_file_that_passes_alone_is_forgiven_and_named(runner, monkeypatch, capsys):
     run = second(runner, monkeypatch, passed=True)
     good = runner.Result("a", passed=2)
     results = runner.run_failed_again([good, failed(runner, FILES[0])], 1.0)
     assert run == [ROOT / FILES[0]] and results[0] is good
     runner.show_outputs(results)
-    runner.show_second(results)
+    assert runner.judge_unsteady(results, []) == []
     shown = capsys.readouterr().out
     assert "what it said" in shown and f"  {FILES[0]}: test_a\n" in shown
+    assert f"UNSTEADY: {FILES[0]}: " in shown
+    assert shown.splitlines()[-1] == f"1 unsteady: {FILES[0]}"
     assert runner.show_totals(results) and capsys.readouterr().out == "5 passed, 0 failed\n"
+
+
+@pytest.mark.parametrize("known", [{}, {"test": "test_a"}])
+def test_a_known_file_needs_no_loud_line(runner, monkeypatch, capsys, known):
+    second(runner, monkeypatch, passed=True)
+    results = runner.run_failed_again([failed(runner, FILES[0])], 1.0)
+    runner.judge_unsteady(results, [{"file": FILES[0], **known}])
+    assert "UNSTEADY" not in capsys.readouterr().out
+    runner.judge_unsteady(results, [{"file": FILES[0], "test": "another"}, {"file": FILES[1]}])
+    assert "UNSTEADY" in capsys.readouterr().out
+
+
+def test_more_than_three_that_are_not_known_fail_the_run(runner, monkeypatch):
+    second(runner, monkeypatch, passed=True)
+    results = runner.run_failed_again([failed(runner, name) for name in FILES[:4]], 1.0)
+    assert runner.judge_unsteady(results, [{"file": FILES[0]}]) == []
+    (said,) = runner.judge_unsteady(results, [])
+    assert said.startswith("4 unsteady files that test/unsteady.yaml does not name")
+
+
+def test_what_starts_no_process_hangs_or_leaves_one_is_not_run_again(runner, monkeypatch):
+    run = second(runner, monkeypatch, passed=True)
+    hung, left = failed(runner, FILES[0]), failed(runner, FILES[1])
+    kinds = sys.modules["run_tests_results"]
+    kinds.note_left(hung, 124, [])
+    kinds.note_left(left, 1, ["roscore"])
+    late = runner.Result(FILES[2])
+    late.add_case(ET.fromstring("<testcase name='a' time='1'><failure message='Failed: Timeout "
+                                "(>300.0s) from pytest-timeout.'/></testcase>"))
+    slow = runner.Result(FILES[3])
+    slow.add_case(ET.fromstring("<testcase name='a' time='1'><failure>max time [60.0s] allotted"
+                                " for test [a]</failure></testcase>"))
+    results = [hung, left, late, slow, failed(runner, QUICK)]
+    assert runner.run_failed_again(results, 1.0) == results
+    assert not run and not runner.show_totals(results)
+
+
+def test_the_list_of_unsteady_files_is_complete_and_fresh(runner):
+    for each in runner.read_known():
+        assert set(each) - {"test"} == {"file", "reason", "date"}, each
+        assert runner.may_run_again(failed(runner, each["file"])), each
+        assert isinstance(each["date"], date) and each["reason"]
+
+
+def test_the_slowest_files_are_shown(runner, capsys):
+    runner.show_slowest([runner.Result(f"a{number}.py", seconds=number) for number in range(12)])
+    assert capsys.readouterr().out.splitlines()[2:4] == ["   11.0 s  a11.py", "   10.0 s  a10.py"]
 
 
 def test_a_file_that_fails_twice_has_failed(runner, monkeypatch, capsys):
     second(runner, monkeypatch, passed=False)
     results = runner.run_failed_again([failed(runner, FILES[0])], 1.0)
-    runner.show_second(results)
-    assert capsys.readouterr().out == ""
+    assert runner.judge_unsteady(results, []) == [] and capsys.readouterr().out == ""
     runner.show_failed(results)
     assert FILES[0] in capsys.readouterr().out
     assert not runner.show_totals(results)

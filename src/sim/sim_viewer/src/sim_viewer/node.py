@@ -4,6 +4,7 @@ import asyncio
 import signal
 import sys
 import webbrowser
+from dataclasses import replace
 
 import rospy
 from rosgraph.network import get_local_addresses
@@ -65,6 +66,8 @@ async def _announce(node: Node, port: int) -> None:
     print(f"viewer: {url}", flush=True)
     for further in further_urls(node.options, port, get_local_addresses()):
         print(f"viewer, from other machines: {further}", flush=True)
-    await node.run_in_thread(rospy.set_param, "~url", url)  # for who did not see the line
+    # For who did not see the line; without the token, since everybody may ask a master.
+    public = page_url(replace(node.options, token=""), port)
+    await node.run_in_thread(rospy.set_param, "~url", public)
     if node.options.open:
         await node.run_in_thread(webbrowser.open, url)

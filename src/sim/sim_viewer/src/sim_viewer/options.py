@@ -1,12 +1,14 @@
 """The node's parameters."""
 
 import ipaddress
+import os
 import secrets
 from dataclasses import dataclass, replace
 
 import rospy
 
 PORTS = range(1, 65536)
+TOKEN = "SIM_VIEWER_TOKEN"  # environment variable: `ps` and the master show it to nobody else
 
 
 class OptionError(ValueError):
@@ -45,7 +47,7 @@ def read_options() -> Options:
         port=_read("port", int, Options.port),
         address=_read("address", str, Options.address),
         control=_read("control", bool, Options.control),
-        token=str(rospy.get_param("~token", "")),
+        token=str(rospy.get_param("~token", "")) or os.environ.get(TOKEN, ""),
         hosts=tuple(name.strip().lower() for name in _read("hosts", str, "").split(",")
                     if name.strip()),
         bags=str(rospy.get_param("~bags", "")).strip(),

@@ -14,7 +14,7 @@ from dataclasses import asdict, replace
 import rosgraph
 
 from sim_viewer.context import Node
-from sim_viewer.options import Options
+from sim_viewer.options import TOKEN, Options
 
 PERIOD = 2.0  # s between looks
 RUN_ID = "/run_id"  # roslaunch gives each master another one
@@ -36,12 +36,14 @@ def restart(options: Options, port: int) -> None:
     """Does not return. Page and token stay where they are."""
     words = parameter_words(replace(options, port=port, open=False))
     kept = [word for word in sys.argv if not word.startswith("_") or word.startswith("__")]
-    os.execv(sys.executable, [sys.executable, *kept, *words])
+    os.execve(sys.executable, [sys.executable, *kept, *words],
+              {**os.environ, TOKEN: options.token})
 
 
 def parameter_words(options: Options) -> list[str]:
-    """The options as words of a command line, `_port:=8080`."""
+    """The options as words of a command line, `_port:=8080`; all but the token."""
     values = {**asdict(options), "hosts": ",".join(options.hosts)}
+    del values["token"]
     return [f"_{name}:={json.dumps(value)}" for name, value in values.items()]
 
 
