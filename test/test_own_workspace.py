@@ -210,7 +210,7 @@ def test_the_table_of_packages_is_what_its_files_say():
     ({"ROS_HOSTNAME": "laptop"}, ""),
 ])
 def test_nodes_listen_to_this_machine_alone_unless_somebody_says_otherwise(given, ip):
+    environment = given | {"PATH": "/usr/bin:/bin", "CATKIN_ENV_HOOK_WORKSPACE": "/x/devel"}
     done = subprocess.run(["sh", "-euc", '. "$1"; echo "${ROS_IP:-}"', "sh", HOOK], text=True,
-                          capture_output=True, env=given | {"PATH": "/usr/bin:/bin",
-                                                            "CATKIN_ENV_HOOK_WORKSPACE": "/x/devel"})
+                          capture_output=True, env=environment)
     assert (done.stdout, done.stderr) == (f"{ip}\n", "")

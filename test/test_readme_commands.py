@@ -117,6 +117,13 @@ def test_links_lead_to_files(page: str) -> None:
     assert not [link for link in targets if not (ROOT / page).parent.joinpath(link).exists()]
 
 
+@pytest.mark.parametrize("page", ("docs/security.md", "docs/security.zh-CN.md"))
+def test_the_tests_that_a_page_names_are_there(page: str) -> None:
+    named = re.findall(r"`(\w+\.(?:py|test))`", (ROOT / page).read_text(encoding="utf-8"))
+    there = {path.name for path in (*ROOT.glob("test/*.py"), *ROOT.glob("src/**/test/**/*.*"))}
+    assert len(named) > 20 and set(named) <= there, set(named) - there
+
+
 def test_every_page_is_in_the_index() -> None:
     for suffix in ("", ".zh-CN"):
         index = (ROOT / f"docs/README{suffix}.md").read_text(encoding="utf-8")

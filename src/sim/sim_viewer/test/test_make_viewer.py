@@ -11,8 +11,10 @@ import subprocess
 import time
 import urllib.request
 import xmlrpc.client
+from ipaddress import ip_address
 from pathlib import Path
 
+import psutil
 import pytest
 
 pytestmark = pytest.mark.processes
@@ -64,11 +66,27 @@ def address_in(log: Path, process) -> str:
     raise AssertionError(f"no address within {LIMIT} s: {log.read_text()}")
 
 
+def listening(pid: int) -> set[tuple[str, bool]]:
+    """Programs below this process that others can connect to, and whether only from here."""
+    found = set()
+    for each in psutil.Process(pid).children(recursive=True):
+        words = " ".join(each.cmdline())
+        name = next((word for word in ("rosmaster", "rosout", "sim_viewer", "gazebo")
+                     if word in words), each.name())
+        found |= {(name, ip_address(one.laddr.ip).is_loopback) for one in each.connections("inet")
+                  if one.status in (psutil.CONN_LISTEN, psutil.CONN_NONE)}
+    return found
+
+
 def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     process, log = viewer
     with urllib.request.urlopen(address_in(log, process), timeout=10) as page:
         assert page.status == 200
         assert b"<script" in page.read()
+    sockets = listening(process.pid)
+    assert {"rosmaster", "gazebo", "sim_viewer"} <= {name for name, _ in sockets}, sockets
+    # XML-RPC of Debian's roscpp listens everywhere, whatever ROS_IP says.
+    assert {name for name, loopback in sockets if not loopback} <= {"rosout"}, sockets
     # A second terminal finds the usual one, where nobody else has it.
     assert usual_port_free == ("Another ROS master" not in log.read_text())
     os.killpg(process.pid, signal.SIGINT)  # as a terminal's Ctrl-C: to all of them
