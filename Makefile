@@ -67,8 +67,8 @@ viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [PORT
 	@scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
 	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)")
 
-test: ## run every check and test [JOBS=3]
-	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)")
+test: ## run every check and test [JOBS=3], or those of what has changed, in 90 s [FAST=1]
+	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)") $(if $(filter-out 0 no false,$(FAST)),--fast)
 
 bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]
 	@scripts/bench.sh $(if $(ONLY),--only "$(ONLY)") $(if $(filter-out 0 no false,$(QUICK)),--quick) \

@@ -12,17 +12,20 @@ called unsteady then; a hang or a process left running stays a failure.
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
 import run_tests_processes as processes
+from run_tests_fast import BEGIN_WITHIN, UNTIL, fast_files
 from run_tests_kinds import OUT, run_pytest, run_pytest_file, run_rostest, run_ruff
 from run_tests_processes import ROOT
 from run_tests_results import Result, show_failed, show_outputs, show_slowest, show_totals
@@ -94,12 +97,29 @@ def show_conformance() -> None:
     print(f"\n==== conformance\n{done.stdout}{done.stderr}")
 
 
+def run_whole(args: argparse.Namespace, slow: list[Path]) -> list[Result]:
+    """All there is; `slow` are the pytest files that start processes."""
+    rostests = files_that_say(re.compile(""), "*.test")
+    alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
+    results = run_beside(
+        [path for path in [*slow, *rostests] if path not in alone], args.jobs, args.limit,
+        partial(run_pytest, args.pytest_limit, [f"--ignore={path}" for path in slow]))
+    return results + run_beside(alone, 1, args.limit)
+
+
+def run_fast(slow: list[Path]) -> list[Result]:
+    """What takes 90 s: see run_tests_fast.py."""
+    os.environ[UNTIL] = str(time.time() + BEGIN_WITHIN)
+    return run_pytest(2 * BEGIN_WITHIN, [str(path) for path in fast_files(slow)])
+
+
 def main() -> int:
     """Run all; 0 if something passed and nothing failed, 130 if interrupted."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=3, help="files with processes at a time (3)")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds for one of these files")
     parser.add_argument("--pytest-limit", type=float, default=1500.0, help="seconds for pytest")
+    parser.add_argument("--fast", action="store_true", help="what run_tests_fast.py says, in 90 s")
     args = parser.parse_args()
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(name, processes.stop)
@@ -108,17 +128,14 @@ def main() -> int:
     results = [run_ruff()]
     print(results[0].line(), flush=True)
     slow = files_that_say(PROCESSES, "test_*.py")  # first: the longest of them take minutes
-    rostests = files_that_say(re.compile(""), "*.test")
-    alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
-    results += run_beside([path for path in [*slow, *rostests] if path not in alone],
-                          args.jobs, args.limit, partial(run_pytest, args.pytest_limit, slow))
-    results += run_beside(alone, 1, args.limit)
+    results += run_fast(slow) if args.fast else run_whole(args, slow)
     if processes.stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130
     results = run_failed_again(results, args.limit)
     show_outputs(results)
-    show_conformance()
+    if not args.fast:
+        show_conformance()
     show_slowest(results)
     results.append(Result("unsteady files", failures=judge_unsteady(results, read_known())))
     show_failed(results)

@@ -17,7 +17,7 @@ def runner(monkeypatch, tmp_path):
     """The script as a module, its output in a folder of the test, and no file really run."""
     monkeypatch.syspath_prepend(str(ROOT / "scripts"))
     for name in ("run_tests", "run_tests_kinds", "run_tests_processes", "run_tests_results",
-                 "run_tests_unsteady"):
+                 "run_tests_unsteady", "run_tests_fast"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     import run_tests
     monkeypatch.setattr(run_tests, "OUT", tmp_path)
@@ -118,3 +118,16 @@ def test_style_and_many_failures_are_no_accident(runner, monkeypatch):
     many = [failed(runner, f"{FILES[0]}{number}") for number in range(runner.MOST_SECOND + 1)]
     assert runner.run_failed_again(many, 1.0) == many
     assert not run
+
+
+def test_fast_takes_changed_tests_first_and_no_file_with_processes(runner):
+    import run_tests_fast as fast
+    package = ROOT / "src/navigation/map_server"
+    apart = set(runner.files_that_say(runner.PROCESSES, "test_*.py"))
+    changed = [package / "test/test_map_files.py", package / "src/map_server/errors.py",
+               ROOT / "Makefile"]
+    files = fast.choose(changed, apart)
+    assert files[:3] == [changed[0], ROOT / "test/test_arrows.py", ROOT / "test/test_docstrings.py"]
+    assert {package, ROOT} == {path.parents[1] for path in files}
+    assert len(set(files)) == len(files) and not apart & set(files)
+    assert fast.choose([], apart) == files[1:3]

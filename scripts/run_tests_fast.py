@@ -1,0 +1,51 @@
+"""Which tests `make test FAST=1` runs: those of what has changed since main, without processes.
+
+First the changed test files, then those that look at all of the code, then the others of the
+packages in which anything has changed; for what is in no package they are those of test/.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+from run_tests_processes import ROOT
+
+ALWAYS = ("test_arrows.py", "test_docstrings.py")  # in test/
+MAIN = ("origin/main", "main")
+BEGIN_WITHIN = 65.0  # s; tests that have not begun by then are skipped, as conftest.py says
+UNTIL = "TESTS_BEGIN_UNTIL"  # environment variable: s since 1970
+
+
+def fast_files(apart: Iterable[Path]) -> list[Path]:
+    """The files, in the order in which they run; none that is `apart`."""
+    return choose(changed_files(), set(apart))
+
+
+def choose(changed: list[Path], apart: set[Path]) -> list[Path]:
+    """The same for these changed files."""
+    homes = sorted({_home(path) for path in changed})
+    others = [path for home in homes for path in sorted(home.rglob("test_*.py"))]
+    files = [*(path for path in changed if path in others),
+             *(ROOT / "test" / name for name in ALWAYS), *others]
+    return [path for path in dict.fromkeys(files) if path not in apart]
+
+
+def changed_files() -> list[Path]:
+    """What differs from the commit where this branch left main, and what git does not know yet."""
+    base = next(filter(None, (_git("merge-base", "HEAD", name) for name in MAIN)), "HEAD\n").strip()
+    names = _git("diff", "--name-only", base) + _git("ls-files", "--others", "--exclude-standard")
+    return [ROOT / name for name in names.splitlines()]
+
+
+def _home(path: Path) -> Path:
+    """The folder of the tests that look at a file: its package's, or the repository's own."""
+    package = next((folder for folder in path.parents if (folder / "package.xml").exists()), ROOT)
+    return package / "test"
+
+
+def _git(*words: str) -> str:
+    """Its output; empty where it fails, as in an archive."""
+    done = subprocess.run(["git", *words], cwd=ROOT, text=True, capture_output=True)
+    return done.stdout if done.returncode == 0 else ""
