@@ -136,6 +136,8 @@ class Detector(unittest.TestCase):
         heard = []
         subscriber = rospy.Subscriber("/slow/detections", Detection2DArray, heard.append)
         try:
+            # It answers the first picture alone, also where nobody hears it yet.
+            self.wait(subscriber.get_num_connections, "the node's answers")
             self.repeat(picture(401), lambda: heard, "an answer at a low rate")
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(timeout=10), 0)
