@@ -22,6 +22,7 @@ from std_srvs.srv import Empty
 
 from evaluation.lap import Verdict
 from evaluation.session import names
+from evaluation.session.encoders import FINISH_TIME, WRITE_TIME
 from evaluation.session.failure import RunError
 from evaluation.session.launch import Launched
 from evaluation.session.session import Session
@@ -37,7 +38,7 @@ from marking.states import STATE_LOG, Tail, bytes_below, sample_of
 
 SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
 ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
-FILM_TIME = 10.0  # s, wall, to finish the file
+FILM_TIME = WRITE_TIME + FINISH_TIME + 5.0  # s, wall: the encoder's own limits, and the node itself
 MOST_LOGGED = 30e6  # bytes of all nodes' logs in one case
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
 

@@ -63,9 +63,11 @@ def _names(names: list[str]) -> str:
 def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
     """Whether there is a master where ROS_MASTER_URI says; `answer` as in Node, or "other"."""
     place = f"{host}:{port}"
+    alone = "" if host == "localhost" else ", or it listens to its own machine alone"
     wrong, remedy = {
         "yes": ("", ""),
-        "refused": (f"nobody listens at {place}: there is no master", f"roscore, on {host}"),
+        "refused": (f"nobody listens at {place}: there is no master{alone}",
+                    f"on {host}: export ROS_HOSTNAME={host}; roscore"),
         "silence": (f"{place} does not answer: the address is wrong, or a firewall is between",
                     f"ping -c 3 {host}"),
         "other": (f"what listens at {place} is no ROS master", f"roscore -p OTHER_PORT, on {host}, "
