@@ -1,7 +1,7 @@
 """Which tests `make test FAST=1` runs: those of what has changed since main, without processes.
 
 First the changed test files, then those that look at all of the code, then the others of the
-packages in which anything has changed; for what is in no package they are those of test/.
+packages in which anything has changed (for what is in no package: those of test/), then the core's.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 from run_tests_processes import ROOT
 
 ALWAYS = ("test_arrows.py", "test_docstrings.py")  # in test/
+CORE = ("src/sim/bullet_sim/test", "src/navigation/nav_algorithms/test")
 MAIN = ("origin/main", "main")
 BEGIN_WITHIN = 65.0  # s; tests that have not begun by then are skipped, as conftest.py says
 UNTIL = "TESTS_BEGIN_UNTIL"  # environment variable: s since 1970
@@ -25,7 +26,7 @@ def fast_files(apart: Iterable[Path]) -> list[Path]:
 
 def choose(changed: list[Path], apart: set[Path]) -> list[Path]:
     """The same for these changed files."""
-    homes = sorted({_home(path) for path in changed})
+    homes = [*sorted({_home(path) for path in changed}), *(ROOT / name for name in CORE)]
     others = [path for home in homes for path in sorted(home.rglob("test_*.py"))]
     files = [*(path for path in changed if path in others),
              *(ROOT / "test" / name for name in ALWAYS), *others]

@@ -127,7 +127,10 @@ def test_fast_takes_changed_tests_first_and_no_file_with_processes(runner):
     changed = [package / "test/test_map_files.py", package / "src/map_server/errors.py",
                ROOT / "Makefile"]
     files = fast.choose(changed, apart)
-    assert files[:3] == [changed[0], ROOT / "test/test_arrows.py", ROOT / "test/test_docstrings.py"]
-    assert {package, ROOT} == {path.parents[1] for path in files}
+    always = [ROOT / "test/test_arrows.py", ROOT / "test/test_docstrings.py"]
+    core = [ROOT / "src/sim/bullet_sim", ROOT / "src/navigation/nav_algorithms"]
+    assert files[:3] == [changed[0], *always]
+    assert list(dict.fromkeys(path.parents[1] for path in files[3:])) == [package, ROOT, *core]
     assert len(set(files)) == len(files) and not apart & set(files)
-    assert fast.choose([], apart) == files[1:3]
+    unchanged = fast.choose([], apart)
+    assert unchanged[:2] == always and {path.parents[1] for path in unchanged[2:]} == set(core)
