@@ -22,7 +22,6 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 # Gives this shell what a learner's terminal has after `source devel/setup.bash`.
 enter_workspace() {
   set +u; . "$root/devel/setup.bash"; set -u
-  unset ROS_IP
   export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
   # roscore and roslaunch write below ~/.ros, and end where they cannot.
   local home=${HOME:-/nonexistent}
@@ -43,7 +42,7 @@ choose_master() {
   local usual=http://localhost:11311 port
   if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
     export ROS_MASTER_URI=${given_master[0]}
-    if [ "${given_master[2]:-127.0.0.1}" != 127.0.0.1 ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
+    if [ -n "${given_master[2]}" ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
     if [ -n "${given_master[1]}" ]; then export ROS_HOSTNAME=${given_master[1]}
     # Another machine cannot reach this one as localhost: rospy takes this machine's own name.
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi

@@ -75,7 +75,6 @@ def test_of_two_names_one_has_no_effect():
 
 @pytest.mark.parametrize("environment", [
     ROBOT | {"ROS_IP": "10.0.0.1"}, ROBOT | {"ROS_HOSTNAME": "laptop"},
-    ROBOT | {"ROS_HOSTNAME": "laptop", "ROS_IP": "127.0.0.1"},
     {"ROS_MASTER_URI": "http://localhost:11311"},
     {"ROS_MASTER_URI": "http://localhost:11311", "ROS_HOSTNAME": "localhost"}])
 def test_right_names(environment):

@@ -19,13 +19,6 @@ if [ -x "$_bullet_sim_bin/python3" ]; then
 fi
 unset _bullet_sim_bin
 export TURTLEBOT3_MODEL="${TURTLEBOT3_MODEL:-waffle}"
-# ROS asks nobody who he is: master and nodes listen to this machine alone unless somebody says by which
-# address others reach it. ROS_IP, which gives way to a ROS_HOSTNAME or ROS_IP that is exported later.
-if [ -z "${ROS_HOSTNAME:-}${ROS_IP:-}${ROS_IPV6:-}" ]; then
-  case "${ROS_MASTER_URI:-}" in
-    '' | http://localhost:* | http://127.*) export ROS_IP=127.0.0.1 ;;
-  esac
-fi
 # Images are taken apart and put together in pieces of some MB. The C library gives each back to the
 # system and asks for it again; for lesson 05 in lockstep that was a quarter of the time (measured).
 export MALLOC_MMAP_THRESHOLD_="${MALLOC_MMAP_THRESHOLD_:-33554432}"

@@ -86,7 +86,7 @@ def test_course_and_page_come_and_go_together(viewer, usual_port_free):
         assert b"<script" in page.read()
     sockets = listening(process.pid)
     assert {"rosmaster", "gazebo", "sim_viewer"} <= {name for name, _ in sockets}, sockets
-    # XML-RPC of Debian's roscpp listens everywhere, whatever ROS_IP says.
+    # XML-RPC of Debian's roscpp listens everywhere, whatever is exported.
     assert {name for name, loopback in sockets if not loopback} <= CPP_NODES, sockets
     # A second terminal finds the usual one, where nobody else has it.
     assert usual_port_free == ("Another ROS master" not in log.read_text())

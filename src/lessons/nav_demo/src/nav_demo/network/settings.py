@@ -10,7 +10,6 @@ from urllib.parse import urlsplit
 from nav_demo.network.findings import Finding, is_loopback
 
 MASTER_PORT = 11311
-SETUP_IP = "127.0.0.1"  # by devel/setup.bash, where nobody had said another address
 ADDRESS = re.compile(r"\d{1,3}(\.\d{1,3}){3}")
 SAMPLE = f"export ROS_MASTER_URI=http://localhost:{MASTER_PORT}"
 
@@ -72,7 +71,7 @@ def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list
     name, source = advertised_name(environment, around.own_name)
     found = []
     hostname, ip = environment.get("ROS_HOSTNAME"), environment.get("ROS_IP")
-    if hostname and ip and ip not in (hostname, SETUP_IP):
+    if hostname and ip and hostname != ip:
         found.append(Finding(f"ROS_HOSTNAME is {hostname!r} and ROS_IP {ip!r}: the second has no "
                              f"effect", "unset ROS_IP"))
     if source == "ROS_IP" and not ADDRESS.fullmatch(name):
