@@ -141,7 +141,8 @@ class Detector(unittest.TestCase):
              "_max_rate:=0.01", f"_model:={network}", f"image:={TOPIC}"])
         heard = []
         subscriber = rospy.Subscriber("/slow/detections", Detection2DArray, heard.append)
-        try:
+        try:  # its only picture for a long time must not come before we listen
+            self.wait(subscriber.get_num_connections, "the slow node")
             self.repeat(picture(401), lambda: heard, "an answer at a low rate")
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(timeout=10), 0)
