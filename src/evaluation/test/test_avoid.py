@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
+
 from evaluation.avoid import drive
 from evaluation.avoid.trial import AvoidTrial
 

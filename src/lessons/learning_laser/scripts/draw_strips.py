@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Draws what avoid_obstacles.py makes of a scan: images/strips.png."""
 
+import importlib
 from pathlib import Path
 
-import avoid_obstacles as lesson
 import cv2
 import numpy as np
 from learning_laser import hall
 
+lesson = importlib.import_module("avoid_obstacles")  # beside this script
 PLACE = 0.9, 0.1, 0.0  # x, y, m; yaw, rad: of the axle in hall 0
 SCALE, LEFT, TOP = 160, -0.5, 1.6  # px a metre; m, of the picture's upper left corner
 SIZE = 960, 512  # px
