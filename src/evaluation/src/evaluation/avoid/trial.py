@@ -16,7 +16,7 @@ from evaluation.avoid.drive import CONTACT, REACHED, Drive
 from evaluation.picture import write_tiles
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import Case, Trial
+from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import table
 
 TILE = (5.0, 1.9)  # inches
@@ -29,7 +29,7 @@ class Hall(Case):
     seed: int
 
 
-class AvoidTrial(Trial):
+class AvoidTrial(ReportedTrial):
     """Every hall is to be driven through without a contact."""
 
     program = "avoid"
