@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes mark drive viewer test bench setup build deps deb lint clean
+.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes mark drive viewer test bench setup build deps deb lint clean
 
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
@@ -20,6 +20,9 @@ race: ## drive the racetrack by camera and report [LAPS= DURATION= FAST= CAMERA=
 
 race-trials: ## many disturbed laps, lane_follow beside plain P [SEEDS=20] [TRACKS=10] [WORKERS=1]
 	@scripts/race_trials.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(TRACKS),--tracks "$(TRACKS)") $(WHERE)
+
+avoid: ## drive by laser through halls with columns [SEEDS=20] [WORKERS=1]
+	@scripts/avoid.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(WHERE)
 
 navigate: ## map the house, localise, visit goals, report [GOALS=5] [SEED=0] [PACE=1] [MAP=out/navigate/map.yaml]
 	@scripts/navigate.sh $(if $(GOALS),--goals "$(GOALS)") $(if $(SEED),--seed "$(SEED)") \

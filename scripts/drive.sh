@@ -5,6 +5,7 @@ failure_code=2
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
 choose_master
+set -- ackermann:=true command_timeout:=true "$@"
 if [ -n "${DISPLAY:-}" ]; then
   exec roslaunch racecar_description car_control.launch "$@"
 fi

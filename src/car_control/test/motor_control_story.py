@@ -156,7 +156,8 @@ class MotorControlStory(unittest.TestCase):
 
     def test_ctrl_c_leaves_the_car_standing(self):
         other = FakeControllers("/other")
-        command = [*NODE, "__name:=other", "_namespace:=/other", "_rate_hz:=0", "_timeout:=10"]
+        command = [*NODE, "__name:=other", "_namespace:=/other", "_ackermann:=true",
+                   "_rate_hz:=0", "_timeout:=10"]  # fmt: skip
         node = subprocess.Popen(command)
         try:
             wait_until(lambda: other.subscribers[0].get_num_connections(), "the other node")

@@ -9,7 +9,8 @@ from car_control.motor import Drive, Motor, MotorSettings, controller_commands
 from car_control.settings import load_settings
 
 CONFIG = Path(__file__).parents[1] / "config" / "car_control.yaml"
-SETTINGS = load_settings(MotorSettings, CONFIG, "motor_control")
+PAGE = load_settings(MotorSettings, CONFIG, "motor_control")
+SETTINGS = replace(PAGE, ackermann=True)
 
 
 def driving(speed=2.0, angle=0.1, at=10.0, **changes):
@@ -71,7 +72,7 @@ def test_speeding_up_takes_time_and_slowing_down_none():
 
 
 def test_the_tutorials_law_is_the_pages():
-    commands = controller_commands(replace(SETTINGS, ackermann=False), Drive(2.0, -0.3))
+    commands = controller_commands(PAGE, Drive(2.0, -0.3))
     assert list(commands.values()) == [16.0] * 4 + [-0.3] * 2
     assert [name.split("_")[:2] for name in commands][:2] == [["left", "rear"], ["right", "rear"]]
 

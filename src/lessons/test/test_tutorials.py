@@ -1,4 +1,4 @@
-"""The tutorials' pages, row by row: what a page has, and what must be seen here (tutorials.yaml).
+"""The tutorials' pages, row by row: what a page has, and what must be seen here (tutorials*.yaml).
 
 `python3 -m pytest -v src/lessons/test/test_tutorials.py` prints the table with results.
 """
@@ -18,7 +18,8 @@ import yaml
 
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
-PAGES = yaml.safe_load((HERE / "tutorials.yaml").read_text(encoding="utf-8"))
+PAGES = {page: rows for file in sorted(HERE.glob("tutorials*.yaml"))
+         for page, rows in yaml.safe_load(file.read_text(encoding="utf-8")).items()}
 TYPED = yaml.safe_load((HERE / "lesson_commands.yaml").read_text(encoding="utf-8"))
 ROWS = [pytest.param(row, id=f"{page}: {row['page']}")
         for page, rows in PAGES.items() for row in rows]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A person at a screen, who types: roslaunch racecar_description car_control.launch
+"""A person at a screen, who types COMMAND.
 
 The screen is Xvfb's; its name is the parameter /acceptance_display.
 """
@@ -10,7 +10,8 @@ import subprocess
 
 import rospy
 
-COMMAND = ("roslaunch", "racecar_description", "car_control.launch")
+COMMAND = ("roslaunch", "racecar_description", "car_control.launch", "ackermann:=true",
+           "command_timeout:=true")  # fmt: skip
 
 
 def start_screen():

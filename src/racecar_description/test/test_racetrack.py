@@ -151,16 +151,25 @@ def test_a_wrong_camera_size_is_an_error(file, capfd):
 
 def test_car_control_starts_seven_controllers():
     nodes, params = launched("car_control.launch")
-    spawner = nodes["controller_spawner"]
+    spawner = nodes["controller_manager"]
     assert (spawner.package, spawner.type, spawner.namespace) == (
         "controller_manager", "spawner", "/racecar/")
     assert len(spawner.args.split()) == 7
     for name in spawner.args.split():
         assert f"/racecar/{name}/type" in params
-        assert params.get(f"/racecar/{name}/command_timeout", 0.2) == 0.2
+        assert f"/racecar/{name}/command_timeout" not in params
+    assert params["/motor_control/ackermann"] is False
     drivers = {(node.package, node.type) for node in nodes.values()
                if node.package == "car_control"}
     assert drivers == {("car_control", "motor_control.py"), ("car_control", "keyboard_control.py")}
+
+
+@pytest.mark.parametrize("file", ["race.launch", "mapping.launch", "navigation.launch"])
+def test_our_own_launch_files_steer_by_ackermann_and_forget_old_commands(file):
+    _, params = launched(file)
+    assert params["/motor_control/ackermann"] is True
+    timeouts = [value for name, value in params.items() if name.endswith("/command_timeout")]
+    assert timeouts == [0.2] * 6
 
 
 def test_the_keyboard_can_be_left_out():

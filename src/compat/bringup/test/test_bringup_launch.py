@@ -25,3 +25,11 @@ def test_it_is_the_same():
     assert load(ALIAS, ["gui:=false"]) == load(RACECAR, ["gui:=false"])
     assert load(ALIAS, ARGUMENTS) == load(RACECAR, ARGUMENTS)
     assert load(ALIAS, ARGUMENTS) != load(ALIAS, ["gui:=false"])
+
+
+def test_with_rviz_it_is_the_same_and_rviz():
+    nodes, params = load(ALIAS, ARGUMENTS)
+    with_rviz, params_with_rviz = load(ALIAS.with_name("racecar_gazebo_rviz.launch"), ARGUMENTS)
+    (rviz,) = set(with_rviz) - set(nodes)
+    assert len(with_rviz) == len(nodes) + 1 and params_with_rviz == params
+    assert rviz[:3] == ("rviz", "rviz", "rviz") and rviz[3].endswith("racecar.rviz")

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Finds things in the pictures of a topic with a YOLO network.  用 YOLO 网络检测图像里的物体。
 
-rosrun ai_robot_tracking object_detector.py image:=/camera/image_raw [_model:=FILE.onnx]
+rosrun ai_robot_tracking object_detector.py image:=/camera/rgb/image_raw [_model:=FILE.onnx]
 """
 
 import os
 import sys
 import time
 
+import cv2
 import rosgraph
 import rospy
 from ai_robot_tracking.detection.decoding import nothing
@@ -23,7 +24,8 @@ from vision_msgs.msg import Detection2DArray, VisionInfo
 
 PACKAGE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..")
 TEXTS = ("model", "image", "config")
-KEYS = {*FIELDS, *TEXTS, "class_names"}
+KEYS = {*FIELDS, *TEXTS, "class_names", "window"}
+WINDOW = "YOLO Detection"
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
 TICK = 0.2  # s, wall: nothing waits for longer, or Ctrl-C would
 BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
@@ -32,8 +34,8 @@ BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
 class ObjectDetector:
     """Takes the newest picture, asks the network, publishes what it found."""
 
-    def __init__(self, model, settings, topic):
-        self.model, self.settings = model, settings
+    def __init__(self, model, settings, topic, window):
+        self.model, self.settings, self.window = model, settings, window
         self.pictures = Newest()
         self.topic = topic
         self.detections = rospy.Publisher("~detections", Detection2DArray, queue_size=1)
@@ -89,9 +91,12 @@ class ObjectDetector:
         else:
             found = self.model.detect(rgb, self.settings.confidence, self.settings.iou)
         self.detections.publish(detections_of(found, message.header))
-        if self.annotated.get_num_connections():
+        if self.window or self.annotated.get_num_connections():
             picture = annotated(rgb, found, self.model.names)
             self.annotated.publish(image_of(picture, message.header))
+            if self.window:
+                cv2.imshow(WINDOW, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+                cv2.waitKey(1)  # ms
 
     def tell_skipped(self, span):
         """One line, if in these s pictures came faster than they could be looked at."""
@@ -111,6 +116,8 @@ def main():
         for key in TEXTS:
             if not isinstance(given.get(key, ""), str):
                 raise SettingsError(f"~{key} must be a name, not {given[key]!r}")
+        if given.get("window", True) not in (True, False):
+            raise SettingsError(f"~window must be true or false, not {given['window']!r}")
         topic = rospy.resolve_name(given.get("image") or "image")
         if not rosgraph.names.is_legal_name(topic):
             raise SettingsError(f"'{topic}' can be no topic; see: rostopic list")
@@ -122,7 +129,7 @@ def main():
     except (ModelError, SettingsError) as error:
         rospy.logfatal(str(error))
         return 1
-    detector = ObjectDetector(model, settings, topic)
+    detector = ObjectDetector(model, settings, topic, given.get("window", True))
     rospy.loginfo(f"looking for {', '.join(model.names)} on {detector.topic}"[:200])
     detector.run()
     return 0

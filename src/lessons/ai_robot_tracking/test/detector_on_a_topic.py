@@ -25,11 +25,12 @@ HELD_RATE = 5.0  # pictures a second that the node may look at
 class Detector(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.found, cls.drawn, cls.infos, cls.said = [], [], [], []
+        cls.found, cls.drawn, cls.shown, cls.infos, cls.said = [], [], [], [], []
         cls.changed = threading.Condition()
         cls.camera = rospy.Publisher(TOPIC, Image, queue_size=1)
         for topic, kind, heard in ((f"{NODE}/detections", Detection2DArray, cls.found),
                                    (f"{NODE}/annotated", Image, cls.drawn),
+                                   (f"{NODE}/windows/YOLO_Detection", Image, cls.shown),
                                    (f"{NODE}/vision_info", VisionInfo, cls.infos),
                                    ("/rosout", Log, cls.said)):
             rospy.Subscriber(topic, kind, cls.hear, heard)
@@ -82,6 +83,8 @@ class Detector(unittest.TestCase):
         self.wait(lambda: any(d.header.stamp.secs == 101 for d in self.drawn), "annotated")
         drawn = next(d for d in self.drawn if d.header.stamp.secs == 101)
         self.assertEqual((drawn.width, drawn.height, drawn.encoding), (256, 192, "rgb8"))
+        self.wait(lambda: self.shown, "a picture in the window")
+        self.assertEqual((self.shown[0].width, self.shown[0].encoding), (256, "bgr8"))
 
     def test_wrong_and_empty_pictures_are_said_and_it_goes_on(self):
         wrong = picture(201, patch=(64, 128))
@@ -115,6 +118,9 @@ class Detector(unittest.TestCase):
 
     def test_a_number_for_a_name_ends_the_node_with_one_line(self):
         self.assertIn("~config must be a name, not 5", self.refused("_config:=5"))
+
+    def test_a_window_that_is_neither_true_nor_false_ends_the_node_with_one_line(self):
+        self.assertIn("~window must be true or false, not 5", self.refused("_window:=5"))
 
     def test_a_name_that_is_no_topic_ends_the_node_with_one_line(self):
         self.assertIn("'/my camera' can be no topic", self.refused("_image:=my camera"))

@@ -23,7 +23,7 @@ def wait_until(condition, what):
 
 
 class SpoilingRelay:
-    """`mode` says what happens to images from /camera/image_raw to /relay/image_raw."""
+    """`mode` says what happens to images from /camera/rgb/image_raw to /relay/image_raw."""
 
     def __init__(self):
         self.mode, self._frozen = GOOD, None
@@ -31,7 +31,7 @@ class SpoilingRelay:
         self.said = []  # (node, text) of warnings
         self._lock = threading.Lock()
         self._publisher = rospy.Publisher("/relay/image_raw", Image, queue_size=1)
-        rospy.Subscriber("/camera/image_raw", Image, self._hand_on, queue_size=1,
+        rospy.Subscriber("/camera/rgb/image_raw", Image, self._hand_on, queue_size=1,
                          buff_size=2**22)
         rospy.Subscriber("/ground_truth", Odometry, self._see, queue_size=1)
         rospy.Subscriber("/rosout", Log, self._hear)

@@ -28,6 +28,7 @@ def test_speeds(error, radius, speed):
 
 def test_without_a_target_it_turns_on_the_spot():
     assert page_command(None, 640, SETTINGS) == (0.0, 0.5)
+    assert page_command(at(-100, 10), 640, SETTINGS) == (0.0, 0.3)  # too small
 
 
 def test_the_largest_is_the_target():

@@ -48,7 +48,7 @@ class TrackersStory(unittest.TestCase):
             self.node.stdout.close()
 
     def drive(self, script):
-        self.node = start(script, "camera/image_raw:=/relay/image_raw")
+        self.node = start(script, "camera/rgb/image_raw:=/relay/image_raw")
         self.wait_for_driving()
 
     def wait_for_driving(self):

@@ -11,9 +11,6 @@ import sys
 import threading
 from pathlib import Path
 
-if __name__ == "__main__":
-    sys.path.pop(0)  # this folder: there lane_keeping.py would be imported in the package's place
-
 import numpy as np
 import rospkg
 import rospy

@@ -18,7 +18,7 @@ SETTINGS = load_settings(PACKAGE / "config" / "lane_keeping.yaml")
 @pytest.fixture
 def script():
     spec = importlib.util.spec_from_file_location(
-        "lane_keeping_node", PACKAGE / "scripts" / "lane_keeping.py")
+        "lane_keeping_node", PACKAGE / "scripts" / "lane_keeping_node.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     module.rospy = MagicMock()

@@ -18,7 +18,7 @@ def test_shipped_files_load(path):
 
 def test_the_page_file_has_the_pages_numbers():
     page = load_settings(CONFIG / "page.yaml")
-    assert (page.binarise, page.block_px, page.adaptive_c) == ("adaptive_mean", 11, 2)
+    assert (page.binarise, page.block_px, page.adaptive_c) == ("global_mean", 11, 2)
     assert (page.opening_px, page.windows, page.margin_px, page.min_pixels) == (5, 9, 80, 50)
     assert (page.look_ahead, page.steer_gain, page.max_turn) == (0.7, 2, 2)
     assert (page.straight_speed, page.bend_speed) == (1, 0.5)

@@ -55,6 +55,29 @@ def test_an_image_without_an_answer_is_counted():
     assert lockstep.unanswered == 1
 
 
+def test_the_world_waits_after_the_messages_of_one_sensor():
+    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox(), "/scan")
+    lockstep.expect()
+    lockstep.expect(sensor="/imu")
+    lockstep.wait(lambda: False)
+    assert lockstep.unanswered == 0
+    lockstep.expect(sensor="/scan")
+    lockstep.wait(lambda: False)
+    assert lockstep.unanswered == 1
+
+
+def test_nobody_waits_for_a_sensor_that_is_gone():
+    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox())
+    lockstep.expect("front")
+    lockstep.cancel("rear")
+    lockstep.wait(lambda: False)
+    assert lockstep.unanswered == 1
+    lockstep.expect("front")
+    lockstep.cancel("front")
+    lockstep.wait(lambda: False)
+    assert lockstep.unanswered == 1
+
+
 def test_the_world_waits_for_a_message_on_each_of_several_topics():
     loop = Waiting("/left, /right")
     left, right = loop.joined("left", "/left"), loop.joined("right", "/right")

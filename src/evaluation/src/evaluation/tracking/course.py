@@ -11,7 +11,7 @@ COURSE = Course(
     launch=(PACKAGE, LAUNCH), follower_package=PACKAGE,
     followers="scripts/visual_tracker*.py", follower=PID, drives_by="cmd_vel",
     robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",
-    camera="/camera/image_raw", camera_info="/camera/camera_info", commands="/cmd_vel",
+    camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
     odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0,
 )  # fmt: skip
 

@@ -24,13 +24,14 @@ class PageSettings(RedSettings):
     fast_speed: float = number(0, 2, "m/s, with the target ahead and near_radius or larger")
     far_speed: float = number(0, 2, "m/s, with the target smaller than far_radius")
     slow_speed: float = number(0, 2, "m/s, else")
-    search_turn: float = number(0, 5, "rad/s, without a target")
+    search_turn: float = number(0, 5, "rad/s, with nothing red in sight")
+    small_turn: float = number(0, 5, "rad/s, with something red of least_radius or smaller")
     image_timeout: float = number(0.05, 60, "s without a fresh image until it stands")
 
 
 def largest_blob(picture: np.ndarray, settings: PageSettings) -> Blob | None:
-    """The largest red thing in a BGR picture (rows, columns, 3), or None."""
-    blobs = find_blobs(red_mask(picture, settings.colour), settings.least_radius)
+    """The largest red thing in a BGR picture (rows, columns, 3), however small; or None."""
+    blobs = find_blobs(red_mask(picture, settings.colour), 0)
     return blobs[0] if blobs else None
 
 
@@ -38,6 +39,8 @@ def page_command(blob: Blob | None, width: int, settings: PageSettings) -> tuple
     """Speed (m/s) and turn (rad/s, left positive) in a picture so wide (px)."""
     if blob is None:
         return 0.0, settings.search_turn
+    if blob.radius <= settings.least_radius:
+        return 0.0, settings.small_turn
     error = blob.column - width / 2  # px, positive on the right
     if abs(error) < settings.straight_error and blob.radius > settings.near_radius:
         speed = settings.fast_speed

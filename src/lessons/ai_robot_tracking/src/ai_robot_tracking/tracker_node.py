@@ -23,7 +23,7 @@ Command = tuple[float, float]  # m/s; rad/s, left positive
 
 
 class TrackerNode:
-    """One command on cmd_vel for each image of camera/image_raw; zero where an image is no good.
+    """One command on cmd_vel for each image of camera/rgb/image_raw; zero for one that is no good.
 
     `drive(picture, time)` gets BGR (rows, columns, 3) and s, and says what to do; `mark(picture)`
     draws what was seen, for ~annotated; `halt()` is called when the robot is made to stand.
@@ -42,8 +42,8 @@ class TrackerNode:
         self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self._annotated = rospy.Publisher("~annotated", Image, queue_size=1)
         rospy.Subscriber("e_stop", Bool, self._take_stop, queue_size=1)
-        self._images = rospy.Subscriber("camera/image_raw", Image, self._take_image, queue_size=1,
-                                        buff_size=2**24)
+        self._images = rospy.Subscriber("camera/rgb/image_raw", Image, self._take_image,
+                                        queue_size=1, buff_size=2**24)
         self._timer = rospy.Timer(rospy.Duration(CHECK_PERIOD), self._check_images, reset=True)
         rospy.on_shutdown(self._end)
 

@@ -1,4 +1,4 @@
-"""After each camera frame the world waits until an answer to it has come."""
+"""After each camera frame, or message of a sensor, the world waits for the answer to it."""
 
 import time
 from collections.abc import Callable
@@ -18,12 +18,15 @@ class Lockstep:
     same topic, its own subscription calls `receive` after it has posted its command in the mailbox.
     """
 
-    def __init__(self, topics: str, timeout: float, mailbox: Mailbox):
+    def __init__(self, topics: str, timeout: float, mailbox: Mailbox, sensor: str = ""):
+        """`sensor`: the topic after whose messages it waits; empty: after each camera frame."""
+        self._sensor = rospy.resolve_name(sensor) if sensor else ""
         self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
         self.unanswered = 0  # frames that the world has gone on without an answer to
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
         self._expected: set[str] = set()  # topics whose message is still to come
+        self._asker: object = None  # who sent what is to be answered
         self._next_warning = 0.0  # s, wall
         # Of each topic the plugins that call `receive`, in the order in which they subscribed.
         self._plugins: dict[str, list[object]] = {topic: [] for topic in self.topics}
@@ -37,9 +40,13 @@ class Lockstep:
                     topic, rospy.AnyMsg, lambda _msg, topic: self.receive(topic),
                     callback_args=topic, tcp_nodelay=True)
 
-    def expect(self) -> None:
-        """A frame was taken for somebody: wait for the answer before the next step."""
-        self._expected = set(self.topics)
+    def expect(self, asker: object = None, sensor: str = "") -> None:
+        """`asker` took a frame, or a message on this topic, for somebody.
+
+        The world waits for the answer before the next step.
+        """
+        if sensor == self._sensor:
+            self._asker, self._expected = asker, set(self.topics)
 
     def subscribe(self, topic: str, plugin: object) -> None:
         """A plugin is about to subscribe; it will call `receive` after each message."""
@@ -63,9 +70,10 @@ class Lockstep:
         if plugin is None or self._plugins[topic][-1:] == [plugin]:
             self._mailbox.post(lambda: self._expected.discard(topic))
 
-    def cancel(self) -> None:
-        """Wait no longer."""
-        self._expected.clear()
+    def cancel(self, asker: object = None) -> None:
+        """Wait no longer; with an `asker`, only if it is the one that is waited for."""
+        if asker is None or asker is self._asker:
+            self._expected.clear()
 
     def wait(self, stopped: Callable[[], bool]) -> None:
         """Run what comes into the mailbox until the answer is there or the time is over."""
@@ -86,8 +94,9 @@ class Lockstep:
             return
         self._next_warning = now + WARNING_PERIOD
         rospy.logwarn(
-            "lockstep: no message on %s within %g s of a camera frame; going on without. Does the "
-            "follower answer every image there?", ", ".join(sorted(self._expected)), self._timeout)
+            "lockstep: no message on %s within %g s of a %s; going on without. Does the follower "
+            "answer every one there?", ", ".join(sorted(self._expected)), self._timeout,
+            f"message on {self._sensor}" if self._sensor else "camera frame")
 
 
 def split(topics: str) -> list[str]:

@@ -44,6 +44,7 @@ PUB_STATE_FREQUENCY = "~pub_state_frequency"
 ENABLE_ROS_NETWORK = "~enable_ros_network"
 LOCKSTEP = "~lockstep"
 LOCKSTEP_TIMEOUT = "~lockstep_timeout"
+LOCKSTEP_SENSOR = "~lockstep_sensor"
 STATE_LOG = "~state_log"
 PROFILE = "~profile"
 

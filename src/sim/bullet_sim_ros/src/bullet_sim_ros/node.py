@@ -145,10 +145,12 @@ def main() -> int:
         rospy.logfatal("Could not open file %s: %s", options.world, error)
         return 1
     parameters = read_node_parameters()
-    if not all(is_legal_name(topic) for topic in split(parameters.lockstep)):
-        rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
-                       rospy.resolve_name(names.LOCKSTEP), parameters.lockstep)
-        return 1
+    for name, topics in ((names.LOCKSTEP, parameters.lockstep),
+                         (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
+        if not all(is_legal_name(topic) for topic in split(topics)):
+            rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
+                           rospy.resolve_name(name), topics)
+            return 1
     simulation = Simulation(world, parameters)
     for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
         signal.signal(number, lambda _number, _frame: simulation.stop())

@@ -19,6 +19,7 @@ class NodeParameters:
     enable_ros_network: bool = True
     lockstep: str = ""  # topics to wait for after each camera frame; empty: do not wait
     lockstep_timeout: float = 1.0  # s, wall
+    lockstep_sensor: str = ""  # topic after whose messages to wait, instead of camera frames
     state_log: str = ""  # file for true poses, contacts and calls; empty: none
     profile: bool = False  # print what each stage of the work costs
 
@@ -34,6 +35,7 @@ def read_node_parameters() -> NodeParameters:
         bool(rospy.get_param(names.ENABLE_ROS_NETWORK, defaults.enable_ros_network)),
         str(rospy.get_param(names.LOCKSTEP, defaults.lockstep)).strip(),
         max(0.0, _number(names.LOCKSTEP_TIMEOUT, defaults.lockstep_timeout)),
+        str(rospy.get_param(names.LOCKSTEP_SENSOR, defaults.lockstep_sensor)).strip(),
         str(rospy.get_param(names.STATE_LOG, defaults.state_log)),
         bool(rospy.get_param(names.PROFILE, defaults.profile)),
     )

@@ -37,7 +37,8 @@ class Simulation:
         self.real_time_factor = RealTimeFactorMonitor(world.profiler, parameters.profile)
         self._stop_requested = False
         self._drawing = DrawingThread(world.profiler)
-        self.lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox)
+        self.lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox,
+                                 parameters.lockstep_sensor)
         self._services = SharedByPlugins(
             world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )

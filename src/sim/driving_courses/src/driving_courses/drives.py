@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 from xml.etree.ElementTree import Element
@@ -131,8 +132,9 @@ class RacecarDrive(ControlledDrive):
         tables = yaml.safe_load(settings.read_text(encoding="utf-8"))["racecar"]
         self._servos = {name: self._servo(table) for name, table in tables.items()
                         if "pid" in table}
-        self._motor = load_settings(
-            MotorSettings, find_file("car_control/config/car_control.yaml"), "motor_control")
+        self._motor = replace(load_settings(
+            MotorSettings, find_file("car_control/config/car_control.yaml"), "motor_control"),
+            ackermann=True)
         self.command(0.0, 0.0)
 
     def _servo(self, table: dict) -> VelocityServo | PositionServo:

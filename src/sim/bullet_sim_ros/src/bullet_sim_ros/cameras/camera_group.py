@@ -29,7 +29,6 @@ class CameraGroup:
         self._cameras = cameras
         self._triggered = False
         self._drawn: Future | None = None  # the last picture
-        self._expects_answers = False
         context.on_close(self._close)
 
     def capture_at_rate(self, sensor_hz: float, thinned_hz: float = 0.0) -> None:
@@ -66,8 +65,7 @@ class CameraGroup:
         """In the loop; pictures are drawn and sent by the drawing thread."""
         pictures = any(camera.pictures_wanted() for camera in self._cameras)
         if pictures:
-            self._expects_answers = True
-            self._context.services.lockstep.expect()
+            self._context.services.lockstep.expect(self._context)
         states = [camera.camera.capture() for camera in self._cameras]
 
         def publish() -> None:
@@ -96,8 +94,6 @@ class CameraGroup:
 
     def _close(self) -> None:
         """Before the topics are closed, which the last picture still needs."""
-        if self._expects_answers:
-            self._context.services.lockstep.cancel()
         if self._drawn is not None:
             self._drawn.exception()
         self._drawn = None

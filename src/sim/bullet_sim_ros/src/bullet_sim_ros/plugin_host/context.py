@@ -165,6 +165,7 @@ class PluginContext(PluginScope):
     def close(self) -> None:
         """End all topics and services of the plugin."""
         self.closed = True
+        self.services.lockstep.cancel(self)
         while self._closers:
             self._closers.pop()()
         # What it calls leads back to it: the plugin's arrays would wait for the collector.

@@ -9,9 +9,6 @@ import sys
 import threading
 import time
 
-if __name__ == "__main__":
-    sys.path.pop(0)  # this folder: there this file would be imported in the place of its package
-
 import cv2
 import cv_bridge
 import rospy

@@ -1,0 +1,50 @@
+"""The avoid trial: what counts as reached, late or a contact, and one hall that is driven."""
+
+import json
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from evaluation.avoid import drive
+from evaluation.avoid.trial import AvoidTrial
+
+pytestmark = pytest.mark.processes
+PACKAGE = Path(__file__).resolve().parents[1]
+GROUND = [["ground_plane", drive.WAFFLE]]
+
+
+def state(time, x, y=0.0, contacts=()):
+    return {"time": time, "poses": {drive.WAFFLE: [x, y, 0, 0, 0, 0, 1]},
+            "contacts": [*GROUND, *contacts], "unanswered": 0}
+
+
+@pytest.mark.parametrize(("last", "outcome"), [
+    (state(30.0, 8.01), drive.REACHED),
+    (state(30.0, 7.9), None),
+    (state(120.1, 7.9), drive.LATE),
+    (state(30.0, 9.0, contacts=[["hall", drive.WAFFLE]]), drive.CONTACT),
+])
+def test_outcomes(last, outcome):
+    assert drive.outcome(last) == outcome
+
+
+def test_a_result_is_read_back_as_it_was_written():
+    found = drive.scored("hall-3", 3, [state(0.0, 0.0), state(20.0, 4.0, 1.3), state(40.0, 8.1)])
+    assert found.outcome == drive.REACHED and found.distance == pytest.approx(8.5, abs=0.1)
+    assert found.nearest <= 0.2  # the wall
+    trial = AvoidTrial()
+    assert trial.from_values(json.loads(json.dumps(trial.values([found])))) == [found]
+    assert trial.passed([found]) and "reached" in trial.line(found)
+
+
+def test_it_drives_through_a_hall(tmp_path):
+    done = subprocess.run(
+        [sys.executable, str(PACKAGE / "scripts" / "avoid.py"), "--seeds", "1", "--out",
+         str(tmp_path)], capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (found,) = AvoidTrial().from_values(json.loads((tmp_path / "report.json").read_text()))
+    assert found.outcome == drive.REACHED and found.unanswered == 0
+    assert (tmp_path / "paths.png").exists() and asdict(found)["path"][-1][0] > 8.0

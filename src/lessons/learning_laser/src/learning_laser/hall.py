@@ -1,0 +1,67 @@
+"""A hall with columns in it, drawn by a number: every gap is wide enough for the waffle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+LENGTH, WIDTH = 10.0, 3.0  # m; it begins 1 m behind the start, whose axis is its middle
+FINISH = 8.0  # m along the hall
+FIRST, LAST = 1.2, 7.2  # m along the hall, of the columns' middles
+RADIUS, HEIGHT, WALL = 0.15, 0.5, 0.1  # m
+GAP = 0.7  # m of air between two columns, and between a column and a wall
+COLUMNS, TRIES = 12, 500
+LASER, SEES = -0.064, 3.5  # m: the waffle's laser ahead of its axle; how far it sees
+ANGLES = np.radians(np.arange(360.0))  # rad, of its beams
+
+
+def columns(seed: int) -> np.ndarray:
+    """(N, 2) m, the middles of the hall's columns; the same for the same number."""
+    random = np.random.default_rng(seed)
+    side = WIDTH / 2 - RADIUS - GAP
+    found: list[np.ndarray] = []
+    for place in random.uniform((FIRST, -side), (LAST, side), (TRIES, 2)):
+        if len(found) < COLUMNS and all(
+                np.hypot(*(place - other)) >= 2 * RADIUS + GAP for other in found):
+            found.append(place)
+    return np.array(found)
+
+
+def scan(pose: tuple[float, float, float], columns: np.ndarray) -> np.ndarray:
+    """(360,) m: what the laser sees with the axle at x, y (m), yaw (rad); inf beyond SEES."""
+    x, y, yaw = pose
+    x, y = x + LASER * np.cos(yaw), y + LASER * np.sin(yaw)
+    rays = np.stack([np.cos(ANGLES + yaw), np.sin(ANGLES + yaw)], axis=1)
+    to = columns - (x, y)
+    along = rays @ to.T
+    inside = RADIUS**2 - (to**2).sum(axis=1) + along**2
+    hits = np.where((inside > 0) & (along > 0), along - np.sqrt(np.maximum(inside, 0)), np.inf)
+    with np.errstate(divide="ignore", invalid="ignore"):  # beams along a wall
+        sides = (np.sign(rays[:, 1]) * WIDTH / 2 - y) / rays[:, 1]
+        ends = (np.where(rays[:, 0] > 0, LENGTH - 1, -1.0) - x) / rays[:, 0]
+    ranges = np.fmin(hits.min(axis=1, initial=np.inf), np.fmin(sides, ends))
+    return np.where(ranges < SEES, ranges, np.inf)
+
+
+def world(seed: int) -> str:
+    """The text of a world file of that hall."""
+    end, middle, half = LENGTH - 1, LENGTH / 2 - 1, (WIDTH + WALL) / 2
+    walls = [(middle, half, LENGTH, WALL), (middle, -half, LENGTH, WALL),
+             (-1 - WALL / 2, 0, WALL, WIDTH), (end + WALL / 2, 0, WALL, WIDTH)]
+    boxes = "".join(
+        _part(f"wall_{number}", x, y, f"<box><size>{long:g} {wide:g} {HEIGHT}</size></box>")
+        for number, (x, y, long, wide) in enumerate(walls))
+    shape = f"<cylinder><radius>{RADIUS}</radius><length>{HEIGHT}</length></cylinder>"
+    rounds = "".join(_part(f"column_{number}", x, y, shape)
+                     for number, (x, y) in enumerate(columns(seed)))
+    return ('<?xml version="1.0"?>\n'
+            f"<!-- Made by: rosrun learning_laser make_hall.py {seed} -->\n"
+            '<sdf version="1.6">\n<world name="default">\n'
+            "<include><uri>model://sun</uri></include>\n"
+            "<include><uri>model://ground_plane</uri></include>\n"
+            f'<model name="hall">\n<static>true</static>\n<link name="hall">\n{boxes}{rounds}'
+            "</link>\n</model>\n</world>\n</sdf>\n")
+
+
+def _part(name: str, x: float, y: float, shape: str) -> str:
+    pose = f"<pose>{x:.3f} {y:.3f} {HEIGHT / 2} 0 0 0</pose><geometry>{shape}</geometry>"
+    return f'<collision name="{name}">{pose}</collision>\n<visual name="{name}">{pose}</visual>\n'
