@@ -19,8 +19,24 @@ ELSEWHERE = SCENARIOS.pop("tested elsewhere")
 PACKAGES = sorted(manifest.parent.name for manifest in LESSONS.glob("*/package.xml"))
 FENCE = re.compile(r"^```bash\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:rosrun \S+|roslaunch \S+ \S+\.launch)\b[^`…]*)`")
+TWIN = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")  # src/NAME.cpp beside scripts/NAME.py
 CASES = [pytest.param(package, scenario, id=f"{package}: {scenario['name']}")
          for package, scenarios in SCENARIOS.items() for scenario in scenarios]
+
+
+def in_cpp(value):
+    """A scenario with the C++ program for each script that has one."""
+    if isinstance(value, str):
+        return TWIN.sub(lambda found: found[0][:-3] if list(
+            LESSONS.parent.glob(f"**/{found[1]}/src/{found[2]}.cpp")) else found[0], value)
+    if isinstance(value, list):
+        return [in_cpp(each) for each in value]
+    return {key: in_cpp(each) for key, each in value.items()} if isinstance(value, dict) else value
+
+
+CASES += [pytest.param(package, twin, id=f"{package}: {scenario['name']}, C++")
+          for package, scenarios in SCENARIOS.items() for scenario in scenarios
+          if (twin := in_cpp(scenario)) != scenario]
 
 _spec = importlib.util.spec_from_file_location("terminals", HERE / "terminals.py")
 terminals = importlib.util.module_from_spec(_spec)
