@@ -6,7 +6,8 @@ import rospy
 
 def tick(event):
     """Runs in a thread of its own.  在单独的线程中执行。"""
-    rospy.loginfo("tick, %.0f ms late", (event.current_real - event.current_expected).to_sec() * 1e3)
+    late = event.current_real - event.current_expected
+    rospy.loginfo("tick, %.0f ms late", late.to_sec() * 1e3)
 
 
 def once(_event):

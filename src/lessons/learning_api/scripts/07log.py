@@ -5,7 +5,7 @@ import rospy
 
 
 def main():
-    rospy.init_node("log")  # shows INFO and above; log_level=rospy.DEBUG shows all  默认不显示 debug
+    rospy.init_node("log")  # shows INFO and above; log_level=rospy.DEBUG: all  默认不显示 debug
     rospy.logdebug("debug: for whoever mends the program")
     rospy.loginfo("info: what is going on")
     rospy.logwarn("warn: goes on, but not as it should")
