@@ -19,24 +19,45 @@ ELSEWHERE = SCENARIOS.pop("tested elsewhere")
 PACKAGES = sorted(manifest.parent.name for manifest in LESSONS.glob("*/package.xml"))
 FENCE = re.compile(r"^```bash\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:rosrun \S+|roslaunch \S+ \S+\.launch)\b[^`…]*)`")
-TWIN = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")  # src/NAME.cpp beside scripts/NAME.py
-CASES = [pytest.param(package, scenario, id=f"{package}: {scenario['name']}")
-         for package, scenarios in SCENARIOS.items() for scenario in scenarios]
+PROGRAM = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")
+LAUNCHED = re.compile(r"\broslaunch (learning_\w+) (\w+\.launch)")
+
+
+def folder_of(package: str) -> Path:
+    return next(folder for folder in (LESSONS / package, LESSONS.parent / package)
+                if folder.is_dir())
+
+
+def program_in_cpp(found: re.Match) -> str:
+    """src/NAME.cpp beside scripts/NAME.py is started without .py."""
+    there = (folder_of(found[1]) / "src" / f"{found[2]}.cpp").exists()
+    return found[0].removesuffix(".py") if there else found[0]
+
+
+def launched_in_cpp(found: re.Match) -> str:
+    text = (folder_of(found[1]) / "launch" / found[2]).read_text(encoding="utf-8")
+    return f"{found[0]} cpp:=true" if '<arg name="cpp"' in text else found[0]
 
 
 def in_cpp(value):
-    """A scenario with the C++ program for each script that has one."""
+    """A scenario, or a part of one, with the C++ program for each script that has one."""
     if isinstance(value, str):
-        return TWIN.sub(lambda found: found[0][:-3] if list(
-            LESSONS.parent.glob(f"**/{found[1]}/src/{found[2]}.cpp")) else found[0], value)
+        return LAUNCHED.sub(launched_in_cpp, PROGRAM.sub(program_in_cpp, value))
     if isinstance(value, list):
         return [in_cpp(each) for each in value]
     return {key: in_cpp(each) for key, each in value.items()} if isinstance(value, dict) else value
 
 
-CASES += [pytest.param(package, twin, id=f"{package}: {scenario['name']}, C++")
-          for package, scenarios in SCENARIOS.items() for scenario in scenarios
-          if (twin := in_cpp(scenario)) != scenario]
+def both(scenario: dict) -> list[dict]:
+    """The scenario, and in C++ the same with the same expectations, if that is another."""
+    twin = in_cpp(scenario)
+    return [scenario] if twin == scenario else [scenario, {**twin, "name": f"{twin['name']}, C++"}]
+
+
+SCENARIOS = {package: [each for scenario in scenarios for each in both(scenario)]
+             for package, scenarios in SCENARIOS.items()}
+CASES = [pytest.param(package, scenario, id=f"{package}: {scenario['name']}")
+         for package, scenarios in SCENARIOS.items() for scenario in scenarios]
 
 _spec = importlib.util.spec_from_file_location("terminals", HERE / "terminals.py")
 terminals = importlib.util.module_from_spec(_spec)

@@ -9,6 +9,7 @@
 const double RATE_HZ = 10;
 const double DRIVE_GAIN = 0.5;  // m/s per m of distance
 const double TURN_GAIN = 4.0;   // rad/s per rad of bearing
+const ros::Duration WAIT(3.0);  // for the frames, at the start  开始时等待坐标变换
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "demo04_sub");
@@ -21,7 +22,7 @@ int main(int argc, char** argv) {
     try {
       // turtle1 as turtle2 sees it: x ahead, y to the left.  turtle1 在 turtle2 坐标系中的位置
       geometry_msgs::Vector3 target =
-          buffer.lookupTransform("turtle2", "turtle1", ros::Time(0)).transform.translation;
+          buffer.lookupTransform("turtle2", "turtle1", ros::Time(0), WAIT).transform.translation;
       geometry_msgs::Twist command;
       command.linear.x = DRIVE_GAIN * std::hypot(target.x, target.y);
       command.angular.z = TURN_GAIN * std::atan2(target.y, target.x);
