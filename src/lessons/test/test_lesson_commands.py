@@ -49,9 +49,13 @@ def in_cpp(value):
 
 
 def both(scenario: dict) -> list[dict]:
-    """The scenario, and in C++ the same with the same expectations, if that is another."""
-    twin = in_cpp(scenario)
-    return [scenario] if twin == scenario else [scenario, {**twin, "name": f"{twin['name']}, C++"}]
+    """The scenario, and the same up to the last step that says something of a C++ program."""
+    steps = scenario["terminals"]
+    twins = in_cpp(steps)
+    until = max((number for number, twin in enumerate(twins, 1) if twin != steps[number - 1]),
+                default=0)
+    twin = {"name": f"{scenario['name']}, C++", "terminals": twins[:until]}
+    return [scenario, twin] if until else [scenario]
 
 
 SCENARIOS = {package: [each for scenario in scenarios for each in both(scenario)]
