@@ -80,8 +80,8 @@ bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=3000
 setup: ## install what is missing, and build
 	@scripts/setup.sh
 
-build: ## build the workspace again
-	@scripts/setup.sh --build
+build: ## build the workspace again [CPP=1: with the lessons' C++ programs]
+	@scripts/setup.sh --build $(if $(filter-out 0 no false,$(CPP)),--cpp)
 
 deps: ## install what Debian has of what a workspace asks for [WS=~/catkin_ws]
 	@scripts/deps.sh $(if $(WS),"$(WS)")

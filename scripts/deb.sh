@@ -15,7 +15,7 @@ step() {  # name of the log, what to say, command
 
 rm -rf "$build"
 step configure "Configuring for $prefix" cmake -S "$root/src" -B "$build" -DCMAKE_INSTALL_PREFIX="$prefix" \
-  -DCATKIN_DEVEL_PREFIX="$build/devel" -DCATKIN_ENABLE_TESTING=OFF "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python"
+  -DCATKIN_DEVEL_PREFIX="$build/devel" -DCATKIN_ENABLE_TESTING=OFF "-DPYTHON_EXECUTABLE=$python" "-DPython_EXECUTABLE=$python" -DCPP_LESSONS=OFF
 step build "Building" cmake --build "$build" --parallel "$(nproc)"
 DESTDIR=$build/stage step install "Installing into .setup/deb/stage" cmake --install "$build"
 step stage "Adding the Python packages" "$python" "$root/scripts/deb_stage.py" "$build/stage" "$prefix"

@@ -5,6 +5,7 @@
 #   scripts/setup.sh --tests         and what only the tests need
 #   scripts/setup.sh --workers       and what WORKERS= and SCHEDULER= of the trials need (Dask); the tests need it too
 #   scripts/setup.sh --learning      and what only the learning environments need (Gymnasium); the tests need it too
+#   scripts/setup.sh --cpp           and the lessons' programs in C++, from now on; the tests need them too
 #   scripts/setup.sh --build         build even where no input of the build has changed
 #   scripts/setup.sh --dependencies  all but the build
 #
@@ -17,15 +18,16 @@ python_mb=1150  # measured: 830 installed, 250 in pip's cache and while it unpac
 build_mb=40     # measured: 8 with the packages of the first release
 
 state=$root/.setup venv=$root/.venv
-tests=no workers=no learning=no force_build=no build=yes
+tests=no workers=no learning=no cpp=OFF force_build=no build=yes
 for option in "$@"; do
   case "$option" in
-    --tests) tests=yes workers=yes learning=yes ;;
+    --tests) tests=yes workers=yes learning=yes cpp=ON ;;
     --workers) workers=yes ;;
     --learning) learning=yes ;;
+    --cpp) cpp=ON ;;
     --build) force_build=yes ;;
     --dependencies) build=no ;;
-    *) fail "unknown option $option; there are --tests, --workers, --learning, --build and --dependencies" ;;
+    *) fail "unknown option $option; there are --tests, --workers, --learning, --cpp, --build and --dependencies" ;;
   esac
 done
 did=no

@@ -10,6 +10,8 @@ build_inputs() {
 build_workspace() {
   local told
   told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
+  if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # once built, kept up to date
+  elif [ "$cpp" = ON ]; then force_build=yes; fi
   build_inputs >"$state/build-inputs.now"
   if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
     cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi
@@ -24,7 +26,8 @@ build_workspace() {
   cd "$root"
   # By our catkin_make, which leaves out a learner's package that asks for what nobody has; messages for C++ and Python alone.
   ROS_LANG_DISABLE=genlisp PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
-    python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" ||
+    python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" \
+    "-DCPP_LESSONS:BOOL=$cpp" ||
     fail_with_cause "catkin_make failed"
   grep -a ' is left out: ' "$state/build.log" || true
   if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then

@@ -19,6 +19,47 @@ ELSEWHERE = SCENARIOS.pop("tested elsewhere")
 PACKAGES = sorted(manifest.parent.name for manifest in LESSONS.glob("*/package.xml"))
 FENCE = re.compile(r"^```bash\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:rosrun \S+|roslaunch \S+ \S+\.launch)\b[^`…]*)`")
+PROGRAM = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")
+LAUNCHED = re.compile(r"\broslaunch (learning_\w+) (\w+\.launch)")
+
+
+def folder_of(package: str) -> Path:
+    return next(folder for folder in (LESSONS / package, LESSONS.parent / package)
+                if folder.is_dir())
+
+
+def program_in_cpp(found: re.Match) -> str:
+    """src/NAME.cpp beside scripts/NAME.py is started without .py."""
+    there = (folder_of(found[1]) / "src" / f"{found[2]}.cpp").exists()
+    return found[0].removesuffix(".py") if there else found[0]
+
+
+def launched_in_cpp(found: re.Match) -> str:
+    text = (folder_of(found[1]) / "launch" / found[2]).read_text(encoding="utf-8")
+    return f"{found[0]} cpp:=true" if '<arg name="cpp"' in text else found[0]
+
+
+def in_cpp(value):
+    """A scenario, or a part of one, with the C++ program for each script that has one."""
+    if isinstance(value, str):
+        return LAUNCHED.sub(launched_in_cpp, PROGRAM.sub(program_in_cpp, value))
+    if isinstance(value, list):
+        return [in_cpp(each) for each in value]
+    return {key: in_cpp(each) for key, each in value.items()} if isinstance(value, dict) else value
+
+
+def both(scenario: dict) -> list[dict]:
+    """The scenario, and the same up to the last step that says something of a C++ program."""
+    steps = scenario["terminals"]
+    twins = in_cpp(steps)
+    until = max((number for number, twin in enumerate(twins, 1) if twin != steps[number - 1]),
+                default=0)
+    twin = {"name": f"{scenario['name']}, C++", "terminals": twins[:until]}
+    return [scenario, twin] if until else [scenario]
+
+
+SCENARIOS = {package: [each for scenario in scenarios for each in both(scenario)]
+             for package, scenarios in SCENARIOS.items()}
 CASES = [pytest.param(package, scenario, id=f"{package}: {scenario['name']}")
          for package, scenarios in SCENARIOS.items() for scenario in scenarios]
 

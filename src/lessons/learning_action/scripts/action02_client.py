@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""Send a goal, watch its progress, wait for the result.  动作客户端：发送目标，查看进度和结果。"""
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from learning_action.msg import AddIntsAction, AddIntsGoal
+
+
+def active_callback():
+    rospy.loginfo("the server has begun")
+
+
+def feedback_callback(feedback):
+    rospy.loginfo("progress: %.0f %%", feedback.progress_bar * 100)
+
+
+def done_callback(state, result):
+    rospy.loginfo("%s, result %d", GoalStatus.to_string(state), result.result)
+
+
+def main():
+    rospy.init_node("action_client", anonymous=True)
+    client = actionlib.SimpleActionClient("addInts", AddIntsAction)
+    rospy.loginfo("waiting for addInts")
+    client.wait_for_server()
+    goal = AddIntsGoal(num=rospy.get_param("~num", 10))
+    client.send_goal(goal, done_callback, active_callback, feedback_callback)
+    client.wait_for_result()
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while waiting  等待时按下 Ctrl-C

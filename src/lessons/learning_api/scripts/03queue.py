@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+"""A slow subscriber: what queue_size keeps, and what it drops.  订阅者太慢时，队列丢掉旧消息。"""
+
+import rospy
+from std_msgs.msg import Int32
+
+SLOW = 0.5  # s that a message takes
+
+
+def number_callback(message):
+    rospy.loginfo("number %d", message.data)
+    rospy.sleep(SLOW)
+
+
+def main():
+    rospy.init_node("queue")
+    size = rospy.get_param("~size", 1)
+    rospy.Subscriber("number", Int32, number_callback, queue_size=size)
+    publisher = rospy.Publisher("number", Int32, queue_size=100)
+    while publisher.get_num_connections() == 0:  # a message before that is lost  否则会丢
+        rospy.sleep(0.01)
+    for number in range(10):  # ten a second, five times too many  发得太快
+        publisher.publish(number)
+        rospy.sleep(0.1)
+    rospy.sleep(SLOW * (size + 1))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while sleeping  睡眠时按下 Ctrl-C
