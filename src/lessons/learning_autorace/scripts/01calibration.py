@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Lesson 1: the floor seen from above, from the camera's picture.  第一课：把相机图像变成俯视图。"""
+
+import sys
+from pathlib import Path
+
+import cv2
+import cv_bridge
+import numpy as np
+import rospy
+from sensor_msgs.msg import Image
+
+from learning_autorace.calibration import (
+    CalibrationError,
+    compensate,
+    floor_maps,
+    load_calibration,
+)
+from learning_autorace.lane import find_lane
+from learning_autorace.node import CONFIG
+
+
+class Projector:
+    def __init__(self, calibration):
+        self.calibration, self.bridge, self.maps = calibration, cv_bridge.CvBridge(), None
+        names = "image_extrinsic_calib", "image_projected", "image_projected_compensated"
+        self.topics = [rospy.Publisher(f"camera/{name}", Image, queue_size=1) for name in names]
+        rospy.Subscriber("camera/image", Image, self.take, queue_size=1, buff_size=2**24)
+
+    def take(self, message):
+        """Publish the piece of floor: framed in the picture, from above, and in full brightness."""
+        image = self.bridge.imgmsg_to_cv2(message, desired_encoding="bgr8").copy()
+        if self.maps is None:
+            self.maps = floor_maps(image.shape[1], image.shape[0], self.calibration)
+        view = cv2.remap(image, *self.maps, cv2.INTER_LINEAR)
+        bright = compensate(view, self.calibration.clip_percent)
+        self.say_width(bright)
+        border = [np.concatenate((m[0], m[:, -1], m[-1, ::-1], m[::-1, 0])) for m in self.maps]
+        cv2.polylines(image, [np.stack(border, 1).astype(np.int32)], True, (0, 0, 255))
+        for topic, picture in zip(self.topics, (image, view, bright)):
+            topic.publish(self.bridge.cv2_to_imgmsg(picture, "bgr8", header=message.header))
+
+    def say_width(self, view):
+        """The check: the lane must be as wide in the picture as it is on the floor.  检查车道宽度。"""
+        lane = find_lane(view, 0.0, self.calibration)
+        if lane.yellow is None or lane.white is None:
+            rospy.logwarn_throttle(2, "no lane before the robot  前方没有车道")
+        else:
+            rospy.loginfo_throttle(2, f"the lane is {lane.yellow - lane.white:.3f} m wide, it should"
+                                      f" be {self.calibration.lane_width:.3f} m  车道宽度")
+
+
+def main():
+    rospy.init_node("autorace_calibration")
+    try:
+        projector = Projector(load_calibration(Path(rospy.get_param("~calibration", str(CONFIG)))))
+    except CalibrationError as error:
+        sys.exit(f"autorace_calibration: {error}")
+    rospy.spin()
+    return projector
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Works the lights and the bar and parks a robot, as the race's own mission node does.
+
+模仿比赛的任务节点：控制红绿灯和栏杆，停放一辆车。
+"""
+
+import random
+from pathlib import Path
+
+import rospkg
+import rospy
+from gazebo_msgs.srv import DeleteModel, SpawnModel
+from geometry_msgs.msg import Pose
+
+LIGHTS = "red", "green", "yellow"
+BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m, middles of the bays  车位中心
+TICK = 0.2  # s, between two looks at the time
+YELLOW = 2.0  # s
+
+
+class Mission:
+    def __init__(self, seed):
+        self.models = Path(rospkg.RosPack().get_path("turtlebot3_gazebo")) / "models/turtlebot3_autorace_2020"
+        draw = random.Random(seed)
+        red, green = draw.uniform(4.0, 8.0), draw.uniform(8.0, 12.0)  # s
+        self.light = {"red": red, "green": green, "yellow": YELLOW}
+        self.bar = {"down": draw.uniform(6.0, 12.0), "up": draw.uniform(8.0, 12.0)}
+        self.offset = draw.uniform(0.0, 30.0)
+        self.bay = draw.choice(sorted(BAYS))
+        self.shown = {}
+        self.spawn = rospy.ServiceProxy("/gazebo/spawn_sdf_model", SpawnModel)
+        self.delete = rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)
+        self.spawn.wait_for_service()
+
+    def park(self):
+        """Put a robot into one of the bays.  在一个车位停一辆车。"""
+        text = self.text("turtlebot3_burger").replace("<static>0", "<static>1")
+        pose = Pose()
+        pose.position.x, pose.position.y = BAYS[self.bay]
+        pose.orientation.w = 1.0
+        self.spawn("turtlebot3_burger", text, "", pose, "world")
+
+    def show(self, kind, name):
+        """Put up a model instead of the last one of its kind.  换一个模型。"""
+        if self.shown.get(kind) == name:
+            return
+        if kind in self.shown:
+            self.delete(self.shown[kind])
+        self.shown[kind] = name
+        self.spawn(name, self.text(name), "", Pose(), "world")
+
+    def text(self, name):
+        return (self.models / name / "model.sdf").read_text(encoding="utf-8")
+
+    def work(self, _event=None):
+        """What stands there now depends on the time alone.  由时间决定。"""
+        now = rospy.get_time() + self.offset
+        self.show("light", f"traffic_light_{phase(self.light, now)}")
+        self.show("bar", f"traffic_bar_{phase(self.bar, now)}")
+
+
+def phase(lengths, now):
+    """Which of the phases, s long, it is at this time: they come one after the other.  现在是哪一段。"""
+    now %= sum(lengths.values())
+    for name, length in lengths.items():
+        if now < length:
+            return name
+        now -= length
+    return name
+
+
+def main():
+    rospy.init_node("mission_control")
+    mission = Mission(rospy.get_param("~seed", 0))
+    mission.park()
+    mission.work()
+    rospy.Timer(rospy.Duration(TICK), mission.work, reset=True)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()
