@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 1: the floor seen from above, from the camera's picture.  第一课：把相机图像变成俯视图。"""
+"""Lesson 1: the floor seen from above.  第一课：把相机图像变成俯视图。"""
 
 import sys
 from pathlib import Path
@@ -8,8 +8,6 @@ import cv2
 import cv_bridge
 import numpy as np
 import rospy
-from sensor_msgs.msg import Image
-
 from learning_autorace.calibration import (
     CalibrationError,
     compensate,
@@ -18,6 +16,7 @@ from learning_autorace.calibration import (
 )
 from learning_autorace.lane import find_lane
 from learning_autorace.node import CONFIG
+from sensor_msgs.msg import Image
 
 
 class Projector:
@@ -41,13 +40,13 @@ class Projector:
             topic.publish(self.bridge.cv2_to_imgmsg(picture, "bgr8", header=message.header))
 
     def say_width(self, view):
-        """The check: the lane must be as wide in the picture as it is on the floor.  检查车道宽度。"""
+        """The check: how wide is the lane in the picture?  检查车道宽度。"""
         lane = find_lane(view, 0.0, self.calibration)
         if lane.yellow is None or lane.white is None:
             rospy.logwarn_throttle(2, "no lane before the robot  前方没有车道")
         else:
-            rospy.loginfo_throttle(2, f"the lane is {lane.yellow - lane.white:.3f} m wide, it should"
-                                      f" be {self.calibration.lane_width:.3f} m  车道宽度")
+            width, wanted = lane.yellow - lane.white, self.calibration.lane_width
+            rospy.loginfo_throttle(2, f"the lane is {width:.3f} m wide, should be {wanted:.3f} m")
 
 
 def main():

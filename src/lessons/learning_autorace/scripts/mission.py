@@ -20,12 +20,13 @@ YELLOW = 2.0  # s
 
 class Mission:
     def __init__(self, seed):
-        self.models = Path(rospkg.RosPack().get_path("turtlebot3_gazebo")) / "models/turtlebot3_autorace_2020"
+        package = Path(rospkg.RosPack().get_path("turtlebot3_gazebo"))
+        self.models = package / "models" / "turtlebot3_autorace_2020"
         draw = random.Random(seed)
         red, green = draw.uniform(4.0, 8.0), draw.uniform(8.0, 12.0)  # s
         self.light = {"red": red, "green": green, "yellow": YELLOW}
         self.bar = {"down": draw.uniform(6.0, 12.0), "up": draw.uniform(8.0, 12.0)}
-        self.offset = draw.uniform(0.0, 30.0)
+        self.begin = {"light": draw.uniform(-YELLOW, red), "bar": draw.uniform(0.0, 20.0)}  # s
         self.bay = draw.choice(sorted(BAYS))
         self.shown = {}
         self.spawn = rospy.ServiceProxy("/gazebo/spawn_sdf_model", SpawnModel)
@@ -54,13 +55,13 @@ class Mission:
 
     def work(self, _event=None):
         """What stands there now depends on the time alone.  由时间决定。"""
-        now = rospy.get_time() + self.offset
-        self.show("light", f"traffic_light_{phase(self.light, now)}")
-        self.show("bar", f"traffic_bar_{phase(self.bar, now)}")
+        now = rospy.get_time()
+        self.show("light", f"traffic_light_{phase(self.light, now + self.begin['light'])}")
+        self.show("bar", f"traffic_bar_{phase(self.bar, now + self.begin['bar'])}")
 
 
 def phase(lengths, now):
-    """Which of the phases, s long, it is at this time: they come one after the other.  现在是哪一段。"""
+    """Which of the phases, s long, it is at this time, s.  现在是哪一段。"""
     now %= sum(lengths.values())
     for name, length in lengths.items():
         if now < length:

@@ -152,7 +152,7 @@ def test_barriers_move_the_aim():
     assert between(0.0, NOTHING) == 0.0
     assert between(0.0, left) == pytest.approx(-0.07)
     assert between(0.0, -left * (-1, 1)) == pytest.approx(0.07)
-    assert between(0.0, left + (0.3, 0.0)) == 0.0  # still far
+    assert between(0.0, left + np.array((0.3, 0.0))) == 0.0  # still far
 
 
 def test_the_wall_on_the_right_is_followed_through_the_tunnel():

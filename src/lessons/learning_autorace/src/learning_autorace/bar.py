@@ -17,7 +17,7 @@ PASSED = 0.6  # m, driven since the bar was last seen
 
 
 def bar_distance(image: np.ndarray, calibration: Calibration) -> float | None:
-    """How far a closed bar is, m from the camera; None: there is none. Its red piece lies across."""
+    """How far a closed bar is, m from the camera; None: there is none."""
     height, width = image.shape[:2]
     columns, rows = to_pixel(np.ones(4), np.array([0.6, -0.6, 0.0, 0.0]),
                              np.array([0.0, 0.0, 0.25, -0.25]), width, height, calibration)

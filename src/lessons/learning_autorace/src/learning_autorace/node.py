@@ -36,7 +36,8 @@ class Seen:
     time: float  # s
     image: np.ndarray  # (h, w, 3) BGR
     view: np.ndarray  # the floor from above, BGR, compensated
-    points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # laser, m: x ahead, y left
+    # (N, 2) m, what the laser met: x ahead and y left of the base
+    points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     pose: tuple[float, float, float] = (0.0, 0.0, 0.0)  # odometry: x, y in m, yaw in rad
 
 

@@ -99,7 +99,8 @@ class Parking:
         if abs(left) < NEAR_PLACE:
             return None
         speed = max(-SPEED, min(SPEED, 1.5 * left))
-        turn = 2.0 * math.remainder(self._heading - seen.pose[2], math.tau) - 4.0 * aside * math.copysign(1, speed)
+        turn = 2.0 * math.remainder(self._heading - seen.pose[2], math.tau)
+        turn -= 4.0 * aside * math.copysign(1, speed)
         return speed, max(-TURN, min(TURN, turn))
 
     def _straight(self, yaw: float) -> float:
