@@ -1,21 +1,13 @@
 #!/usr/bin/env python3
 """Lesson 1: the floor seen from above.  第一课：把相机图像变成俯视图。"""
 
-import sys
-from pathlib import Path
-
 import cv2
 import cv_bridge
 import numpy as np
 import rospy
-from learning_autorace.calibration import (
-    CalibrationError,
-    compensate,
-    floor_maps,
-    load_calibration,
-)
+from learning_autorace.calibration import compensate, floor_maps
 from learning_autorace.lane import find_lane
-from learning_autorace.node import CONFIG
+from learning_autorace.node import calibration_of_parameter
 from sensor_msgs.msg import Image
 
 
@@ -51,12 +43,8 @@ class Projector:
 
 def main():
     rospy.init_node("autorace_calibration")
-    try:
-        projector = Projector(load_calibration(Path(rospy.get_param("~calibration", str(CONFIG)))))
-    except CalibrationError as error:
-        sys.exit(f"autorace_calibration: {error}")
+    Projector(calibration_of_parameter())
     rospy.spin()
-    return projector
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 import cv2
 import cv_bridge
 import numpy as np
+import rospkg
 import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -25,7 +26,6 @@ from learning_autorace.calibration import (
     load_calibration,
 )
 
-CONFIG = Path(__file__).resolve().parents[2] / "config" / "camera.yaml"
 LASER_FORWARD = -0.032  # m, from base_footprint
 
 
@@ -89,13 +89,19 @@ class Node:
             time.sleep(0.1)  # s, on the wall: simulated time may stand still
 
 
+def calibration_of_parameter() -> Calibration:
+    """The file of ~calibration, or config/camera.yaml; a mistake in it ends the program."""
+    usual = Path(rospkg.RosPack().get_path("learning_autorace")) / "config" / "camera.yaml"
+    try:
+        return load_calibration(Path(rospy.get_param("~calibration", str(usual))))
+    except CalibrationError as error:
+        sys.exit(f"{rospy.get_name()}: {error}")
+
+
 def run(name: str, make: Callable[[Calibration], Callable[[Seen], tuple[float, float]]]) -> None:
     """Start a node that drives by what `make` makes of the calibration, until Ctrl-C."""
     rospy.init_node(name)
-    try:
-        calibration = load_calibration(Path(rospy.get_param("~calibration", str(CONFIG))))
-    except CalibrationError as error:
-        sys.exit(f"{name}: {error}")
+    calibration = calibration_of_parameter()
     node = Node(calibration, make(calibration))
     rospy.on_shutdown(node.stop)
     rospy.spin()
