@@ -194,11 +194,18 @@ def test_parking_goes_in_and_out_and_ends_where_it_turned_off():
 
 
 def test_the_course_takes_its_missions_in_order_and_stands_at_the_red_line():
-    course = Course(CALIBRATION, [TrafficLight, Finish])
+    line = floor(*lane(), (RED, (0.15, 0.1), (0.15, -0.1)))
+    course = Course(CALIBRATION, [TrafficLight, Bar, Tunnel, Finish])
     assert course.mission == "traffic light"
-    assert course(seen(view=floor(*lane(), (RED, (0.15, 0.1), (0.15, -0.1)))))[0] > 0  # the start
+    assert course(seen(view=line))[0] > 0  # the start
     course(seen(image=picture(((0, 255, 0), 0.5, 0.18, 0.08, 0.09, 0.09))))
     course(seen())
+    assert course.mission == "bar"
+    for _ in range(7):  # the bar was open
+        course(seen(view=floor(), points=wall((-0.5, 1.0), -0.25)))
+    assert course.mission == "tunnel"
+    for _ in range(5):
+        course(seen(points=wall((-0.5, 0.2), -0.25)))
     assert course.mission == "finish"
-    assert course(seen(view=floor(*lane(), (RED, (0.15, 0.1), (0.15, -0.1))))) == (0.0, 0.0)
+    assert course(seen(view=line)) == (0.0, 0.0)
     assert course(seen()) == (0.0, 0.0)

@@ -33,7 +33,8 @@ class Finish:
 
 
 class Course:
-    """The first mission that is not over may command; otherwise the robot keeps its lane."""
+    """A list of missions. The first may command, or the second, if the first had nothing to do:
+    a bar that is open, for example. Otherwise the robot keeps its lane."""
 
     def __init__(self, calibration: Calibration, missions: Sequence[type]):
         self._missions = [mission(calibration) for mission in missions]
@@ -42,12 +43,17 @@ class Course:
     @property
     def mission(self) -> str:
         """The name of the one that is next or under way; lane: none is left."""
-        return next((each.name for each in self._missions if not each.done), "lane")
+        return self._missions[0].name if self._missions else "lane"
 
     def __call__(self, seen) -> tuple[float, float]:
         """Speed in m/s and turn in rad/s."""
-        mission = next((each for each in self._missions if not each.done), None)
-        command = mission.step(seen) if mission else None
+        command = None
+        for number, mission in enumerate(self._missions[:2]):
+            command = mission.step(seen)
+            if command is not None:
+                self._missions = self._missions[number:]
+                break
+        self._missions = [each for each in self._missions if not each.done]
         if command and any(command):
             self._lane.reset()  # the robot is elsewhere afterwards
         aim = between(self._lane.look(seen.view), seen.points)
