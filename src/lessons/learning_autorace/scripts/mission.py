@@ -58,7 +58,7 @@ class Mission:
         self.spawn(name, self.text(name), "", Pose(), "world")
 
     def watch(self, states):
-        """The bar stays down for a while when the robot comes.  机器人靠近后，栏杆过一会儿才抬起。"""
+        """The bar opens a while after the robot came.  机器人靠近一会儿后栏杆抬起。"""
         if ROBOT in states.name and math.isinf(self.bar_opens):
             place = states.pose[states.name.index(ROBOT)].position
             if math.dist((place.x, place.y), BAR) < NEAR_BAR:

@@ -14,6 +14,7 @@ MISSIONS = ("lane", "traffic_light", "parking", "bar", "tunnel", "finish")
 WAY = rounded(WAY_2020, 0.3)  # the lane's middle, m
 HALF_LANE = 0.125  # m: the base is between the lines
 LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, before the bar
+LANE_END = 0.8  # m, y before the bar
 MAY_CHANGE = 0.5  # s: so late a green light or an open bar still counts
 BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m
 IN_BAY = 0.08, 0.14  # m from a bay's middle along x and y
@@ -99,10 +100,10 @@ Found = tuple[float | None, str | None]  # s, and why it was not passed
 def _lane(samples: Sequence[Sample]) -> Found:
     for each in samples:
         if not in_car_park(each.x, each.y) and not in_tunnel(each.x, each.y):
-            off = off_lane(each.x, each.y)
-            if off > HALF_LANE and each.x < 1.9:
+            if off_lane(each.x, each.y) > HALF_LANE:
                 return each.time, f"left the lane at {each.x:.2f}, {each.y:.2f}"
-    end = next((each.time for each in samples if each.x < -1.5 and each.y < 0.1), None)
+    end = next((each.time for each in samples if each.x < -1.5 and each.y < LANE_END),
+               None)
     return end, None if end else "did not come to its end"
 
 
