@@ -53,7 +53,9 @@ class Score:
 
 
 def off_lane(x: float, y: float) -> float:
-    """m from the lane's middle."""
+    """m from the lane's middle; 0 in the car park and in the tunnel."""
+    if in_car_park(x, y) or in_tunnel(x, y):
+        return 0.0
     return min(_to_piece((x, y), *ends) for ends in pairwise(WAY))
 
 
@@ -99,9 +101,8 @@ Found = tuple[float | None, str | None]  # s, and why it was not passed
 
 def _lane(samples: Sequence[Sample]) -> Found:
     for each in samples:
-        if not in_car_park(each.x, each.y) and not in_tunnel(each.x, each.y):
-            if off_lane(each.x, each.y) > HALF_LANE:
-                return each.time, f"left the lane at {each.x:.2f}, {each.y:.2f}"
+        if off_lane(each.x, each.y) > HALF_LANE:
+            return each.time, f"left the lane at {each.x:.2f}, {each.y:.2f}"
     end = next((each.time for each in samples if each.x < -1.5 and each.y < LANE_END),
                None)
     return end, None if end else "did not come to its end"
