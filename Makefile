@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes mark drive viewer test bench setup build deps deb lint clean
+.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes autorace mark drive viewer test bench setup build deps deb lint clean
 
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
@@ -51,6 +51,9 @@ lane-trials: ## laps in differing light, and people who cross [SEEDS=20] [CROSSI
 
 bench-lanes: ## compare all methods that find the lane [SEEDS=5] [WORKERS=1]
 	@scripts/bench_lanes.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(WHERE)
+
+autorace: ## AutoRace 2020 by the lessons, each mission scored [SEEDS=10] [MISSION=all] [WORKERS=1]
+	@scripts/autorace.sh $(if $(SEEDS),--seeds "$(SEEDS)") $(if $(MISSION),--mission "$(MISSION)") $(WHERE)
 
 localisation-trials: ## amcl finds the robot, again, and keeps track of it [STARTS=20] [KIDNAPS=10] [SEED=0] [PACE=1] [WORKERS=1]
 	@scripts/localisation_trials.sh $(if $(STARTS),--starts "$(STARTS)") \

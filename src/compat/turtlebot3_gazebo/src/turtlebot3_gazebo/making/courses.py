@@ -8,11 +8,11 @@ from turtlebot3_gazebo.making.painting import RED, WHITE, YELLOW, Canvas, Point
 
 SIDE = 4.0  # m
 FLOOR_2017, FLOOR_2020 = (10, 10, 10), (0, 0, 0)
-# Driven in this order; the tunnel lies between the end and the start.
+# Driven in this order; the tunnel lies between the end and the start. Signs stand beside the lanes.
 WAY_2017: tuple[Point, ...] = ((0.0, -1.787), (1.787, -1.787), (1.787, 1.787), (-1.787, 1.787),
                                (-1.787, 0.0))
 WAY_2020: tuple[Point, ...] = (
-    (0.0, -1.747), (1.747, -1.747), (1.747, -0.85), (0.35, -0.85), (0.35, -0.1), (1.62, -0.1),
+    (0.0, -1.747), (1.747, -1.747), (1.747, -0.93), (0.35, -0.93), (0.35, -0.14), (1.62, -0.14),
     (1.62, 1.747), (-0.45, 1.747), (-0.9, 1.25), (-1.72, 1.25), (-1.72, 0.0),
 )
 COURSE_MODEL = """  <model name="course">
@@ -75,11 +75,11 @@ def course_2020() -> Canvas:
 
 def short_cut(painter: Painter) -> None:
     """The way over the intersection that a sign forbids: from lane to lane at x = 1.05."""
-    for y in (-0.725, -0.225):  # mouths in the lines of both lanes
+    for y in (-0.805, -0.265):  # mouths in the lines of both lanes
         painter.area([(0.94, y - 0.03), (1.16, y - 0.03), (1.16, y + 0.03), (0.94, y + 0.03)],
                      FLOOR_2020)
-    painter.line([(0.925, -0.725), (0.925, -0.225)], YELLOW)
-    painter.line([(1.175, -0.725), (1.175, -0.225)], WHITE)
+    painter.line([(0.925, -0.805), (0.925, -0.265)], YELLOW)
+    painter.line([(1.175, -0.805), (1.175, -0.265)], WHITE)
 
 
 def parking(painter: Painter) -> None:

@@ -1,0 +1,170 @@
+"""Scores the missions of a drive by where the robot truly was, what was shown, and contacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from turtlebot3_gazebo.making.courses import WAY_2020
+from turtlebot3_gazebo.making.lanes import rounded
+
+MISSIONS = ("lane", "traffic_light", "parking", "bar", "tunnel", "finish")
+WAY = rounded(WAY_2020, 0.3)  # the lane's middle, m
+HALF_LANE = 0.125  # m: the base is between the lines
+LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, before the bar
+LANE_END = 0.8  # m, y before the bar
+MAY_CHANGE = 0.5  # s: so late a green light or an open bar still counts
+BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m
+IN_BAY = 0.08, 0.14  # m from a bay's middle along x and y
+PARKED = 1.0  # s
+STANDING = 0.005  # m between two samples
+START = 0.70, 1.00  # m, x at which a robot that stands at the red line stands
+WHOSE = {"barrier": "lane", "traffic_bar": "bar", "unit_box": "bar", "tunnel": "tunnel",
+         "turtlebot3_burger": "parking", "unit_sphere": "traffic_light",
+         "traffic_light": "traffic_light"}  # begin of a model's name: mission; others: lane
+GROUND = ("course", "ground", "ground2")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Where the robot truly was, and which models of the mission stood there."""
+
+    time: float  # s, simulated
+    x: float  # m
+    y: float
+    shown: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Score:
+    """Of one mission: `why` it was not passed, None: it was; s from the drive's begin."""
+
+    mission: str
+    why: str | None
+    time: float | None = None
+    contacts: list[str] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        """Was it done, and nothing touched?"""
+        return self.why is None
+
+
+def off_lane(x: float, y: float) -> float:
+    """m from the lane's middle; 0 in the car park and in the tunnel."""
+    if in_car_park(x, y) or in_tunnel(x, y):
+        return 0.0
+    return min(_to_piece((x, y), *ends) for ends in pairwise(WAY))
+
+
+def _to_piece(place: tuple, begin: tuple, end: tuple) -> float:
+    dx, dy = end[0] - begin[0], end[1] - begin[1]
+    share = ((place[0] - begin[0]) * dx + (place[1] - begin[1]) * dy) / (dx * dx + dy * dy)
+    share = min(1.0, max(0.0, share))
+    return math.dist(place, (begin[0] + share * dx, begin[1] + share * dy))
+
+
+def in_car_park(x: float, y: float) -> bool:
+    """Is it the car park, or the way there?"""
+    return 0.0 < x < 1.0 and 0.4 < y < 1.66
+
+
+def in_tunnel(x: float, y: float) -> bool:
+    """Is it the tunnel, or a step before or behind it?"""
+    return -2.1 < x < 0.1 and -2.1 < y < 0.1
+
+
+def score(samples: Sequence[Sample], contacts: dict[str, float], wanted: Sequence[str]
+          ) -> list[Score]:
+    """One for each wanted mission. `contacts`: models that the robot touched, and when first, s."""
+    rules: dict[str, Callable] = {
+        "lane": _lane, "traffic_light": _light, "parking": _parking, "bar": _bar,
+        "tunnel": _tunnel, "finish": _finish}
+    found = []
+    for mission in wanted:
+        touched = [name for name in contacts if _whose(name) == mission]
+        time, why = rules[mission](samples)
+        why = f"touched {', '.join(touched)}" if touched else why
+        found.append(Score(mission, why, None if time is None else
+                           round(time - samples[0].time, 1), touched))
+    return found
+
+
+def _whose(model: str) -> str:
+    return next((mission for begin, mission in WHOSE.items() if model.startswith(begin)), "lane")
+
+
+Found = tuple[float | None, str | None]  # s, and why it was not passed
+
+
+def _lane(samples: Sequence[Sample]) -> Found:
+    for each in samples:
+        if off_lane(each.x, each.y) > HALF_LANE:
+            return each.time, f"left the lane at {each.x:.2f}, {each.y:.2f}"
+    end = next((each.time for each in samples if each.x < -1.5 and each.y < LANE_END),
+               None)
+    return end, None if end else "did not come to its end"
+
+
+def _shown(samples: Sequence[Sample], at: int, name: str) -> bool:
+    """Whether a model stood there at a sample, or a moment before it."""
+    return any(name in each.shown for each in samples[:at + 1]
+               if each.time >= samples[at].time - MAY_CHANGE)
+
+
+def _light(samples: Sequence[Sample]) -> Found:
+    at = next((i for i, each in enumerate(samples) if each.x > LIGHT_X and each.y < -1.5), None)
+    if at is None:
+        return None, "did not come to the light"
+    if _shown(samples, at, "traffic_light_green"):
+        return samples[at].time, None
+    return samples[at].time, "did not wait for green"
+
+
+def _bar(samples: Sequence[Sample]) -> Found:
+    at = next((i for i, each in enumerate(samples) if each.x < -1.5 and 0.1 < each.y < BAR_Y), None)
+    if at is None:
+        return None, "did not come to the bar"
+    if _shown(samples, at, "traffic_bar_up"):
+        return samples[at].time, None
+    return samples[at].time, "did not wait for the bar"
+
+
+def _parking(samples: Sequence[Sample]) -> Found:
+    stood = 0.0
+    for before, each in pairwise(samples):
+        near = any(abs(each.x - x) < IN_BAY[0] and abs(each.y - y) < IN_BAY[1]
+                   for x, y in BAYS.values())
+        still = math.dist((before.x, before.y), (each.x, each.y)) < STANDING
+        stood = stood + each.time - before.time if near and still else stood
+        if stood >= PARKED and each.x < 0.2 and each.y > 1.6:
+            return each.time, None
+    return None, "stood in no bay" if stood < PARKED else "did not come back to the lane"
+
+
+def _tunnel(samples: Sequence[Sample]) -> Found:
+    inside = next((i for i, each in enumerate(samples) if in_tunnel(each.x, each.y)
+                   and each.y < -0.2 and each.x < -0.2), None)
+    if inside is None:
+        return None, "did not come into the tunnel"
+    time = next((each.time for each in samples[inside:] if each.x > 0.1 and each.y < -1.5), None)
+    return time, None if time else "did not find the exit"
+
+
+def _finish(samples: Sequence[Sample]) -> Found:
+    after = _after_tunnel(samples)
+    for before, each in pairwise(after):
+        if START[0] < each.x < START[1] and math.dist((before.x, before.y),
+                                                      (each.x, each.y)) < STANDING:
+            return each.time, None
+    return None, "did not stop at the red line"
+
+
+def _after_tunnel(samples: Sequence[Sample]) -> Iterator[Sample]:
+    was = False
+    for each in samples:
+        was = was or (each.x < -0.5 and each.y < -0.5)
+        if was:
+            yield each

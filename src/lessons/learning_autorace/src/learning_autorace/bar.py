@@ -1,0 +1,52 @@
+"""Lesson 4: stop before the crossing's bar until it opens."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+
+from learning_autorace.calibration import Calibration, to_pixel
+
+RED = (0, 150, 30), (6, 255, 255)  # hue 0..180, saturation, value, from, to; it may lie in shade
+LONG = 0.12  # m, the bar's red piece
+LYING = 1.8  # at least so much wider than high
+STOP = 0.35  # m from the camera
+PASSED = 0.6  # m, driven since the bar was last seen
+
+
+def bar_distance(image: np.ndarray, calibration: Calibration) -> float | None:
+    """How far a closed bar is, m from the camera; None: there is none."""
+    height, width = image.shape[:2]
+    columns, rows = to_pixel(np.ones(4), np.array([0.6, -0.6, 0.0, 0.0]),
+                             np.array([0.0, 0.0, 0.25, -0.25]), width, height, calibration)
+    left, right, top, bottom = (int(each) for each in (columns[0], columns[1], rows[2], rows[3]))
+    hsv = cv2.cvtColor(image[top:bottom, left:right], cv2.COLOR_BGR2HSV)
+    found = []
+    for _, _, wide, high, area in cv2.connectedComponentsWithStats(cv2.inRange(hsv, *RED))[2][1:]:
+        if wide > LYING * high and area > 0.5 * wide * high and wide > width / 50:
+            rad = wide * 2 / width * calibration.divisor * math.tan(
+                calibration.hfov / 2 / calibration.divisor)  # near the middle of the picture
+            found.append(LONG / rad)
+    return min(found, default=None)
+
+
+class Bar:
+    """Stands before a closed bar; over when the robot has gone on for a while without one."""
+
+    name = "bar"
+
+    def __init__(self, calibration: Calibration):
+        self._calibration = calibration
+        self._last: tuple[float, float] | None = None  # where the robot stood before it
+        self.done = False
+
+    def step(self, seen) -> tuple[float, float] | None:
+        """Stand still, or None: drive on in the lane."""
+        distance = bar_distance(seen.image, self._calibration)
+        if distance is not None and distance < STOP:
+            self._last = seen.pose[:2]
+            return 0.0, 0.0
+        self.done = self._last is not None and math.dist(self._last, seen.pose[:2]) > PASSED
+        return None

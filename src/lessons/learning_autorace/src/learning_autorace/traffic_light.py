@@ -1,0 +1,58 @@
+"""Lesson 3: stop at red and yellow, go at green."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+
+from learning_autorace.calibration import Calibration, to_pixel
+
+# A lit lamp: hue 0..180 from, to; it is the brightest and purest colour there is.
+HUES = {"red": (0, 6), "yellow": (25, 35), "green": (50, 70)}
+LEAST = 200, 200  # saturation, value
+LEAST_AREA = 60  # px of a picture 320 px wide: the light is nearer than 0.8 m
+ROUND = 0.6, 1.6  # width by height
+LEFT, RIGHT = math.radians(60), math.radians(10)  # beside the lane, before the robot
+HIGHEST, LOWEST = math.radians(55), math.radians(20)  # above and below the horizon
+
+
+def window(width: int, height: int, calibration: Calibration) -> tuple[slice, slice]:
+    """Rows and columns of the picture in which a light can be that has yet to be passed."""
+    forward, left, up = np.cos([LEFT, RIGHT, HIGHEST, LOWEST]), np.zeros(4), np.zeros(4)
+    left[:2] = math.sin(LEFT), -math.sin(RIGHT)
+    up[2:] = math.sin(HIGHEST), -math.sin(LOWEST)
+    columns, rows = to_pixel(forward, left, up, width, height, calibration)
+    return slice(max(int(rows[2]), 0), int(rows[3])), slice(int(columns[0]), int(columns[1]))
+
+
+def lit_lamp(image: np.ndarray, calibration: Calibration) -> str | None:
+    """red, yellow or green: the largest round spot of a lamp's colour; None: there is none."""
+    hsv = cv2.cvtColor(image[window(image.shape[1], image.shape[0], calibration)],
+                       cv2.COLOR_BGR2HSV)
+    least_area = LEAST_AREA * (image.shape[1] / 320) ** 2
+    found = {}
+    for colour, (low, high) in HUES.items():
+        mask = cv2.inRange(hsv, (low, *LEAST), (high, 255, 255))
+        for _, _, width, height, area in cv2.connectedComponentsWithStats(mask)[2][1:]:
+            if area > least_area and ROUND[0] < width / height < ROUND[1]:
+                found[colour] = max(area, found.get(colour, 0))
+    return max(found, key=found.get, default=None)
+
+
+class TrafficLight:
+    """Holds the robot while red or yellow is lit; over once green was seen and has gone by."""
+
+    name = "traffic light"
+
+    def __init__(self, calibration: Calibration):
+        self._calibration, self._green = calibration, False
+        self.done = False
+
+    def step(self, seen) -> tuple[float, float] | None:
+        """Stand still, or None: drive on in the lane."""
+        lamp = lit_lamp(seen.image, self._calibration)
+        self.done = self._green and lamp is None
+        self._green = lamp == "green" or (self._green and lamp is None)
+        return (0.0, 0.0) if lamp in ("red", "yellow") else None

@@ -1,0 +1,6 @@
+"""Tests run from a checkout that was not built, too."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src"))

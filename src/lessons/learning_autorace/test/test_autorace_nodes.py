@@ -1,0 +1,32 @@
+"""Each script, started without ROS: it drives by the first picture."""
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+from learning_autorace import node
+from learning_autorace.calibration import load_calibration
+
+PACKAGE = Path(__file__).resolve().parent.parent
+SCRIPTS = sorted(PACKAGE.glob("scripts/0[2-7]*.py"))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_a_script_drives(script, monkeypatch):
+    made = []
+    monkeypatch.setattr(node, "run", lambda name, make: made.append((name, make)))
+    runpy.run_path(str(script), run_name="__main__")
+    ((name, make),) = made
+    assert name.startswith("autorace_")
+    drive = make(load_calibration(PACKAGE / "config" / "camera.yaml"))
+    image, view = np.zeros((240, 320, 3), np.uint8), np.zeros((100, 160, 3), np.uint8)
+    speed, turn = drive(node.Seen(0.0, image, view))
+    assert speed > 0.0 and turn == 0.0
+
+
+def test_all_lessons_are_there_and_small():
+    assert [path.name[:2] for path in SCRIPTS] == ["02", "03", "04", "05", "06", "07"]
+    for path in [*PACKAGE.glob("scripts/*.py"), *PACKAGE.glob("src/learning_autorace/*.py")]:
+        lines = [line.strip() for line in path.read_text(encoding="utf-8").splitlines()]
+        assert sum(bool(line) and not line.startswith("#") for line in lines) <= 90, path
