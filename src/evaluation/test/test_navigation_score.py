@@ -6,9 +6,9 @@ import subprocess
 
 import numpy as np
 import pytest
+from trial_worlds.feelers import Gap
 
 from evaluation.colours import bgr, lap_colour
-from evaluation.house.feelers import Gap
 from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.records import Records

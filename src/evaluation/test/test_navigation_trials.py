@@ -8,17 +8,17 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.yard import draw_yard
 
 from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.judge import Judge
 from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize, summary_table
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.trial import YardTrial
-from evaluation.yards.yard import draw_yard
 
 
 def made(seed=0, repeat=0, **changes) -> Drive:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from trial_worlds.feelers import Feelers
+from trial_worlds.true_map import open_walls, reached, true_map
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.world import World
-from evaluation.house.feelers import Feelers
 from evaluation.house.house_file import House
-from evaluation.mapping.neighbours import reached
-from evaluation.mapping.true_map import open_walls, true_map
 from evaluation.session.failure import RunError
 from nav_algorithms.costmap.costs import FREE, INSCRIBED, Costmap
 from nav_algorithms.global_planning import navfn
@@ -36,7 +35,10 @@ class Ground:
 
     def feelers(self, urdf: str) -> Feelers:
         """Of the robot that this text describes, in this house."""
-        return Feelers(self._world, urdf)
+        try:
+            return Feelers(self._world, urdf)
+        except ValueError as error:
+            raise RunError(str(error)) from error
 
     def has_room(self, point: np.ndarray) -> bool:
         """Can the robot get to this point (x, y) from its start?"""

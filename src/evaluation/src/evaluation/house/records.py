@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from trial_worlds.feelers import Gap
 
-from evaluation.house.feelers import Gap
 from nav_algorithms.trajectory_error import at_moments
 
 TOUCHES = 0.005  # m; what is nearer counts as touched: poses are seen 25 times a second

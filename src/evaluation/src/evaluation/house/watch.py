@@ -14,8 +14,8 @@ from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Path as PathMessage
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
+from trial_worlds.feelers import Feelers
 
-from evaluation.house.feelers import Feelers
 from evaluation.house.records import Records
 from evaluation.session import names
 from evaluation.session.asking import Asker

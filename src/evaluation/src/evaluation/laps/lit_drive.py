@@ -6,8 +6,10 @@ import os
 import sys
 from pathlib import Path
 
+from trial_worlds.light import write_lit_world
+
 from bullet_sim.formats.resources import Resources
-from evaluation.laps.light import write_lit_world
+from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import DriveProcess, Session
 
@@ -15,9 +17,15 @@ MODEL_PATH = "GAZEBO_MODEL_PATH"
 
 
 def write_world(world: Path, models: Path, light: float, folder: Path) -> Path:
-    """`world` with its light times `light`, below the folder; `models` has the world's own."""
+    """`world` with its light times `light`, below the folder; `models` has the world's own.
+
+    RunError for a file that is no world.
+    """
     sun = Resources.from_environment().resolve("model://sun")
-    return write_lit_world(world, models, sun, light, folder)
+    try:
+        return write_lit_world(world, models, sun, light, folder)
+    except ValueError as error:
+        raise RunError(str(error)) from error
 
 
 def start(session: Session, arguments: list[str], folder: Path, models: list[Path]) -> DriveProcess:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from trial_worlds.true_map import visible_walls
 
 from evaluation.house.ground import Ground
 from evaluation.house.records import Contact, Records
-from evaluation.mapping.map_agreement import MapAgreement, map_agreement
-from evaluation.mapping.true_map import visible_walls
 from evaluation.navigation.driver import Way
 from evaluation.session.failure import RunError
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
+from nav_algorithms.map_agreement import MapAgreement, map_agreement
 from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import TrajectoryError, trajectory_error
 

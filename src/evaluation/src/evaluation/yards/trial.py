@@ -9,13 +9,16 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.models import world, yard_model
+from trial_worlds.yard import draw_yard
+
 from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.yards.chart import write_chart
-from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
 from evaluation.yards.results import (
     CROSSINGS,
@@ -28,9 +31,7 @@ from evaluation.yards.results import (
     summary_table,
 )
 from evaluation.yards.rig import Rig
-from evaluation.yards.sdf import world, yard_model
 from evaluation.yards.sheet import write_sheets
-from evaluation.yards.yard import draw_yard
 
 PARAMETERS = Path("config") / "yard.yaml"
 

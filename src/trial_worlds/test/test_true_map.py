@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from trial_worlds.true_map import open_walls, true_map, visible_walls
 
-from evaluation.mapping.true_map import open_walls, true_map, visible_walls
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
 
 BOX = """<model name="{name}"><static>true</static><pose>{pose}</pose><link name="l">
