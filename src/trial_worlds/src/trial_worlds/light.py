@@ -30,7 +30,8 @@ def write_lit_world(world: Path, models: Path, sun: Path, factor: float, folder:
         tree = ElementTree.parse(world)
         light = ElementTree.parse(sun / "model.sdf").getroot().find("light")
     except (OSError, ElementTree.ParseError) as error:
-        raise ValueError(f"{world}: no world in which the light could be changed: {error}") from error
+        why = f"{world}: no world in which the light could be changed: {error}"
+        raise ValueError(why) from error
     scale_light(tree.getroot(), light, factor)
     shutil.rmtree(folder / "models", ignore_errors=True)
     if factor > 1:
