@@ -7,9 +7,9 @@ import subprocess
 import numpy as np
 import pytest
 from trial_worlds.feelers import Gap
+from trial_worlds.ground import Ground
 
 from evaluation.colours import bgr, lap_colour
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
@@ -43,7 +43,7 @@ def way(reached: bool = True, text: str = "Goal reached.") -> Way:
 
 @pytest.fixture(scope="module")
 def ground():
-    return Ground(load_house("house"))
+    return load_house("house").ground()
 
 
 @pytest.fixture(scope="module")

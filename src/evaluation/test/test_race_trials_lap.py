@@ -13,7 +13,6 @@ import rospkg
 from racecar_description.track.closed_line import load_track
 
 from evaluation.course_run.main import CourseRun
-from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import RACE, Disturbance, draw
 from evaluation.race_trials import trial as trial_module
 from evaluation.race_trials.results import Lap
@@ -51,11 +50,6 @@ def test_the_start_is_beside_and_along_the_line():
     assert found.lateral == pytest.approx(0.1)
     assert found.s == pytest.approx(track.length - 0.2)
     assert yaw == pytest.approx(track.pose(-0.2)[2] + 0.15)
-
-
-def test_no_world_is_a_clear_error(tmp_path):
-    with pytest.raises(RunError, match="no world in which the light"):
-        lit_drive.write_world(tmp_path / "none.world", tmp_path, 1.0, tmp_path / "out")
 
 
 # --- one lap

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import rospkg
+from trial_worlds.errors import WorldError
 from trial_worlds.light import write_lit_world
 
 from bullet_sim.description import (
@@ -79,5 +80,5 @@ def test_the_camera_sees_the_light(tmp_path, renderer, factor):
 
 
 def test_a_file_that_is_no_world_is_named(tmp_path):
-    with pytest.raises(ValueError, match=r"none\.world: no world in which the light"):
+    with pytest.raises(WorldError, match=r"none\.world: no world in which the light"):
         write_lit_world(tmp_path / "none.world", tmp_path, tmp_path, 1.0, tmp_path / "out")

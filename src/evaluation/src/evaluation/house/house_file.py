@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from trial_worlds.ground import Ground
+
 from evaluation.session.resources import Length, load_record, located
 
 
@@ -27,6 +29,11 @@ class House:
     def world_path(self) -> Path:
         """Where the world file is."""
         return located(self.world).resolve()
+
+    def ground(self) -> Ground:
+        """Its true walls; WorldError for a file that is no world."""
+        return Ground(self.world_path, self.start, self.laser_height, self.passable,
+                      self.goal_clearance, self.goal_distance)
 
 
 def load_house(name: str) -> House:

@@ -9,7 +9,6 @@ from pathlib import Path
 from trial_worlds.light import write_lit_world
 
 from bullet_sim.formats.resources import Resources
-from evaluation.session.failure import RunError
 from evaluation.session.resources import find_package
 from evaluation.session.session import DriveProcess, Session
 
@@ -19,13 +18,10 @@ MODEL_PATH = "GAZEBO_MODEL_PATH"
 def write_world(world: Path, models: Path, light: float, folder: Path) -> Path:
     """`world` with its light times `light`, below the folder; `models` has the world's own.
 
-    RunError for a file that is no world.
+    WorldError for a file that is no world.
     """
     sun = Resources.from_environment().resolve("model://sun")
-    try:
-        return write_lit_world(world, models, sun, light, folder)
-    except ValueError as error:
-        raise RunError(str(error)) from error
+    return write_lit_world(world, models, sun, light, folder)
 
 
 def start(session: Session, arguments: list[str], folder: Path, models: list[Path]) -> DriveProcess:

@@ -20,8 +20,8 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
+from trial_worlds.ground import Ground
 
-from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
 from evaluation.house.watch import MAP, ROBOT, Watch
 from evaluation.session import simulator

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.localisation.results import (
@@ -74,7 +73,7 @@ class LocalisationTrial(protocol.ReportedTrial):
         if not (options.starts or options.kidnaps or options.tracking or options.load):
             raise RunError("no starts, no kidnaps, no tracking and no load: nothing to try")
         options.house = load_house(options.house)
-        self._options, self._ground = options, Ground(options.house)
+        self._options, self._ground = options, options.house.ground()
 
     def cases(self, options: argparse.Namespace) -> list[LocalisationCase]:
         found = [LocalisationCase(f"{kind}-{number}", kind, number)

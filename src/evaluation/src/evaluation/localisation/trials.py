@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 
 import numpy as np
+from trial_worlds.ground import Ground
 
-from evaluation.house.ground import Ground
 from evaluation.house.records import Records
 from evaluation.localisation.results import (
     FINDING,

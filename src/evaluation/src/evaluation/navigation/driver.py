@@ -11,8 +11,8 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from trial_worlds.ground import Ground
 
-from evaluation.house.ground import Ground
 from evaluation.house.watch import MAP, Watch
 from nav_algorithms.poses import compose, invert, wrap_angle
 

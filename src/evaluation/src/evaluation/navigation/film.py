@@ -10,9 +10,9 @@ import numpy as np
 import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
+from trial_worlds.ground import Ground
 
 from evaluation.colours import CAR, FLOOR, TEXT, bgr, lap_colour
-from evaluation.house.ground import Ground
 from evaluation.house.records import Records
 from evaluation.house.watch import Watch
 from evaluation.navigation.picture import CLEAR, OCCUPIED_FROM

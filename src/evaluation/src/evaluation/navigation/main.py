@@ -9,7 +9,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
@@ -64,7 +63,7 @@ class NavigationRun(LiveDrive):
     def __init__(self, options: argparse.Namespace):
         super().__init__(options, Progress())
         self.result = Result()
-        self._ground = Ground(options.house)
+        self._ground = options.house.ground()
         self._check_way_points()
         self._goals = self._ground.draw_goals(options.goals, options.seed)
         if options.map:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 import rospy
+from trial_worlds.ground import Ground
 
-from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver

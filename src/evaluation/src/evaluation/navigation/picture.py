@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from trial_worlds.ground import Ground
 
 from evaluation.colours import CAR, FLOOR, TEXT, lap_colour
-from evaluation.house.ground import Ground
 from evaluation.navigation.score import Result
 from evaluation.picture import legend, map_sheet, pixels
 from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from trial_worlds.ground import Ground
 from trial_worlds.true_map import visible_walls
 
-from evaluation.house.ground import Ground
 from evaluation.house.records import Contact, Records
 from evaluation.navigation.driver import Way
 from evaluation.session.failure import RunError

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 
 from racecar_description.track.errors import TrackError
+from trial_worlds.errors import WorldError
 
 from evaluation.session.failure import RunError
 from evaluation.session.interruption import interruptible
@@ -22,7 +23,7 @@ def run_program(name: str, work: Callable[[], int]) -> int:
         complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
                                 "or give one with --out"))
         return NOT_RUN
-    except (RunError, TrackError, OSError) as failure:
+    except (RunError, TrackError, WorldError, OSError) as failure:
         complain(name, failure)
         return NOT_RUN
     except KeyboardInterrupt:
