@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import os
 import queue
 import threading
@@ -26,6 +25,7 @@ from evaluation.session.asking import Asker
 from evaluation.session.connections import Connections, look_up
 from evaluation.session.course_file import Course
 from evaluation.session.frames import FrameCount
+from evaluation.session.simulator import place_of
 
 SAMPLE_RATE_HZ = 25.0
 SETUP_RATE_HZ = 5.0
@@ -153,7 +153,7 @@ class Observer:
         self._put(message.header.stamp, message.pose.pose)
 
     def _put(self, stamp: rospy.Time, pose: Pose) -> None:
-        self._samples.put((time.monotonic(), _to_sample(stamp, pose)))
+        self._samples.put((time.monotonic(), Sample(stamp.to_sec(), *place_of(pose))))
 
 
 def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | None:
@@ -202,9 +202,3 @@ def _wait_for(condition: Callable[[], bool], limit: float) -> None:
     until = time.monotonic() + limit
     while not condition() and time.monotonic() < until:
         time.sleep(0.005)
-
-
-def _to_sample(stamp: rospy.Time, pose: Pose) -> Sample:
-    q = pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Sample(stamp.to_sec(), pose.position.x, pose.position.y, yaw)

@@ -13,15 +13,15 @@ from pathlib import Path
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from gazebo_msgs.msg import ModelState, ModelStates
-from gazebo_msgs.srv import DeleteModel, SetModelState, SpawnModel
+from gazebo_msgs.msg import ModelStates
+from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
 from trial_worlds.models import PERSON_TOPIC
 
 from evaluation.session.launch import Launched
-from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message
+from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message, put
 from evaluation.yards.judge import Sample
 
 START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
@@ -66,8 +66,7 @@ class Rig:
         for name in sorted(self._there):
             call_service("/gazebo/delete_model", DeleteModel, name)
             self._there.discard(name)
-        state = ModelState(model_name=WAFFLE, pose=pose_message(start), reference_frame="world")
-        call_service("/gazebo/set_model_state", SetModelState, state)
+        put(WAFFLE, start, ANSWER_LIMIT)
         for name, (text, place) in models.items():
             call_service("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
                        "world")
