@@ -9,7 +9,7 @@ from lane_keeping.world.scenery import load_crossings
 from nav_msgs.msg import Odometry
 
 from evaluation.lane.recording import CAR, Moment, line_of
-from evaluation.session.simulator import place_of
+from run_session.simulator import place_of
 
 
 def main() -> None:

@@ -23,9 +23,9 @@ from evaluation.localisation.results import (
 from evaluation.localisation.trial import LocalisationTrial
 from evaluation.localisation.trials import errors_since
 from evaluation.localisation.wander import SPEED, Steering
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_RUN
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
 GOOD = Results(

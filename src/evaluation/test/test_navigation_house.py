@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from trial_worlds.errors import WorldError
 
 from evaluation.house.house_file import load_house
-from evaluation.session.failure import RunError
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.likelihood_field import distances
+from run_session.failure import RunError
+from trial_worlds.errors import WorldError
 
 HOUSES = Path(__file__).parent.parent / "houses"
 VALUES = yaml.safe_load((HOUSES / "house.yaml").read_text(encoding="utf-8"))

@@ -6,8 +6,6 @@ import subprocess
 
 import numpy as np
 import pytest
-from trial_worlds.feelers import Gap
-from trial_worlds.ground import Ground
 
 from evaluation.colours import bgr, lap_colour
 from evaluation.house.house_file import load_house
@@ -26,11 +24,13 @@ from evaluation.navigation.score import (
     score_mapping,
     seen_of,
 )
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
 from evaluation.trial.report import write_json
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
+from run_session.failure import RunError
+from run_session.resources import find_package
+from trial_worlds.feelers import Gap
+from trial_worlds.ground import Ground
 
 PACE = Pace(100.0, 200.0, {"move_base": 40.0})
 SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's

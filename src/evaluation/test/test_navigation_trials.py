@@ -8,10 +8,7 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
-from trial_worlds.crossing import draw_crossing
-from trial_worlds.yard import draw_yard
 
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
@@ -19,6 +16,9 @@ from evaluation.yards.judge import Judge
 from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.trial import YardTrial
+from run_session.failure import RunError
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.yard import draw_yard
 
 
 def made(seed=0, repeat=0, **changes) -> Drive:

@@ -20,9 +20,9 @@ from evaluation.race_trials.results import (
     summarize,
 )
 from evaluation.race_trials.trial import RaceTrial
-from evaluation.session.failure import RunError
 from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "race_trials.py"
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)

@@ -17,9 +17,9 @@ from evaluation.laps.disturbance import RACE, Disturbance, draw
 from evaluation.race_trials import trial as trial_module
 from evaluation.race_trials.results import Lap
 from evaluation.race_trials.venue import racetrack, random_track
-from evaluation.session.failure import RunError
-from evaluation.session.session import Session
 from evaluation.trial.protocol import try_case
+from run_session.failure import RunError
+from run_session.session import Session
 
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
 PACKAGES = rospkg.RosPack()

@@ -9,11 +9,11 @@ from ai_robot_tracking.scenes.scene import KINDS
 from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
-from evaluation.session.failure import RunError
 from evaluation.tracking.run import TrackRun
 from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
 from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 STANDS = np.array([(0.0, 5.0, 0.0)])
 WALKS = np.array([(0.0, 5.0, 0.0), (1000.0, 5.0, 0.0)])  # a walk that does not get on

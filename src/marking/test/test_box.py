@@ -14,7 +14,7 @@ from marking.box import Box
 from marking.rules import load_rules
 from marking.sandbox import Kind, available, namespace
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 LIMIT = 30.0  # s, wall
 LIMITS = dataclasses.replace(

@@ -12,10 +12,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from trial_worlds.true_map import open_walls, true_map
-
 from bullet_sim.errors import SimulationError
 from map_server.map_files import write_map
+from trial_worlds.true_map import open_walls, true_map
 
 
 def main() -> int:

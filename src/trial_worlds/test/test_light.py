@@ -7,8 +7,6 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import rospkg
-from trial_worlds.errors import WorldError
-from trial_worlds.light import write_lit_world
 
 from bullet_sim.description import (
     CameraDescription,
@@ -21,6 +19,8 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.world import World
+from trial_worlds.errors import WorldError
+from trial_worlds.light import write_lit_world
 
 PACKAGES = rospkg.RosPack()
 PACKAGE = Path(PACKAGES.get_path("racecar_description"))

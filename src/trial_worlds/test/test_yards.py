@@ -7,6 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rospkg import RosPack
+
+from bullet_sim.description import Collision, Cylinder, LinkDescription, ModelDescription
+from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.xacro.files import expand
+from bullet_sim.pose import Pose
+from bullet_sim.world import World
+from trial_worlds import field, models, yard
 from trial_worlds.clearance import clearance
 from trial_worlds.crossing import (
     AHEAD,
@@ -19,13 +26,6 @@ from trial_worlds.crossing import (
 )
 from trial_worlds.difficulty import difficulty
 from trial_worlds.true_map import open_walls
-
-from bullet_sim.description import Collision, Cylinder, LinkDescription, ModelDescription
-from bullet_sim.formats import Resources, load_model
-from bullet_sim.formats.xacro.files import expand
-from bullet_sim.pose import Pose
-from bullet_sim.world import World
-from trial_worlds import field, models, yard
 
 
 def cells(*rows: str) -> np.ndarray:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from run_session.resources import Length, find_package, load_record, located
 from trial_worlds.ground import Ground
-
-from evaluation.session.resources import Length, load_record, located
 
 
 @dataclass(frozen=True)
@@ -38,4 +37,4 @@ class House:
 
 def load_house(name: str) -> House:
     """House `name` of houses/, or the file of that path; RunError names file and key."""
-    return load_record(House, name, "houses")
+    return load_record(House, name, find_package("evaluation") / "houses")

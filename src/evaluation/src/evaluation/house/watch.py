@@ -14,14 +14,14 @@ from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Path as PathMessage
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
-from trial_worlds.feelers import Feelers
 
 from evaluation.house.records import Records
-from evaluation.session import names
-from evaluation.session.asking import Asker
-from evaluation.session.simulator import place_of, pose_message, yaw_of
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import compose
+from run_session import names
+from run_session.asking import Asker
+from run_session.simulator import place_of, pose_message, yaw_of
+from trial_worlds.feelers import Feelers
 
 ROBOT = "turtlebot3"  # its model name, as upstream's launch file spawns it
 MAP, ODOM, BASE = "map", "odom", "base_footprint"

@@ -6,11 +6,10 @@ import os
 import sys
 from pathlib import Path
 
-from trial_worlds.light import write_lit_world
-
 from bullet_sim.formats.resources import Resources
-from evaluation.session.resources import find_package
-from evaluation.session.session import DriveProcess, Session
+from run_session.resources import find_package
+from run_session.session import DriveProcess, Session
+from trial_worlds.light import write_lit_world
 
 MODEL_PATH = "GAZEBO_MODEL_PATH"
 

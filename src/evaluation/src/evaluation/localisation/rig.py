@@ -18,14 +18,14 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
-from trial_worlds.ground import Ground
 
 from evaluation.house.progress import Progress
 from evaluation.house.watch import ROBOT, Watch, told_pose
-from evaluation.session import simulator
-from evaluation.session.cpu import processes
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
+from run_session import simulator
+from run_session.cpu import processes
+from run_session.failure import RunError
+from run_session.launch import Launched
+from trial_worlds.ground import Ground
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall

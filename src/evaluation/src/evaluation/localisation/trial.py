@@ -23,12 +23,12 @@ from evaluation.localisation.results import (
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
-from evaluation.session.failure import RunError
-from evaluation.session.session import Session
 from evaluation.trial import protocol
 from evaluation.trial.command_line import Parser
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
+from run_session.failure import RunError
+from run_session.session import Session
 
 RUNS = {FINDING: find, KIDNAPS: kidnap, "tracking": track, "load": measure_load}
 Result = Trial | Tracking | Load

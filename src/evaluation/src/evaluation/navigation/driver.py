@@ -11,11 +11,11 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
-from trial_worlds.ground import Ground
 
 from evaluation.house.watch import MAP, Watch, told_pose
-from evaluation.session.simulator import pose_message
 from nav_algorithms.poses import compose, invert, wrap_angle
+from run_session.simulator import pose_message
+from trial_worlds.ground import Ground
 
 LIMIT, LIMIT_FACTOR = 60.0, 5.0  # s, simulated, and times the shortest way at full speed, for a way
 CANCEL_LIMIT = 10.0  # s, simulated, for move_base to give a goal up

@@ -17,13 +17,13 @@ from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
 from evaluation.navigation.report import lines, read_map_frame, summarize
 from evaluation.navigation.score import Result
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
 from evaluation.trial.command_line import LARGEST_SEED, Parser
 from evaluation.trial.live import LiveDrive, Outcome
 from evaluation.trial.report import write_json
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
+from run_session.failure import RunError
+from run_session.launch import Launched
 
 RESULTS = ("map.png", "run.mp4", "report.json")
 

@@ -14,10 +14,10 @@ from evaluation.laps.lap_trial import LapTrial, Outing
 from evaluation.race_trials.pictures import write_chart, write_path_sheet
 from evaluation.race_trials.results import COLUMNS, Lap, lap_line, summarize
 from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, racetrack, random_track
-from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
 from evaluation.trial.table import table_of
+from run_session.failure import RunError
 
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")

@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.session.processes import end_with_parent
+from run_session.processes import end_with_parent
 
 FINISH_TIME = 1.0  # s, wall, for the encoder to end
 

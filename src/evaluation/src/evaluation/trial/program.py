@@ -6,10 +6,10 @@ import sys
 from collections.abc import Callable
 
 from racecar_description.track.errors import TrackError
-from trial_worlds.errors import WorldError
 
-from evaluation.session.failure import RunError
-from evaluation.session.interruption import interruptible
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from trial_worlds.errors import WorldError
 
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 

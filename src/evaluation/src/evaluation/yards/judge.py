@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+
+from run_session.simulator import Place
 from trial_worlds.clearance import CONTACT, clearance
 from trial_worlds.crossing import PERSON_RADIUS
-
-from evaluation.session.simulator import Place
 
 STANDING = 0.02   # m/s
 PATH_STEP = 0.02  # m between two points that are kept

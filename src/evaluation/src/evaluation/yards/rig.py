@@ -18,11 +18,11 @@ from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
-from trial_worlds.models import PERSON_TOPIC
 
-from evaluation.session.launch import Launched
-from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message, put
 from evaluation.yards.judge import Sample
+from run_session.launch import Launched
+from run_session.simulator import WAFFLE, Place, call, models, place_of, pose_message, put
+from trial_worlds.models import PERSON_TOPIC
 
 START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
 FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 10 Hz

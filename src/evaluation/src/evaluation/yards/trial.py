@@ -9,13 +9,6 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
-from trial_worlds.crossing import draw_crossing
-from trial_worlds.models import world, yard_model
-from trial_worlds.yard import draw_yard
-
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import table_of
@@ -33,6 +26,12 @@ from evaluation.yards.results import (
 )
 from evaluation.yards.rig import Rig
 from evaluation.yards.sheet import write_sheets
+from run_session.failure import RunError
+from run_session.resources import find_package
+from run_session.session import Session
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.models import world, yard_model
+from trial_worlds.yard import draw_yard
 
 PARAMETERS = Path("config") / "yard.yaml"
 

@@ -14,7 +14,7 @@ from gazebo_msgs.srv import DeleteModel, GetWorldProperties, SetModelState, Spaw
 from geometry_msgs.msg import Pose, Quaternion
 from std_srvs.srv import Empty
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 WAFFLE = "turtlebot3_waffle"
 Place = tuple[float, float, float]  # x, y, m; yaw, rad
