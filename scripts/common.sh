@@ -48,7 +48,7 @@ choose_master() {
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
     return 0
   fi
-  port=$(python3 -c 'from evaluation.session.launch import free_port; print(free_port())')
+  port=$(python3 -c 'from run_session.launch import free_port; print(free_port())')
   export ROS_MASTER_URI=http://localhost:$port
   [ "$ROS_MASTER_URI" = "$usual" ] ||
     say "Another ROS master runs on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"

@@ -17,7 +17,8 @@ from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
 
 OUR_FOLDERS = ("car_control", "compat", "evaluation", "interfaces", "learning_topic", "lessons",
-               "marking", "navigation", "racecar_description", "sim", "workspace_needs")
+               "marking", "navigation", "racecar_description", "run_session", "sim",
+               "trial_worlds", "workspace_needs")
 MARKER = "CATKIN_IGNORE"
 MARK = "made by the build: a package of this name elsewhere in src/ is built instead\n"
 

@@ -18,10 +18,10 @@ from rviz_scenes import SCENES, Stage
 from rviz_screen import Screen
 from windows import LESSONS, Photographer
 
-from evaluation.session.failure import RunError
-from evaluation.session.interruption import interruptible
-from evaluation.session.launch import Launched
-from evaluation.session.processes import Family
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from run_session.launch import Launched
+from run_session.processes import Family
 
 COURSE = "course"
 

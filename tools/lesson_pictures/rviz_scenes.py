@@ -19,9 +19,9 @@ from geometry_msgs.msg import Twist
 from rviz_screen import Screen, save
 from std_srvs.srv import Empty
 
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.processes import Child
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.processes import Child
 
 LIMIT, END_LIMIT = 180.0, 20.0  # s, wall, for whatever is waited for, and for a launch to end
 LOOK = 0.05  # s, wall

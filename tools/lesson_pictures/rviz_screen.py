@@ -12,7 +12,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 WIDTH_PX, HEIGHT_PX = 1200, 846  # the windows of the shipped rviz configurations
 STATUS_PX = 28  # the lowest line of rviz; its frames a second are never the same

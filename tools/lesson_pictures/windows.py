@@ -20,9 +20,9 @@ from std_srvs.srv import Empty
 
 from evaluation.colours import PAPER, TEXT, bgr
 from evaluation.plan import FONT, write_text
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.names import WORLD
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.names import WORLD
 
 WINDOW_WIDTH_PX, BAR_PX, GAP_PX = 640, 34, 14
 LETTER_PX, LINE_PX = 10, 21

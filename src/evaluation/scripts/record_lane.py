@@ -9,6 +9,7 @@ from lane_keeping.world.scenery import load_crossings
 from nav_msgs.msg import Odometry
 
 from evaluation.lane.recording import CAR, Moment, line_of
+from run_session.simulator import place_of
 
 
 def main() -> None:
@@ -24,11 +25,7 @@ def main() -> None:
 def _write(message: Odometry, where: tuple) -> None:
     file, name = where
     pose, twist = message.pose.pose, message.twist.twist.linear
-    turn = pose.orientation
-    yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
-                     1 - 2 * (turn.y * turn.y + turn.z * turn.z))
-    moment = Moment(message.header.stamp.to_sec(), pose.position.x, pose.position.y, yaw,
-                    math.hypot(twist.x, twist.y))
+    moment = Moment(message.header.stamp.to_sec(), *place_of(pose), math.hypot(twist.x, twist.y))
     if not file.closed:
         file.write(line_of(name, moment))
 

@@ -9,8 +9,8 @@ import signal
 import time
 from dataclasses import asdict, dataclass
 
-from evaluation.session.failure import RunError
 from evaluation.trial.protocol import Case, ReportedTrial
+from run_session.failure import RunError
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import pytest
 
 from evaluation.autorace.judge import WAY, Sample, score
 from evaluation.autorace.trial import RaceTrial, write_dimmed
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "autorace.py"
 UP, GREEN = frozenset({"traffic_bar_up"}), frozenset({"traffic_light_green"})

@@ -6,8 +6,8 @@ import pytest
 import yaml
 
 from evaluation.session.course_file import load_course
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_RUN, run_program
+from run_session.failure import RunError
 
 COURSES = Path(__file__).parent.parent / "courses"
 

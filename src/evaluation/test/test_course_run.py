@@ -14,6 +14,10 @@ from pathlib import Path
 import cv2
 import pytest
 
+from evaluation.course_run.main import CourseRun
+from evaluation.trial.live import run_program_of
+from evaluation.trial.program import NOT_RUN
+
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
 FAKE = ("--launch", "evaluation", "fake_course.launch")
@@ -345,8 +349,7 @@ def test_even_a_killed_run_leaves_nothing(start):
         (("--quick",), "unrecognized arguments: --quick"),
     ],
 )
-def test_a_mistyped_command_is_one_line_and_2(start, arguments, words):
-    run = start(*arguments)
-    assert run.wait() == 2
-    assert len(run.output.splitlines()) == 1
-    assert words in run.output
+def test_a_mistyped_command_is_one_line_and_2(tmp_path, capsys, arguments, words):
+    assert run_program_of(CourseRun, [*arguments, "--out", str(tmp_path)]) == NOT_RUN
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line

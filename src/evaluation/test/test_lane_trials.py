@@ -20,9 +20,9 @@ from evaluation.lane.results import (
 )
 from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
 from evaluation.laps.disturbance import draw
-from evaluation.session.failure import RunError
 from evaluation.trial.report import write_json
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 CROSSINGS = load_crossings()
 FIRST = CROSSINGS.zebras[0]  # heading east, so metres along it are metres of x

@@ -11,35 +11,32 @@ from evaluation.localisation.results import (
     FINDING,
     KIDNAPS,
     Load,
-    Results,
     Search,
     Tracking,
     Trial,
+    passed,
     right_since,
     score,
     summary_table,
-    trial_line,
 )
 from evaluation.localisation.trial import LocalisationTrial
 from evaluation.localisation.trials import errors_since
 from evaluation.localisation.wander import SPEED, Steering
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_RUN
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
-GOOD = Results(
-    [Trial(FINDING, n, (0.0, 0.0, 0.0), 5.0 + n, 0.02, 1.0, 0) for n in range(20)]
-    + [Trial(KIDNAPS, n, (0.0, 0.0, 0.0), 90.0, 0.02, 1.0, 0) for n in range(10)],
-    Tracking(300.0, 40.0, 0.03, 1.0, 0.1, 4.0), Load(2000, 60.0, 61.0, 6.0))
+TRIALS = [*(Trial(FINDING, n, (0.0, 0.0, 0.0), 5.0 + n, 0.02, 1.0, 0) for n in range(20)),
+          *(Trial(KIDNAPS, n, (0.0, 0.0, 0.0), 90.0, 0.02, 1.0, 0) for n in range(10))]
+TRACKING, LOAD = Tracking(300.0, 40.0, 0.03, 1.0, 0.1, 4.0), Load(2000, 60.0, 61.0, 6.0)
+GOOD = [*TRIALS, TRACKING, LOAD]
 
 
 def without(count, kind, took=None):
     """The good results, but for so many of one set that took so long."""
-    spoilt = [trial.number for trial in GOOD.of(kind)[:count]]
-    return replace(GOOD, trials=[
-        replace(trial, took=took) if trial.set == kind and trial.number in spoilt else trial
-        for trial in GOOD.trials])
+    return [replace(each, took=took) if each.name in {f"{kind}-{n}" for n in range(count)}
+            else each for each in GOOD]
 
 
 # --- command line
@@ -73,18 +70,18 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     (GOOD, True),
     (without(1, FINDING), True), (without(2, FINDING), False), (without(2, FINDING, 61.0), False),
     (without(2, KIDNAPS), True), (without(3, KIDNAPS), False),
-    (replace(GOOD, tracking=replace(GOOD.tracking, off=0.051)), False),
-    (replace(GOOD, tracking=replace(GOOD.tracking, off_deg=2.1)), False),
-    (replace(GOOD, load=replace(GOOD.load, percent=31.0)), False),
-    (Results(load=GOOD.load), True),
+    ([*TRIALS, replace(TRACKING, off=0.051), LOAD], False),
+    ([*TRIALS, replace(TRACKING, off_deg=2.1), LOAD], False),
+    ([*TRIALS, TRACKING, replace(LOAD, percent=31.0)], False),
+    ([LOAD], True),
 ])  # fmt: skip
 def test_limits(results, passes):
-    assert results.passed is passes
+    assert passed(results) is passes
 
 
 def test_a_robot_without_any_pose_is_told_in_words():
     lost = Trial(FINDING, 1, (0.0, 0.0, 0.0), None, None, None, 0)
-    assert trial_line(lost).endswith("not found, no pose at the end")
+    assert lost.line.endswith("not found, no pose at the end")
 
 
 def test_right_counts_from_the_last_wrong_pose_on():
@@ -127,8 +124,8 @@ def test_the_table_holds_each_figure_against_its_limit():
         "finding, within 60 s", "kidnaps, within 120 s", "tracking, 300 s",
         "amcl with 2000 particles"]
     assert "19 of 20" in rows[1] and "3.0 cm, 1.0°" in rows[3] and "6 % of a core" in rows[4]
-    trial, all_of_it = LocalisationTrial(), [*GOOD.trials, GOOD.tracking, GOOD.load]
-    report = json.loads(json.dumps(trial.values(all_of_it)))
+    trial = LocalisationTrial()
+    report = json.loads(json.dumps(trial.values(GOOD)))
     assert report["passed"] and report["trials"][0]["right"] and len(report["trials"]) == 30
     assert json.loads(json.dumps(trial.values(trial.from_values(report)))) == report
 
@@ -136,12 +133,12 @@ def test_the_table_holds_each_figure_against_its_limit():
 @pytest.mark.parametrize(("took", "said"), [
     (None, "not found"), (5.0, "found after 5.0 s, at"), (70.0, "70.0 s, too late")])
 def test_a_trial_on_one_line(took, said):
-    assert said in trial_line(replace(GOOD.trials[0], took=took))
+    assert said in replace(TRIALS[0], took=took).line
 
 
 def test_the_drives_on_one_line():
-    assert trial_line(GOOD.tracking) == "tracking: 3.0 cm, 1.0° off in the mean"
-    assert trial_line(GOOD.load) == "load: 6 % of a core"
+    assert TRACKING.line == "tracking: 3.0 cm, 1.0° off in the mean"
+    assert LOAD.line == "load: 6 % of a core"
 
 
 # --- steering

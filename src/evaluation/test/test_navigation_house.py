@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import yaml
 
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
-from evaluation.session.failure import RunError
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.likelihood_field import distances
+from run_session.failure import RunError
+from trial_worlds.errors import WorldError
 
 HOUSES = Path(__file__).parent.parent / "houses"
 VALUES = yaml.safe_load((HOUSES / "house.yaml").read_text(encoding="utf-8"))
@@ -18,7 +18,7 @@ VALUES = yaml.safe_load((HOUSES / "house.yaml").read_text(encoding="utf-8"))
 
 @pytest.fixture(scope="module")
 def ground():
-    return Ground(load_house("house"))
+    return load_house("house").ground()
 
 
 def test_the_house_can_be_driven_through(ground):
@@ -84,12 +84,12 @@ def test_an_unknown_house_is_answered_with_those_there_are():
 def test_a_world_that_is_not_there_is_named(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({**VALUES, "world": "/nowhere/at_all.world"}))
-    with pytest.raises(RunError, match=r"at_all\.world"):
-        Ground(load_house(str(path)))
+    with pytest.raises(WorldError, match=r"at_all\.world"):
+        load_house(str(path)).ground()
 
 
 def test_too_little_room_for_a_goal_is_said(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({**VALUES, "goal_clearance": 5.0}))
-    with pytest.raises(RunError, match="no room for a goal"):
-        Ground(load_house(str(path))).draw_goals(1, 0)
+    with pytest.raises(WorldError, match="no room for a goal"):
+        load_house(str(path)).ground().draw_goals(1, 0)

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from evaluation.colours import bgr, lap_colour
-from evaluation.house.feelers import Gap
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
@@ -27,10 +25,12 @@ from evaluation.navigation.score import (
     score_mapping,
     seen_of,
 )
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
+from run_session.failure import RunError
+from run_session.resources import find_package
+from trial_worlds.feelers import Gap
+from trial_worlds.ground import Ground
 
 PACE = Pace(100.0, 200.0, {"move_base": 40.0})
 SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's
@@ -43,7 +43,7 @@ def way(reached: bool = True, text: str = "Goal reached.") -> Way:
 
 @pytest.fixture(scope="module")
 def ground():
-    return Ground(load_house("house"))
+    return load_house("house").ground()
 
 
 @pytest.fixture(scope="module")

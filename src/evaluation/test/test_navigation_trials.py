@@ -9,16 +9,16 @@ import cv2
 import numpy as np
 import pytest
 
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.judge import Judge
-from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize, summary_table
+from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.trial import YardTrial
-from evaluation.yards.yard import draw_yard
+from run_session.failure import RunError
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.yard import draw_yard
 
 
 def made(seed=0, repeat=0, **changes) -> Drive:
@@ -89,16 +89,16 @@ def test_scores_are_the_challenge_s():
 
 
 def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
-    yards, crossings = summarize(
-        [made(0), made(1, time=30.0, recoveries=["rotate"]), made(2, time=5.0, outcome="contact"),
-         crossed(0)])  # fmt: skip
-    assert (yards.drives, yards.outcomes) == (3, {"contact": 1, "reached": 2})
-    assert (yards.mean_time, yards.mean_time_by_straight) == (25.0, 25 / 16)
-    assert (yards.drives_with_recovery, yards.failed) == (1, ["yards-2-0"])
-    assert (crossings.least_to_person, crossings.least_to_obstacles) == (0.2, None)
-    shown = summary_table([yards, crossings])
+    drives = [made(0), made(1, time=30.0, recoveries=["rotate"]),
+              made(2, time=5.0, outcome="contact"), crossed(0)]
+    yards, crossings = summarize(drives)
+    assert (yards["drives"], yards["outcomes"]) == (3, {"contact": 1, "reached": 2})
+    assert (yards["mean_time"], yards["mean_time_by_straight"]) == (25.0, 25 / 16)
+    assert (yards["drives_with_recovery"], yards["failed"]) == (1, ["yards-2-0"])
+    assert (crossings["least_to_person"], crossings["least_to_obstacles"]) == (0.2, None)
+    shown = YardTrial().table(drives)
     assert "2 of 3" in shown and "67%" in shown
-    assert "0 of 1" in summary_table(summarize([made(outcome="late")]))
+    assert "0 of 1" in YardTrial().table([made(outcome="late")])
 
 
 def test_pictures_are_drawn_of_what_there_is(tmp_path):

@@ -5,14 +5,14 @@ import time
 import numpy as np
 import pytest
 
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.processes import Family
 from evaluation.yards import drive as driving
-from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.judge import OBSTACLE, PERSON, WALKED_INTO, Judge, Sample
 from evaluation.yards.rig import SLOW
-from evaluation.yards.yard import draw_yard
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.processes import Family
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.yard import draw_yard
 
 NOBODY = np.empty((0, 2))
 

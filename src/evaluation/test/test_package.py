@@ -9,7 +9,7 @@ import rospkg
 
 PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE / "src" / "evaluation"
-SHARED = {"session", "trial", "laps", "house", "mapping"}  # what trials stand on
+SHARED = {"session", "trial", "laps", "house"}  # what trials stand on
 TRIALS = {"course_run", "race_trials", "avoid", "lane", "tracking", "navigation", "localisation",
           "yards"}
 

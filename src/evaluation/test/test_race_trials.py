@@ -14,16 +14,15 @@ import numpy as np
 import pytest
 
 from evaluation.laps.disturbance import RACE, Disturbance, draw
-from evaluation.race_trials.path_sheet import write_path_sheet
+from evaluation.race_trials.pictures import write_path_sheet
 from evaluation.race_trials.results import (
     Lap,
     summarize,
-    summary_table,
 )
 from evaluation.race_trials.trial import RaceTrial
-from evaluation.session.failure import RunError
 from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "race_trials.py"
 CALM = Disturbance(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -85,22 +84,23 @@ def test_a_summary_is_of_one_follower_on_one_set():
     left = lap(2, outcome="left the course", time=None, rms_lateral=0.005, mean_speed=9.0)
     laps = [lap(0, rms_lateral=0.04), lap(1, mean_speed=1.0), left, lap(3, "lane_follow_p.py"),
             lap(101, set="random tracks")]  # fmt: skip
-    ours, other_set, plain = sorted(summarize(laps), key=lambda each: (each.follower, -each.laps))
-    assert (ours.laps, ours.closed, ours.within_limits, ours.worst_seed) == (3, 2, 1, 2)
-    assert (ours.mean_speed, ours.least_speed) == (pytest.approx(1.5), 1.0)
-    assert ours.mean_rms_lateral == pytest.approx(0.025) and ours.max_rms_lateral == 0.04
-    assert (other_set.set, plain.follower) == ("random tracks", "lane_follow_p.py")
-    rows = summary_table(summarize(laps)).splitlines()
+    ours, other_set, plain = sorted(
+        summarize(laps), key=lambda each: (each["follower"], -each["laps"]))
+    assert [ours[key] for key in ("laps", "closed", "within_limits", "worst_seed")] == [3, 2, 1, 2]
+    assert (ours["mean_speed"], ours["least_speed"]) == (pytest.approx(1.5), 1.0)
+    assert ours["mean_rms_lateral"] == pytest.approx(0.025) and ours["max_rms_lateral"] == 0.04
+    assert (other_set["set"], plain["follower"]) == ("random tracks", "lane_follow_p.py")
+    rows = RaceTrial().table(laps).splitlines()
     assert len(rows) == 4 and "2 of 3" in rows[1]
 
 
 def test_the_table_of_a_follower_that_closed_nothing():
-    assert "0 of 1" in summary_table(summarize([lap(outcome="stalled", time=None)]))
+    assert "0 of 1" in RaceTrial().table([lap(outcome="stalled", time=None)])
 
 
 @pytest.mark.parametrize("closed", [0, 1, 7])
 def test_pictures_are_drawn_of_what_there_is(tmp_path, closed):
-    chart = importlib.import_module("evaluation.race_trials.chart")
+    chart = importlib.import_module("evaluation.race_trials.pictures")
     stalled = lap(9, outcome="stalled", time=None, set="random tracks")
     laps = [lap(seed, folder=".") for seed in range(closed)] + [stalled]
     cv2.imwrite(str(tmp_path / "path.png"), np.full((400, 500, 3), 255, np.uint8))

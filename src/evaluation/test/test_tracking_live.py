@@ -8,6 +8,10 @@ from pathlib import Path
 import cv2
 import pytest
 
+from evaluation.tracking.run import TrackRun
+from evaluation.trial.live import run_program_of
+from evaluation.trial.program import NOT_RUN
+
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "track.py"
 LIMIT = 200.0  # s, wall
@@ -29,9 +33,9 @@ def test_a_short_drive(tmp_path):
     assert cv2.VideoCapture(str(tmp_path / "run.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) >= 8
 
 
-def test_mistakes_start_nothing(tmp_path):
-    command = [sys.executable, "-P", str(SCRIPT), "--scene", "dark", "--out", str(tmp_path / "out")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 2
-    assert done.stderr.startswith("track: no scene 'dark' (SCENE=); there are: static, moving")
+def test_mistakes_start_nothing(tmp_path, capsys):
+    words = ["--scene", "dark", "--out", str(tmp_path / "out")]
+    assert run_program_of(TrackRun, words) == NOT_RUN
+    said = capsys.readouterr().err
+    assert said.startswith("track: no scene 'dark' (SCENE=); there are: static, moving")
     assert not (tmp_path / "out").exists()

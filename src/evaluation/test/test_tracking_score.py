@@ -9,11 +9,11 @@ from ai_robot_tracking.scenes.scene import KINDS
 from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
-from evaluation.session.failure import RunError
 from evaluation.tracking.run import TrackRun
 from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
-from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize, summary_table
+from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize
 from evaluation.trial.runner import run_trial
+from run_session.failure import RunError
 
 STANDS = np.array([(0.0, 5.0, 0.0)])
 WALKS = np.array([(0.0, 5.0, 0.0), (1000.0, 5.0, 0.0)])  # a walk that does not get on
@@ -129,20 +129,22 @@ def report(seed, good, hidden=()):
 
 def summary(name, reports):
     (found,) = summarize([Drive(f"{name}/{each['seed']}", name, each) for each in reports])
-    assert found.set in SETS
+    assert found["set"] in SETS
     return found
 
 
 def test_summaries():
-    assert summary("follow", [report(0, True), report(1, True)]).passed
+    assert summary("follow", [report(0, True), report(1, True)])["passed"]
     one_bad = summary("follow", [report(0, True), report(1, False)])
-    assert (one_bad.good, one_bad.cases, one_bad.passed, one_bad.failed_seeds) == (1, 2, False, [1])
+    shown = [one_bad[key] for key in ("good", "cases", "passed", "failed_seeds")]
+    assert shown == [1, 2, False, [1]]
     hidden = [report(seed, True, (2.0, 9.0)) for seed in range(9)]
-    assert summary("hidden", [*hidden, report(9, False, (11.0, None))]).passed  # 18 of 20
+    assert summary("hidden", [*hidden, report(9, False, (11.0, None))])["passed"]  # 18 of 20
     assert not summary("hidden", [*hidden[1:], report(8, False, (3.0, None)),
-                                  report(9, False, (11.0, None))]).passed
-    found = summary("hidden", [*hidden, report(9, False, (11.0, 12.0))])
-    assert "18 of 20" in summary_table([found])
+                                  report(9, False, (11.0, None))])["passed"]
+    drives = [*hidden, report(9, False, (11.0, 12.0))]
+    assert "18 of 20" in TrackTrial().table([Drive(str(n), "hidden", each)
+                                             for n, each in enumerate(drives)])
 
 
 @pytest.mark.parametrize(("good", "code"), [(True, 0), (False, 1)])

@@ -6,11 +6,11 @@ from dataclasses import asdict, dataclass
 
 import pytest
 
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.runner import run_trial
 from evaluation.trial.table import cell, table
+from run_session.failure import RunError
 
 
 @dataclass(frozen=True)

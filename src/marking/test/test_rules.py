@@ -6,7 +6,7 @@ import pytest
 import yaml
 from marking.rules import load_rules
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 SHIPPED = Path(__file__).parents[1] / "config" / "marking.yaml"
 

@@ -8,7 +8,7 @@ from marking.case_files import read_case
 from marking.drive_report import BY_TIME
 from marking.trial import TIMED, MarkingTrial
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "laps_wanted": 1,
           "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03, "mean_speed_m_s": 0.2}

@@ -11,7 +11,7 @@ import rospy
 from trial_record import Record
 from trial_venue import Venue
 
-from evaluation.session.processes import Child, Family
+from run_session.processes import Child, Family
 
 STARTUP = 120.0  # s, wall
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from evaluation.mapping.true_map import open_walls, true_map
 from nav_algorithms import likelihood_field
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.poses import compose
+from trial_worlds.true_map import open_walls, true_map
 
 PACKAGE = Path(__file__).resolve().parent.parent
 VENUES = ("walled", "field")

@@ -10,9 +10,9 @@ from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.lap import LapScorer
-from evaluation.session.course_file import Course
 from marking.rules import Limits
 from marking.venues import driven
+from run_session.course import Course
 
 CASE, REPORT, PATH_PICTURE, OUTPUT, FILM = (
     "case.json", "report.json", "path.png", "output.txt", "film.mp4")

@@ -14,15 +14,15 @@ import rosgraph
 import rospy
 from gazebo_msgs.srv import GetWorldProperties
 
-from evaluation.session import names
-from evaluation.session.connections import Connections, look_up
-from evaluation.session.launch import MAY_FINISH, Launched
-from evaluation.session.observer import missing_connection
-from evaluation.session.processes import Child
 from marking import conduct, film
 from marking.case_files import CaseFile
 from marking.rules import Rules
 from marking.states import Tail
+from run_session import names
+from run_session.connections import Connections, look_up
+from run_session.launch import MAY_FINISH, Launched
+from run_session.observer import missing_connection
+from run_session.processes import Child
 
 ME = "/judge"  # never registered at the master
 STARTUP_LIMIT = 240.0  # s, wall, for the course: the machine may be busy

@@ -21,11 +21,7 @@ import rospy
 from std_srvs.srv import Empty
 
 from evaluation.lap import Verdict
-from evaluation.session import names
 from evaluation.session.encoders import FINISH_TIME, WRITE_TIME
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.session import Session
 from evaluation.trial.program import run_program
 from marking import conduct
 from marking.box import Box
@@ -35,6 +31,10 @@ from marking.drive_report import write_report
 from marking.rules import Rules, load_rules
 from marking.sandbox import Kind
 from marking.states import STATE_LOG, Tail, bytes_below, sample_of
+from run_session import names
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.session import Session
 
 SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
 ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's

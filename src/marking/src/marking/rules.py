@@ -9,8 +9,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import read_keys
+from run_session.failure import RunError
+from run_session.resources import read_keys
 
 
 @dataclass(frozen=True)

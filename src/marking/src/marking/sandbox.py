@@ -14,8 +14,8 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
-from evaluation.session.failure import RunError
 from marking.rules import Limits
+from run_session.failure import RunError
 
 # What Python, ROS, OpenCV and the dynamic linker read there, and no more.
 ETC = ("alternatives", "fonts", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d",

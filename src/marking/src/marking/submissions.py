@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
-from evaluation.session.failure import RunError
 from marking.text import file_name
 from marking.unpacking import UnpackError, archive_stem, is_archive, unpack
+from run_session.failure import RunError
 
 NO_PROGRAMS = ("__init__.py", "setup.py", "conftest.py", "test_*.py", "*_test.py")
 

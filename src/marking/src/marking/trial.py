@@ -15,9 +15,6 @@ from pathlib import Path
 from racecar_description.track.closed_line import load_track
 
 from evaluation.laps.lit_drive import MODEL_PATH
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, ReportedTrial
 from marking.case_files import CaseFile
@@ -32,6 +29,9 @@ from marking.submissions import digest, find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
 from marking.venues import COURSES, make_scene
+from run_session.failure import RunError
+from run_session.resources import find_package
+from run_session.session import Session
 
 NOT_RUN, SUBMISSION = "not run", "submission"
 TIMED = "driven in real time: it did not answer each image with a command"

@@ -15,10 +15,11 @@ from racecar_description.track.track_file import load_track_file
 
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
-from evaluation.session.course_file import Course, load_course
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
+from evaluation.session.course_file import load_course
 from marking.rules import Rules
+from run_session.course import Course
+from run_session.failure import RunError
+from run_session.resources import find_package
 
 # What can be driven: our launch file of that name, and the course file of evaluation's.
 COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}

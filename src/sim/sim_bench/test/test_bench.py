@@ -24,9 +24,9 @@ from sim_bench.results import (
 )
 from sim_bench.ros_run import read_lines
 
-from evaluation.session import cpu
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_RUN
+from run_session import cpu
+from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "bench.py"
 

@@ -11,9 +11,9 @@ import rospy
 from gazebo_msgs.msg import ModelStates
 
 from evaluation.autorace.judge import GROUND, Sample
-from evaluation.session import simulator
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
+from run_session import simulator
+from run_session.failure import RunError
+from run_session.launch import Launched
 
 ROBOT = "autorace"
 START_LIMIT, SILENCE = 240.0, 60.0  # s, wall

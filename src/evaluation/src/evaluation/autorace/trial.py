@@ -21,12 +21,12 @@ from evaluation.autorace.judge import (
 )
 from evaluation.autorace.rig import Rig
 from evaluation.autorace.sheet import write_sheet
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import cell, table
+from run_session.failure import RunError
+from run_session.resources import find_package
+from run_session.session import Session
 
 ALL = "all"
 LOST = 0.30  # m beside the lane: the drive is over

@@ -14,10 +14,10 @@ import numpy as np
 import rosgraph
 from learning_laser import hall
 
-from evaluation.session.connections import look_up
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.simulator import WAFFLE, models, unpause
+from run_session.connections import look_up
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.simulator import WAFFLE, models, unpause
 
 START_LIMIT = 120.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall

@@ -14,10 +14,10 @@ from learning_laser import hall
 from evaluation.avoid import drive
 from evaluation.avoid.drive import CONTACT, REACHED, Drive
 from evaluation.picture import write_tiles
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import table
+from run_session.session import Session
 
 TILE = (5.0, 1.9)  # inches
 

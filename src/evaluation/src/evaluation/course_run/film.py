@@ -11,8 +11,8 @@ from racecar_description.track.track_file import TrackFile
 from evaluation.colours import CAR, lap_colour
 from evaluation.lap import LapScorer
 from evaluation.plan import course_plan
-from evaluation.session.course_file import Course
 from evaluation.session.film import CameraFilm, side_by_side
+from run_session.course import Course
 
 PLAN_PX = 520
 MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow

@@ -16,10 +16,10 @@ from evaluation.course_run.report import followers_table, summarize, write_repor
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
-from evaluation.session.fingerprints import Fingerprints
 from evaluation.trial.car_drive import CarDrive
 from evaluation.trial.command_line import Parser
 from evaluation.trial.live import Outcome
+from run_session.fingerprints import Fingerprints
 
 
 class CourseRun(CarDrive):

@@ -7,9 +7,10 @@ import re
 from functools import partial
 from pathlib import Path
 
-from evaluation.session.course_file import Course, load_course
-from evaluation.session.failure import RunError
+from evaluation.session.course_file import load_course
 from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
+from run_session.course import Course
+from run_session.failure import RunError
 
 MOST_SECONDS = 999_999_999
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.session.resources import Length, load_record, located
+from run_session.resources import Length, find_package, load_record, located
+from trial_worlds.ground import Ground
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,12 @@ class House:
         """Where the world file is."""
         return located(self.world).resolve()
 
+    def ground(self) -> Ground:
+        """Its true walls; WorldError for a file that is no world."""
+        return Ground(self.world_path, self.start, self.laser_height, self.passable,
+                      self.goal_clearance, self.goal_distance)
+
 
 def load_house(name: str) -> House:
     """House `name` of houses/, or the file of that path; RunError names file and key."""
-    return load_record(House, name, "houses")
+    return load_record(House, name, find_package("evaluation") / "houses")

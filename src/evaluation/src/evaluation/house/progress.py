@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from evaluation.house.records import Records
-from evaluation.session.status_line import StatusLine
+from run_session.status_line import StatusLine
 
 
 class Progress(StatusLine):

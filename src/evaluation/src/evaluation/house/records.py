@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from evaluation.house.feelers import Gap
 from nav_algorithms.trajectory_error import at_moments
+from trial_worlds.feelers import Gap
 
 TOUCHES = 0.005  # m; what is nearer counts as touched: poses are seen 25 times a second
 LONGEST_GAP = 0.2  # s, simulated, between two true poses that what lies between is known of

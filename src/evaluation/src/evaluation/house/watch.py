@@ -9,23 +9,25 @@ from dataclasses import dataclass
 import numpy as np
 import rospy
 from gazebo_msgs.srv import GetModelState
-from geometry_msgs.msg import Pose, Transform
+from geometry_msgs.msg import PoseWithCovarianceStamped, Transform
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Path as PathMessage
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
-from evaluation.house.feelers import Feelers
 from evaluation.house.records import Records
-from evaluation.session import names
-from evaluation.session.asking import Asker
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import compose
+from run_session import names
+from run_session.asking import Asker
+from run_session.simulator import place_of, pose_message, yaw_of
+from trial_worlds.feelers import Feelers
 
 ROBOT = "turtlebot3"  # its model name, as upstream's launch file spawns it
 MAP, ODOM, BASE = "map", "odom", "base_footprint"
 PLAN = "/move_base/NavfnROS/plan"
 POSE_RATE_HZ = 25.0
+TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ class Watch:
             records = self.records
             reply = self._asker.call(ROBOT, "world")
             if reply is not None and reply.success:
-                now, pose = reply.header.stamp.to_sec(), _pose(reply.pose)
+                now, pose = reply.header.stamp.to_sec(), place_of(reply.pose)
                 records.truth.append((now, *pose))
                 if self.feelers is not None:
                     records.note_gap(self.feelers.gap(np.array(pose)), now)
@@ -114,14 +116,15 @@ class Watch:
                               for pose in message.poses]).reshape(-1, 2)
 
 
-def _pose(pose: Pose) -> tuple[float, float, float]:
-    return (pose.position.x, pose.position.y, _yaw(pose.orientation))
+def told_pose(place: np.ndarray, now: float) -> PoseWithCovarianceStamped:
+    """As rviz's 2D Pose Estimate sends it: x, y, yaw on the map, at a time, s."""
+    message = PoseWithCovarianceStamped()
+    message.header.frame_id, message.header.stamp = MAP, rospy.Time.from_sec(now)
+    message.pose.pose = pose_message(tuple(place.tolist()))
+    message.pose.covariance = [TOLD_VARIANCES.get(k, 0.0) for k in range(36)]
+    return message
 
 
 def _transform(transform: Transform) -> np.ndarray:
     place = transform.translation
-    return np.array([place.x, place.y, _yaw(transform.rotation)])
-
-
-def _yaw(q: object) -> float:
-    return float(np.arctan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
+    return np.array([place.x, place.y, yaw_of(transform.rotation)])

@@ -11,8 +11,8 @@ from lane_keeping.world.timing import ms_a_frame
 from evaluation.lane.chart import write_chart
 from evaluation.lane.results import LaneDrive, lap_table, to_json
 from evaluation.lane.trial import LaneCase, LaneDrives, check_methods, known_methods, lane_case
-from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
+from run_session.failure import RunError
 
 
 class LaneComparison(LaneDrives):

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 CAR = "car"
 

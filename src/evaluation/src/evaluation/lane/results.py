@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
 from evaluation.laps import lap_drive
 from evaluation.laps.disturbance import Disturbance
-from evaluation.laps.lap_drive import HEAD, LapDrive, cells, seen, summary
-from evaluation.trial.table import cell, table
+from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, seen, summary
+from evaluation.trial.table import cell, table, table_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,13 +57,13 @@ def line_of(drive: LaneDrive) -> str:
 
 def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None = None) -> str:
     """A row for each method; figures are of closed laps."""
-    rows = [["method", "laps closed", "within limits", *HEAD, *["ms a frame"] * bool(ms_a_frame)]]
-    for method in dict.fromkeys(drive.method for drive in drives):
-        found = summary([drive for drive in drives if drive.method == method])
-        time = [cell(ms_a_frame.get(method), 1, 1)] if ms_a_frame else []
-        rows.append([method, f"{found.closed} of {found.laps}",
-                     f"{found.within_limits} of {found.laps}", *cells(found), *time])
-    return table(rows)
+    columns = {"method": lambda found: found["method"], "laps closed": COUNTS["closed"],
+               "within limits": COUNTS["within limits"], **FIGURES}
+    if ms_a_frame:
+        columns["ms a frame"] = lambda found: cell(ms_a_frame.get(found["method"]))
+    methods = dict.fromkeys(drive.method for drive in drives)
+    return table_of(columns, [{"method": method, **summary(
+        [drive for drive in drives if drive.method == method])} for method in methods])
 
 
 def encounter_table(drives: Sequence[LaneDrive]) -> str:

@@ -25,10 +25,10 @@ from evaluation.lane.results import (
 )
 from evaluation.laps.disturbance import Bounds, draw
 from evaluation.laps.lap_trial import LapTrial, Outing
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case
+from run_session.failure import RunError
+from run_session.resources import find_package
 
 LAPS_WITH_PEOPLE = 4  # in a row; bringing up a simulator takes as long as a quarter of a lap
 PEOPLE_FROM = 500  # first seed of the drives with people

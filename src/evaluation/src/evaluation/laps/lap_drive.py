@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import statistics
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar
 
 from evaluation.laps.disturbance import Disturbance
-from evaluation.trial.table import cell
+from evaluation.trial.table import cell, mean
 
 CLOSED = "closed"
-HEAD = ("m/s", "least", "RMS cm", "worst", "max cm")  # of `cells`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,36 +52,31 @@ def seen(report: dict, seed: int, disturbance: Disturbance) -> dict:
                 frames_dropped=report["frames_dropped"], disturbance=disturbance)
 
 
-@dataclass(frozen=True)
-class Summary:
-    """Of several drives; figures are of closed ones, None where there are none."""
-
-    laps: int
-    closed: int
-    within_limits: int
-    mean_speed: float | None
-    least_speed: float | None
-    mean_rms_lateral: float | None
-    max_rms_lateral: float | None
-    max_lateral: float | None
-
-
-def summary(drives: Sequence[LapDrive]) -> Summary:
-    """Of these."""
+def summary(drives: Sequence[LapDrive]) -> dict:
+    """Of several; figures are of closed ones, None where there are none."""
     closed = [drive for drive in drives if drive.closed]
     speeds, errors = [each.mean_speed for each in closed], [each.rms_lateral for each in closed]
-    return Summary(
-        len(drives), len(closed), sum(drive.within_limits for drive in drives),
-        statistics.fmean(speeds) if closed else None, min(speeds, default=None),
-        statistics.fmean(errors) if closed else None, max(errors, default=None),
-        max((each.max_lateral for each in closed), default=None))
+    return {
+        "laps": len(drives), "closed": len(closed),
+        "within_limits": sum(drive.within_limits for drive in drives),
+        "mean_speed": mean(speeds), "least_speed": min(speeds, default=None),
+        "mean_rms_lateral": mean(errors), "max_rms_lateral": max(errors, default=None),
+        "max_lateral": max((each.max_lateral for each in closed), default=None),
+    }  # fmt: skip
 
 
-def cells(found: Summary) -> tuple[str, ...]:
-    """A summary's figures in a table's row."""
-    return (cell(found.mean_speed, 1, 2), cell(found.least_speed, 1, 2),
-            cell(found.mean_rms_lateral, 100, 1), cell(found.max_rms_lateral, 100, 1),
-            cell(found.max_lateral, 100, 1))
+def _count(key: str) -> Callable[[dict], str]:
+    return lambda found: f"{found[key]} of {found['laps']}"
+
+
+COUNTS = {"closed": _count("closed"), "within limits": _count("within_limits")}
+FIGURES = {
+    "m/s": lambda found: cell(found["mean_speed"], 1, 2),
+    "least": lambda found: cell(found["least_speed"], 1, 2),
+    "RMS cm": lambda found: cell(found["mean_rms_lateral"], 100),
+    "worst": lambda found: cell(found["max_rms_lateral"], 100),
+    "max cm": lambda found: cell(found["max_lateral"], 100),
+}  # of tables of summaries
 
 
 def to_json(kind: type[LapDrive], name: str, drives: Sequence[LapDrive], **more: object) -> dict:

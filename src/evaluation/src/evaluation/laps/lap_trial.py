@@ -11,8 +11,8 @@ from racecar_description.track.closed_line import load_track
 
 from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
-from evaluation.session.session import Session
 from evaluation.trial.protocol import Case, ReportedTrial
+from run_session.session import Session
 
 # s, wall: the machine may be busy, and must not change a drive
 STARTUP_LIMIT, LAP_LIMIT, ANSWER_LIMIT = 240.0, 1800.0, 20.0

@@ -7,15 +7,18 @@ import sys
 from pathlib import Path
 
 from bullet_sim.formats.resources import Resources
-from evaluation.laps.light import write_lit_world
-from evaluation.session.resources import find_package
-from evaluation.session.session import DriveProcess, Session
+from run_session.resources import find_package
+from run_session.session import DriveProcess, Session
+from trial_worlds.light import write_lit_world
 
 MODEL_PATH = "GAZEBO_MODEL_PATH"
 
 
 def write_world(world: Path, models: Path, light: float, folder: Path) -> Path:
-    """`world` with its light times `light`, below the folder; `models` has the world's own."""
+    """`world` with its light times `light`, below the folder; `models` has the world's own.
+
+    WorldError for a file that is no world.
+    """
     sun = Resources.from_environment().resolve("model://sun")
     return write_lit_world(world, models, sun, light, folder)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -21,6 +21,7 @@ LIMITS_IN_REPORT = {
     "right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
     "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG], "cpu": MOST_CPU,
 }  # fmt: skip
+Row = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,15 @@ class Trial:
         """In time?"""
         return self.took is not None and self.took <= LIMITS[self.set]
 
+    @property
+    def line(self) -> str:
+        """On one line."""
+        found = "not found" if self.took is None else f"found after {self.took:.1f} s"
+        late = "" if self.right or self.took is None else ", too late"
+        end = (", no pose at the end" if self.off is None else
+               f", at the end {self.off * 100:.1f} cm and {self.off_deg:.1f}° off")
+        return f"{self.set} {self.number}: {found}{late}{end}"
+
 
 @dataclass(frozen=True)
 class Tracking:
@@ -64,6 +74,18 @@ class Tracking:
         """Within the limits?"""
         return self.off <= MOST_OFF and self.off_deg <= MOST_OFF_DEG
 
+    @property
+    def line(self) -> str:
+        """On one line."""
+        return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
+
+    @property
+    def row(self) -> Row:
+        """Of the table."""
+        return (f"tracking, {self.time:.0f} s", f"{self.off * 100:.1f} cm, {self.off_deg:.1f}°",
+                f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
+                f"largest {self.largest_off * 100:.1f} cm, {self.largest_off_deg:.1f}°")
+
 
 @dataclass(frozen=True)
 class Load:
@@ -81,36 +103,31 @@ class Load:
         """Within the limit?"""
         return self.percent <= MOST_CPU
 
-
-@dataclass
-class Results:
-    """All of a run, or as much as there was before it ended."""
-
-    trials: list[Trial] = field(default_factory=list)
-    tracking: Tracking | None = None
-    load: Load | None = None
-
-    @classmethod
-    def of_all(cls, results: Sequence[Trial | Tracking | Load]) -> Results:
-        """Sorted by what they are."""
-        found = cls()
-        for each in results:
-            if isinstance(each, Trial):
-                found.trials.append(each)
-            else:
-                setattr(found, each.name, each)
-        return found
-
-    def of(self, kind: str) -> list[Trial]:
-        """The trials of one set."""
-        return [trial for trial in self.trials if trial.set == kind]
+    @property
+    def line(self) -> str:
+        """On one line."""
+        return f"load: {self.percent:.0f} % of a core"
 
     @property
-    def passed(self) -> bool:
-        """Is all that was tried within the limits?"""
-        shares = all(sum(trial.right for trial in self.of(kind)) >= share * len(self.of(kind))
-                     for kind, share in LEAST_SHARES.items())
-        return shares and all(part.passed for part in (self.tracking, self.load) if part)
+    def row(self) -> Row:
+        """Of the table."""
+        return (f"amcl with {self.particles} particles", f"{self.percent:.0f} % of a core",
+                f"{MOST_CPU:.0f} %", f"real time x{self.simulated / self.wall:.2f}")
+
+
+Result = Trial | Tracking | Load
+
+
+def passed(results: Sequence[Result]) -> bool:
+    """Is all that was tried within the limits?"""
+    shares = [sum(each.right for each in found) >= LEAST_SHARES[kind] * len(found)
+              for kind, found in _sets(results).items()]
+    return all(shares) and all(each.passed for each in results if not isinstance(each, Trial))
+
+
+def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
+    trials = [each for each in results if isinstance(each, Trial)]
+    return {kind: [each for each in trials if each.set == kind] for kind in LEAST_SHARES}
 
 
 @dataclass(frozen=True)
@@ -135,7 +152,7 @@ class Tracked:
     errors: np.ndarray  # (N, 2), m and rad
 
 
-def score(record: Search | Tracked | Load) -> Trial | Tracking | Load:
+def score(record: Search | Tracked | Load) -> Result:
     """The result of a record."""
     if isinstance(record, Load):
         return record
@@ -162,38 +179,14 @@ def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     return float(times[first]) if first < len(times) else None
 
 
-def trial_line(trial: Trial | Tracking | Load) -> str:
-    """One on one line."""
-    if isinstance(trial, Tracking):
-        return f"tracking: {trial.off * 100:.1f} cm, {trial.off_deg:.1f}° off in the mean"
-    if isinstance(trial, Load):
-        return f"load: {trial.percent:.0f} % of a core"
-    found = "not found" if trial.took is None else f"found after {trial.took:.1f} s"
-    late = "" if trial.right or trial.took is None else ", too late"
-    end = (", no pose at the end" if trial.off is None else
-           f", at the end {trial.off * 100:.1f} cm and {trial.off_deg:.1f}° off")
-    return f"{trial.set} {trial.number}: {found}{late}{end}"
-
-
-def summary_table(results: Results) -> str:
+def summary_table(results: Sequence[Result]) -> str:
     """A row for each thing that was tried, with its limit."""
     rows = [("", "found", "wanted", "")]
-    for kind, share in LEAST_SHARES.items():
-        trials = results.of(kind)
+    for kind, trials in _sets(results).items():
         if trials:
             took = [trial.took for trial in trials if trial.right]
             median = f"in {np.median(took):.1f} s (median)" if took else ""
-            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s",
-                         f"{sum(trial.right for trial in trials)} of {len(trials)}",
-                         f"{share:.0%}", median))
-    if results.tracking:
-        found = results.tracking
-        rows.append((f"tracking, {found.time:.0f} s",
-                     f"{found.off * 100:.1f} cm, {found.off_deg:.1f}°",
-                     f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
-                     f"largest {found.largest_off * 100:.1f} cm, {found.largest_off_deg:.1f}°"))
-    if results.load:
-        found = results.load
-        rows.append((f"amcl with {found.particles} particles", f"{found.percent:.0f} % of a core",
-                     f"{MOST_CPU:.0f} %", f"real time x{found.simulated / found.wall:.2f}"))
+            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s", f"{len(took)} of {len(trials)}",
+                         f"{LEAST_SHARES[kind]:.0%}", median))
+    rows += [each.row for each in results if not isinstance(each, Trial)]
     return table(rows, left=range(4))

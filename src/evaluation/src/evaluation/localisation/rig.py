@@ -11,30 +11,26 @@ import numpy as np
 import rospy
 from dynamic_reconfigure.msg import Config, IntParameter
 from dynamic_reconfigure.srv import Reconfigure
-from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import (
     GetPhysicsProperties,
-    SetModelState,
     SetPhysicsProperties,
     SetPhysicsPropertiesRequest,
 )
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
-from evaluation.house.watch import MAP, ROBOT, Watch
-from evaluation.session import simulator
-from evaluation.session.cpu import processes
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.simulator import pose_message
+from evaluation.house.watch import ROBOT, Watch, told_pose
+from run_session import simulator
+from run_session.cpu import processes
+from run_session.failure import RunError
+from run_session.launch import Launched
+from trial_worlds.ground import Ground
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall
 FENCE = 0.8  # m ahead of the robot
 TRUE, ENCODER = ("<odometrySource>world<", "<odometrySource>encoder<")
-TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36, as rviz sends them
 
 
 call_service = partial(simulator.call, wait=STILL_LIMIT)
@@ -98,21 +94,14 @@ class Rig:
 
     def put(self, place: np.ndarray) -> None:
         """The robot stands at a pose (3,) in the world; its wheels know nothing of it."""
-        state = ModelState(model_name=ROBOT, pose=pose_message(tuple(place.tolist())),
-                           reference_frame="world")
-        call_service("/gazebo/set_model_state", SetModelState, state)
+        simulator.put(ROBOT, tuple(place.tolist()), STILL_LIMIT)
         self.watch.begin()
         self._wait("the robot in its place", lambda: self.watch.records.truth and np.linalg.norm(
             self.watch.records.true_pose[:2] - place[:2]) < 0.2)
 
     def tell(self, place: np.ndarray) -> None:
         """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
-        message = PoseWithCovarianceStamped()
-        message.header.frame_id = MAP
-        message.header.stamp = rospy.Time.from_sec(self.now)
-        message.pose.pose = pose_message(tuple(place.tolist()))
-        message.pose.covariance = [TOLD_VARIANCES.get(k, 0.0) for k in range(36)]
-        self._told.publish(message)
+        self._told.publish(told_pose(place, self.now))
 
     def forget(self) -> None:
         """The robot may be anywhere."""

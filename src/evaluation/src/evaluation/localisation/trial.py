@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.localisation.results import (
@@ -15,24 +14,23 @@ from evaluation.localisation.results import (
     KIDNAPS,
     LIMITS_IN_REPORT,
     Load,
-    Results,
+    Result,
     Tracking,
     Trial,
+    passed,
     score,
     summary_table,
-    trial_line,
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
-from evaluation.session.failure import RunError
-from evaluation.session.session import Session
 from evaluation.trial import protocol
 from evaluation.trial.command_line import Parser
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
+from run_session.failure import RunError
+from run_session.session import Session
 
 RUNS = {FINDING: find, KIDNAPS: kidnap, "tracking": track, "load": measure_load}
-Result = Trial | Tracking | Load
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class LocalisationTrial(protocol.ReportedTrial):
         if not (options.starts or options.kidnaps or options.tracking or options.load):
             raise RunError("no starts, no kidnaps, no tracking and no load: nothing to try")
         options.house = load_house(options.house)
-        self._options, self._ground = options, Ground(options.house)
+        self._options, self._ground = options, options.house.ground()
 
     def cases(self, options: argparse.Namespace) -> list[LocalisationCase]:
         found = [LocalisationCase(f"{kind}-{number}", kind, number)
@@ -99,23 +97,22 @@ class LocalisationTrial(protocol.ReportedTrial):
         return score(record)
 
     def passed(self, results: Sequence[Result]) -> bool:
-        return Results.of_all(results).passed
+        return passed(results)
 
     def line(self, result: Result) -> str:
-        return trial_line(result)
+        return result.line
 
     def table(self, results: Sequence[Result]) -> str:
-        return summary_table(Results.of_all(results))
+        return summary_table(results)
 
     def values(self, results: Sequence[Result]) -> dict:
-        found = Results.of_all(results)
+        others = {each.name: asdict(each) for each in results if not isinstance(each, Trial)}
         return {
-            "passed": found.passed,
-            "limits": LIMITS_IN_REPORT,
-            "trials": [{**asdict(trial), "right": trial.right} for trial in found.trials],
-            "tracking": asdict(found.tracking) if found.tracking else None,
-            "load": asdict(found.load) if found.load else None,
-        }
+            "passed": passed(results), "limits": LIMITS_IN_REPORT,
+            "trials": [{**asdict(each), "right": each.right} for each in results
+                       if isinstance(each, Trial)],
+            "tracking": others.get("tracking"), "load": others.get("load"),
+        }  # fmt: skip
 
     def from_values(self, values: dict) -> list[Result]:
         found: list[Result] = [

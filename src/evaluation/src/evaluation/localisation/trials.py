@@ -6,7 +6,6 @@ import time
 
 import numpy as np
 
-from evaluation.house.ground import Ground
 from evaluation.house.records import Records
 from evaluation.localisation.results import (
     FINDING,
@@ -20,8 +19,9 @@ from evaluation.localisation.results import (
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.wander import Wander
-from evaluation.session.failure import RunError
 from nav_algorithms.poses import wrap_angle
+from run_session.failure import RunError
+from trial_worlds.ground import Ground
 
 SETTLE = 15.0  # s, simulated, after a pose was told, until it counts
 CARRIED = 2.0  # m, at least, as the crow flies

@@ -9,18 +9,18 @@ import actionlib
 import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, Twist
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from evaluation.house.ground import Ground
-from evaluation.house.watch import MAP, Watch
+from evaluation.house.watch import MAP, Watch, told_pose
 from nav_algorithms.poses import compose, invert, wrap_angle
+from run_session.simulator import pose_message
+from trial_worlds.ground import Ground
 
 LIMIT, LIMIT_FACTOR = 60.0, 5.0  # s, simulated, and times the shortest way at full speed, for a way
 CANCEL_LIMIT = 10.0  # s, simulated, for move_base to give a goal up
 TURN_RATE = 0.6  # rad/s
 STANDING = 0.3  # s, simulated, at a goal before it is looked where that is
-TOLD_COVARIANCE = (0.25, 0.25, (np.pi / 12) ** 2)  # x, y, yaw, as rviz's button sends it
 DONE = (actionlib.CommState.DONE, actionlib.CommState.LOST)
 TIME_IS_UP = "time is up"
 
@@ -92,16 +92,8 @@ class Driver:
 
     def tell_pose(self, pose: np.ndarray) -> None:
         """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
-        message = PoseWithCovarianceStamped()
-        message.header.frame_id = MAP
-        message.header.stamp = rospy.Time.from_sec(self._watch.records.now)
         on_map = compose(invert(self._map_in_world), pose)
-        message.pose.pose.position.x, message.pose.pose.position.y = on_map[:2]
-        message.pose.pose.orientation = _quaternion(on_map[2])
-        covariance = np.zeros((6, 6))
-        covariance[[0, 1, 5], [0, 1, 5]] = TOLD_COVARIANCE
-        message.pose.covariance = covariance.ravel().tolist()
-        self._told.publish(message)
+        self._told.publish(told_pose(on_map, self._watch.records.now))
 
     def turn_round(self, what: str) -> None:
         """Once on the spot, by simulated time."""
@@ -125,10 +117,5 @@ class Driver:
         message = MoveBaseGoal()
         message.target_pose.header.frame_id = MAP
         message.target_pose.header.stamp = rospy.Time.from_sec(self._watch.records.now)
-        message.target_pose.pose.position.x, message.target_pose.pose.position.y = on_map[:2]
-        message.target_pose.pose.orientation = _quaternion(on_map[2])
+        message.target_pose.pose = pose_message(tuple(on_map.tolist()))
         return message
-
-
-def _quaternion(yaw: float) -> Quaternion:
-    return Quaternion(0.0, 0.0, float(np.sin(yaw / 2)), float(np.cos(yaw / 2)))

@@ -12,7 +12,6 @@ from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
 from evaluation.colours import CAR, FLOOR, TEXT, bgr, lap_colour
-from evaluation.house.ground import Ground
 from evaluation.house.records import Records
 from evaluation.house.watch import Watch
 from evaluation.navigation.picture import CLEAR, OCCUPIED_FROM
@@ -21,6 +20,7 @@ from evaluation.plan import Plan
 from evaluation.session.film import FilmFile, fit, side_by_side
 from nav_algorithms.grid import FREE, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
+from trial_worlds.ground import Ground
 
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint

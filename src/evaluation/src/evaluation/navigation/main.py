@@ -9,7 +9,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from evaluation.house.ground import Ground
 from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
@@ -19,13 +18,13 @@ from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.picture import map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import Result
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
 from evaluation.trial.command_line import LARGEST_SEED, Parser
 from evaluation.trial.live import LiveDrive, Outcome
 from evaluation.trial.report import write_json
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
+from run_session.failure import RunError
+from run_session.launch import Launched
 
 
 class NavigationRun(LiveDrive):
@@ -63,7 +62,7 @@ class NavigationRun(LiveDrive):
     def __init__(self, options: argparse.Namespace):
         super().__init__(options, Progress())
         self.result = Result()
-        self._ground = Ground(options.house)
+        self._ground = options.house.ground()
         self._check_way_points()
         self._goals = self._ground.draw_goals(options.goals, options.seed)
         if options.map:

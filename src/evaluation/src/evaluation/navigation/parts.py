@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import rospy
 
-from evaluation.house.ground import Ground
 from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver
@@ -24,12 +23,13 @@ from evaluation.navigation.score import (
     score_mapping,
     seen_of,
 )
-from evaluation.session.cpu import CpuMeter
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.processes import Child
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose, invert, relative, wrap_angle
+from run_session.cpu import CpuMeter
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.processes import Child
+from trial_worlds.ground import Ground
 
 LOOK_PERIOD = 0.05  # s, wall
 END_LIMIT = 30.0  # s, wall, for all nodes of one launch file to end

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from evaluation.colours import CAR, FLOOR, TEXT, lap_colour
-from evaluation.house.ground import Ground
 from evaluation.navigation.score import Result
 from evaluation.picture import legend, map_sheet, pixels
 from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.poses import transform_points
+from trial_worlds.ground import Ground
 
 CLEAR, TRUE_WALL, GOAL = "#363a42", "#3cbe78", "#fac846"
 OCCUPIED_FROM = 50  # percent

@@ -6,15 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from evaluation.house.ground import Ground
 from evaluation.house.records import Contact, Records
-from evaluation.mapping.map_agreement import MapAgreement, map_agreement
-from evaluation.mapping.true_map import visible_walls
 from evaluation.navigation.driver import Way
-from evaluation.session.failure import RunError
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
+from nav_algorithms.map_agreement import MapAgreement, map_agreement
 from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import TrajectoryError, trajectory_error
+from run_session.failure import RunError
+from trial_worlds.ground import Ground
+from trial_worlds.true_map import visible_walls
 
 MOST_ATE = 0.05  # m
 LEAST_AGREEMENT = 0.95  # share

@@ -1,13 +1,11 @@
-"""What became of the laps: one by one, and by follower and set as a table."""
+"""What became of the laps: one by one, and by follower and set."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
-from evaluation.laps import lap_drive
-from evaluation.laps.lap_drive import HEAD, LapDrive, cells, summary
-from evaluation.trial.table import table
+from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, summary
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,33 +26,21 @@ class Lap(LapDrive):
         return f"{self.follower} {self.set} {self.seed}"
 
 
-@dataclass(frozen=True)
-class Summary(lap_drive.Summary):
-    """All laps of one follower on one set."""
-
-    follower: str
-    set: str
-    worst_seed: int  # not closed, else the farthest beside the line in the mean
+COLUMNS = {"follower": lambda each: each["follower"], "laps on": lambda each: each["set"],
+           **COUNTS, **FIGURES, "worst seed": lambda each: str(each["worst_seed"])}
 
 
-def summarize(laps: Sequence[Lap]) -> list[Summary]:
-    """One for each follower and set, in the order in which they were driven."""
+def summarize(laps: Sequence[Lap]) -> list[dict]:
+    """One for each follower and set, in the order in which they were driven.
+
+    `worst_seed`: of a lap that was not closed, else of the farthest beside the line in the mean.
+    """
     groups: dict[tuple[str, str], list[Lap]] = {}
     for lap in laps:
         groups.setdefault((lap.follower, lap.set), []).append(lap)
-    worst = {names: max(group, key=lambda lap: (not lap.closed, lap.rms_lateral)).seed
-             for names, group in groups.items()}
-    return [Summary(**asdict(summary(group)), follower=names[0], set=names[1],
-                    worst_seed=worst[names]) for names, group in groups.items()]
-
-
-def summary_table(summaries: Sequence[Summary]) -> str:
-    """A row each; figures are of closed laps."""
-    rows = [("follower", "laps on", "closed", "within limits", *HEAD, "worst seed")]
-    rows += [(each.follower, each.set, f"{each.closed} of {each.laps}",
-              f"{each.within_limits} of {each.laps}", *cells(each), str(each.worst_seed))
-             for each in summaries]
-    return table(rows, left=(0, 1))
+    return [{**summary(group), "follower": follower, "set": name, "worst_seed": max(
+        group, key=lambda lap: (not lap.closed, lap.rms_lateral)).seed}
+        for (follower, name), group in groups.items()]
 
 
 def lap_line(lap: Lap) -> str:

@@ -5,19 +5,19 @@ from __future__ import annotations
 import argparse
 import itertools
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from evaluation.laps.disturbance import RACE, draw
 from evaluation.laps.lap_drive import from_json, seen, to_json
 from evaluation.laps.lap_trial import LapTrial, Outing
-from evaluation.race_trials.chart import write_chart
-from evaluation.race_trials.path_sheet import write_path_sheet
-from evaluation.race_trials.results import Lap, lap_line, summarize, summary_table
+from evaluation.race_trials.pictures import write_chart, write_path_sheet
+from evaluation.race_trials.results import COLUMNS, Lap, lap_line, summarize
 from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, racetrack, random_track
-from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
+from evaluation.trial.table import table_of
+from run_session.failure import RunError
 
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
@@ -86,10 +86,10 @@ class RaceTrial(LapTrial):
         return lap_line(result)
 
     def table(self, results: Sequence[Lap]) -> str:
-        return summary_table(summarize(results))
+        return table_of(COLUMNS, summarize(results), left=(0, 1))
 
     def values(self, results: Sequence[Lap]) -> dict:
-        return to_json(Lap, "laps", results, summaries=[asdict(s) for s in summarize(results)])
+        return to_json(Lap, "laps", results, summaries=summarize(results))
 
     def from_values(self, values: dict) -> list[Lap]:
         return [from_json(Lap, each) for each in values["laps"]]

@@ -7,8 +7,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
+from run_session.failure import RunError
+from run_session.resources import find_package
 
 PACKAGE = "racecar_description"
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps

@@ -1,1 +1,1 @@
-"""What every run stands on: processes, a ROS master, looking on, the progress line, the film."""
+"""The film of a run, and the files of courses."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from evaluation.session.course_file import Course
+from run_session.course import Course
 
 PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
 PAGE, PID = TRACKERS = ("visual_tracker.py", "visual_tracker_pid.py")

@@ -12,7 +12,6 @@ from ai_robot_tracking.scenes.start import draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
-from evaluation.session.resources import find_package
 from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, TRACKERS, annotated_topic
 from evaluation.tracking.film import TrackFilm
 from evaluation.tracking.picture import write_picture
@@ -22,6 +21,7 @@ from evaluation.trial.car_drive import CarDrive
 from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.trial.live import Outcome
 from evaluation.trial.report import write_json
+from run_session.resources import find_package
 
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
 LONGEST = 120.0      # s, simulated, to reach a cylinder that stands

@@ -5,22 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import statistics
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from ai_robot_tracking.scenes.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.session.session import Session
 from evaluation.tracking.course import PAGE, PID
 from evaluation.tracking.score import FIND_TIME
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial
-from evaluation.trial.table import cell, table
+from evaluation.trial.table import cell, mean, table_of
+from run_session.failure import RunError
+from run_session.resources import find_package
+from run_session.session import Session
 
 LIMIT = 900.0  # s, wall, for one drive
 
@@ -71,28 +70,17 @@ class Drive:
                    for each in self.report["hidden"])
 
 
-@dataclass(frozen=True)
-class Summary:
-    """All drives of a set; m, s."""
-
-    set: str
-    scene: str
-    tracker: str
-    cases: int
-    good: int
-    least_share: float
-    mean_approach: float | None
-    mean_rms_error: float | None
-    max_error: float | None
-    max_error_settled: float | None  # later than a moment after it was near
-    longest_find: float | None
-    least_gap: float | None
-    failed_seeds: list[int]
-
-    @property
-    def passed(self) -> bool:
-        """Whether enough of its cases were good."""
-        return self.good >= self.least_share * self.cases
+COLUMNS = {
+    "set": lambda each: each["set"], "scene": lambda each: each["scene"],
+    "tracker": lambda each: each["tracker"],
+    "good": lambda each: f"{each['good']} of {each['cases']}",
+    "near after s": lambda each: cell(each["mean_approach"]),
+    "RMS cm": lambda each: cell(each["mean_rms_error"], 100),
+    "most cm": lambda each: cell(each["max_error"], 100),
+    "settled cm": lambda each: cell(each["max_error_settled"], 100),
+    "found by s": lambda each: cell(each["longest_find"]),
+    "seeds not good": lambda each: ", ".join(map(str, each["failed_seeds"])) or "-",
+}  # fmt: skip
 
 
 class TrackTrial(Trial):
@@ -143,7 +131,7 @@ class TrackTrial(Trial):
         return Drive(self._case.name, self._case.set, record)
 
     def passed(self, results: Sequence[Drive]) -> bool:
-        return all(each.passed for each in summarize(results))
+        return all(each["passed"] for each in summarize(results))
 
     def line(self, result: Drive) -> str:
         report = result.report
@@ -154,52 +142,37 @@ class TrackTrial(Trial):
                 f" beside{hidden}, real time x{report['real_time_factor'] or 0:.2f}")
 
     def table(self, results: Sequence[Drive]) -> str:
-        return summary_table(summarize(results))
+        return table_of(COLUMNS, summarize(results), left=range(10))
 
     def values(self, results: Sequence[Drive]) -> dict:
-        return {"summaries": [{**asdict(each), "passed": each.passed}
-                              for each in summarize(results)]}
+        return {"summaries": summarize(results)}
 
 
-def summarize(drives: Sequence[Drive]) -> list[Summary]:
-    """One for each set there is, in the sets' order."""
+def summarize(drives: Sequence[Drive]) -> list[dict]:
+    """One for each set there is, in the sets' order; m, s, None where there is no figure."""
     groups = {name: [drive for drive in drives if drive.set == name] for name in SETS}
     return [_summary(SETS[name], group) for name, group in groups.items() if group]
 
 
-def _summary(kind: Set, drives: list[Drive]) -> Summary:
+def _summary(kind: Set, drives: list[Drive]) -> dict:
     reports = [drive.report for drive in drives]
 
-    def known(key: str) -> list[float]:
+    def known(key: str, reports: Sequence[dict] = reports) -> list[float]:
         return [report[key] for report in reports if report[key] is not None]
 
-    found = [each["found_after_s"] for report in reports for each in report["hidden"]
-             if each["found_after_s"] is not None]
-    return Summary(
-        kind.name, kind.scene, kind.tracker, kind.cases * len(drives),
-        sum(drive.good for drive in drives), kind.least_share,
-        _mean(known("approach_s")), _mean(known("rms_error_m")),
-        max(known("max_error_m"), default=None),
-        max(known("max_error_settled_m"), default=None), max(found, default=None),
-        min(known("least_gap_m"), default=None),
-        [drive.report["seed"] for drive in drives if drive.good < kind.cases],
-    )  # fmt: skip
-
-
-def summary_table(summaries: Sequence[Summary]) -> str:
-    """A row each."""
-    rows = [("set", "scene", "tracker", "good", "near after s", "RMS cm", "most cm", "settled cm",
-             "found by s", "seeds not good")]
-    rows += [(each.set, each.scene, each.tracker, f"{each.good} of {each.cases}",
-              cell(each.mean_approach), cell(each.mean_rms_error, 100),
-              cell(each.max_error, 100), cell(each.max_error_settled, 100),
-              cell(each.longest_find),
-              ", ".join(map(str, each.failed_seeds)) or "-") for each in summaries]
-    return table(rows, left=range(10))
-
-
-def _mean(values: list[float]) -> float | None:
-    return statistics.fmean(values) if values else None
+    finds = [each for report in reports for each in report["hidden"]]
+    cases, good = kind.cases * len(drives), sum(drive.good for drive in drives)
+    return {
+        "set": kind.name, "scene": kind.scene, "tracker": kind.tracker, "cases": cases,
+        "good": good, "least_share": kind.least_share,
+        "mean_approach": mean(known("approach_s")), "mean_rms_error": mean(known("rms_error_m")),
+        "max_error": max(known("max_error_m"), default=None),
+        "max_error_settled": max(known("max_error_settled_m"), default=None),
+        "longest_find": max(known("found_after_s", finds), default=None),
+        "least_gap": min(known("least_gap_m"), default=None),
+        "failed_seeds": [drive.report["seed"] for drive in drives if drive.good < kind.cases],
+        "passed": good >= kind.least_share * cases,
+    }  # fmt: skip
 
 
 def _read(path: Path) -> dict:

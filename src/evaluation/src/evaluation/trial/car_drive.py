@@ -8,13 +8,13 @@ from abc import abstractmethod
 from collections.abc import Sequence
 
 from evaluation.lap import LapScorer, Sample, fingerprint
-from evaluation.session.course_file import Course
-from evaluation.session.failure import RunError
-from evaluation.session.fingerprints import Fingerprints
-from evaluation.session.frames import frame_figures
-from evaluation.session.launch import Launched
-from evaluation.session.observer import Observer
 from evaluation.trial.live import LiveDrive, Outcome
+from run_session.course import Course
+from run_session.failure import RunError
+from run_session.fingerprints import Fingerprints
+from run_session.frames import frame_figures
+from run_session.launch import Launched
+from run_session.observer import Observer
 
 LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
 
@@ -82,7 +82,8 @@ class CarDrive(LiveDrive):
         """Score what came in the last LOOK_PERIOD; what came after the end does not count."""
         arrivals = self._observer.samples(LOOK_PERIOD)
         samples: list[Sample] = self.drive.samples
-        for arrived, sample in arrivals:
+        for arrived, seen in arrivals:
+            sample = Sample(*seen)
             if samples and self.is_over:
                 break
             if not samples:

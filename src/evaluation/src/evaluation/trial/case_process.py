@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.session.session import Session
 from evaluation.trial.program import PASSED, run_program
 from evaluation.trial.protocol import Case, Trial, try_case
+from run_session.session import Session
 
 ORDER, RESULT, OUT = "case", "result", "out"
 

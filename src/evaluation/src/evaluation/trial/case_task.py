@@ -15,10 +15,10 @@ from pathlib import Path
 
 from dask.distributed import Status, Worker, get_worker
 
-from evaluation.session.failure import RunError
-from evaluation.session.launch import describe_exit
-from evaluation.session.processes import end_with_parent, read_log
 from evaluation.trial.case_process import ORDER, OUT, RESULT
+from run_session.failure import RunError
+from run_session.launch import describe_exit
+from run_session.processes import end_with_parent, read_log
 
 LOOK_PERIOD = 0.5  # s, wall, between two looks at whether the case is still wanted
 END_TIME = 10.0  # s, wall, for a case that is not; its session takes 3 s at most

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 MOST = 999_999          # of what is counted or seeds something
 LARGEST_SEED = 999_999_999

@@ -9,16 +9,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from evaluation.session.failure import RunError
 from evaluation.session.film import FilmFile
-from evaluation.session.interruption import interruptible
-from evaluation.session.launch import Launched
-from evaluation.session.processes import read_log
-from evaluation.session.session import Session
-from evaluation.session.status_line import StatusLine
-from evaluation.session.versions import versions
 from evaluation.trial.command_line import Parser
 from evaluation.trial.program import NOT_PASSED, PASSED, run_program
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from run_session.launch import Launched
+from run_session.processes import read_log
+from run_session.session import Session
+from run_session.status_line import StatusLine
+from run_session.versions import versions
 
 Outcome = tuple[str, str]  # a word, and why
 # s, wall; an emulated ARM processor takes minutes to start, and seconds for its first picture

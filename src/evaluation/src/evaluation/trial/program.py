@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from racecar_description.track.errors import TrackError
 
-from evaluation.session.failure import RunError
-from evaluation.session.interruption import interruptible
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from trial_worlds.errors import WorldError
 
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
@@ -22,7 +23,7 @@ def run_program(name: str, work: Callable[[], int]) -> int:
         complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
                                 "or give one with --out"))
         return NOT_RUN
-    except (RunError, TrackError, OSError) as failure:
+    except (RunError, TrackError, WorldError, OSError) as failure:
         complain(name, failure)
         return NOT_RUN
     except KeyboardInterrupt:

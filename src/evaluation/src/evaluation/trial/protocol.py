@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from evaluation.session.failure import RunError
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
+from run_session.failure import RunError
+from run_session.session import Session
 
 REPORT = "report.json"
 MOST_WORKERS = 1000

@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from evaluation.session.failure import RunError
-from evaluation.session.session import Session
-from evaluation.session.status_line import StatusLine
 from evaluation.trial.program import NOT_PASSED, PASSED, complain, run_program
 from evaluation.trial.protocol import REPORT, Case, Trial, try_case
 from evaluation.trial.report import write_json, write_page
+from run_session.failure import RunError
+from run_session.session import Session
+from run_session.status_line import StatusLine
 
 
 def run_trial(trial: Trial, arguments: Sequence[str]) -> int:

@@ -1,8 +1,10 @@
-"""Tables for the terminal."""
+"""Tables for the terminal, and the figures in them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import statistics
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 
 def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
@@ -14,6 +16,18 @@ def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
         for row in rows)
 
 
+def table_of(columns: Mapping[str, Callable[[Any], str]], found: Iterable[Any],
+             left: Collection[int] = (0,)) -> str:
+    """A row for each thing that was found; `columns` has headings and what makes the cells."""
+    return table([list(columns), *([make(each) for make in columns.values()] for each in found)],
+                 left)
+
+
 def cell(value: float | None, factor: float = 1, digits: int = 1) -> str:
     """A figure times `factor`, with so many decimals; a dash where there is none."""
     return "-" if value is None else f"{value * factor:.{digits}f}"
+
+
+def mean(values: Sequence[float]) -> float | None:
+    """None of nothing."""
+    return statistics.fmean(values) if values else None

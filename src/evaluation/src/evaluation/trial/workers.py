@@ -21,10 +21,10 @@ import dask
 from dask.distributed import Client, Future, LocalCluster, as_completed
 from distributed.client import ClosedClientError
 
-from evaluation.session.failure import RunError
 from evaluation.trial.case_process import Order
 from evaluation.trial.case_task import CaseError, run_case
 from evaluation.trial.protocol import Case, Trial
+from run_session.failure import RunError
 
 RETRIES = 1  # of a case that could not be run; workers that die with it are counted by Dask
 CONNECT_TIME = 10.0  # s, wall

@@ -8,16 +8,17 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evaluation.session.failure import RunError
-from evaluation.session.simulator import Place
-from evaluation.yards import crossing, results
-from evaluation.yards.crossing import APPROACH, ROBOT_SPEED, Crossing
+from evaluation.yards import results
 from evaluation.yards.judge import WALKED_INTO, Judge, Sample
 from evaluation.yards.results import Drive
 from evaluation.yards.rig import PERSON as PERSON_MODEL
 from evaluation.yards.rig import Rig
-from evaluation.yards.sdf import person_model, room_model, yard_model
-from evaluation.yards.yard import RADIUS, Yard
+from run_session.failure import RunError
+from run_session.simulator import Place
+from trial_worlds import crossing
+from trial_worlds.crossing import APPROACH, ROBOT_SPEED, Crossing
+from trial_worlds.models import person_model, room_model, yard_model
+from trial_worlds.yard import RADIUS, Yard
 
 LOOK_PERIOD = 0.05  # s, wall
 SILENCE = 30.0      # s, wall

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evaluation.session.simulator import Place
-from evaluation.yards.clearance import CONTACT, clearance
-from evaluation.yards.crossing import PERSON_RADIUS
+from run_session.simulator import Place
+from trial_worlds.clearance import CONTACT, clearance
+from trial_worlds.crossing import PERSON_RADIUS
 
 STANDING = 0.02   # m/s
 PATH_STEP = 0.02  # m between two points that are kept

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import statistics
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from evaluation.trial.table import cell, table
+from evaluation.trial.table import cell, mean
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
@@ -54,48 +54,44 @@ class Drive:
         return f"{self.set}-{self.seed}-{self.repeat}"
 
 
-@dataclass(frozen=True)
-class Summary:
-    """Of all drives of a set; means of those that reached the goal, None where none did."""
-
-    set: str
-    drives: int
-    outcomes: dict[str, int]
-    share_reached: float
-    mean_time: float | None
-    mean_straight_time: float | None
-    mean_time_by_straight: float | None
-    mean_time_by_shortest: float | None
-    mean_score: float
-    least_to_obstacles: float | None
-    least_to_person: float | None
-    drives_with_recovery: int
-    failed: list[str]
+COLUMNS = {
+    "drives": lambda each: each["set"],
+    "reached": lambda each: f"{each['outcomes'].get(REACHED, 0)} of {each['drives']}",
+    "": lambda each: f"{each['share_reached']:.0%}",
+    "s": lambda each: cell(each["mean_time"]),
+    "straight s": lambda each: cell(each["mean_straight_time"]),
+    "ratio": lambda each: cell(each["mean_time_by_straight"], 1, 2),
+    "BARN": lambda each: cell(each["mean_score"], 1, 3),
+    "air cm": lambda each: cell(each["least_to_obstacles"], 100),
+    "to person cm": lambda each: cell(each["least_to_person"], 100),
+    "with recovery": lambda each: str(each["drives_with_recovery"]),
+}  # fmt: skip
 
 
-def summarize(drives: Sequence[Drive]) -> list[Summary]:
-    """One for each set there is."""
+def summarize(drives: Sequence[Drive]) -> list[dict]:
+    """One for each set; means are of drives that reached the goal, None where none did."""
     sets = dict.fromkeys(drive.set for drive in drives)
     return [_summary(name, [drive for drive in drives if drive.set == name]) for name in sets]
 
 
-def _summary(name: str, drives: list[Drive]) -> Summary:
+def _summary(name: str, drives: list[Drive]) -> dict:
     there = [drive for drive in drives if drive.reached]
-    counted = dict.fromkeys(sorted(drive.outcome for drive in drives), 0)
-    for drive in drives:
-        counted[drive.outcome] += 1
-    return Summary(
-        name, len(drives), counted, len(there) / len(drives),
-        _mean([drive.time for drive in there]),
-        _mean([drive.straight_time for drive in there]),
-        _mean([drive.time / drive.straight_time for drive in there]),
-        _mean([drive.time / drive.shortest_time for drive in there]),
-        statistics.fmean(drive.score for drive in drives),
-        min((d.to_obstacles for d in there if d.to_obstacles is not None), default=None),
-        min((d.to_person for d in there if d.to_person is not None), default=None),
-        sum(bool(drive.recoveries) for drive in drives),
-        [drive.name for drive in drives if not drive.reached],
-    )  # fmt: skip
+    return {
+        "set": name, "drives": len(drives),
+        "outcomes": dict(Counter(sorted(drive.outcome for drive in drives))),
+        "share_reached": len(there) / len(drives),
+        "mean_time": mean([drive.time for drive in there]),
+        "mean_straight_time": mean([drive.straight_time for drive in there]),
+        "mean_time_by_straight": mean([drive.time / drive.straight_time for drive in there]),
+        "mean_time_by_shortest": mean([drive.time / drive.shortest_time for drive in there]),
+        "mean_score": mean([drive.score for drive in drives]),
+        "least_to_obstacles": min(
+            (d.to_obstacles for d in there if d.to_obstacles is not None), default=None),
+        "least_to_person": min(
+            (d.to_person for d in there if d.to_person is not None), default=None),
+        "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
+        "failed": [drive.name for drive in drives if not drive.reached],
+    }  # fmt: skip
 
 
 def passed(drives: Sequence[Drive]) -> bool:
@@ -108,23 +104,6 @@ def passed(drives: Sequence[Drive]) -> bool:
                         for name in (YARDS, CROSSINGS)))
 
 
-def summary_table(summaries: Sequence[Summary]) -> str:
-    """A row each."""
-    rows = [("drives", "reached", "", "s", "straight s", "ratio", "BARN", "air cm", "to person cm",
-             "with recovery")]  # fmt: skip
-    rows += [
-        (
-            each.set, f"{each.outcomes.get(REACHED, 0)} of {each.drives}",
-            f"{each.share_reached:.0%}", cell(each.mean_time, 1, 1),
-            cell(each.mean_straight_time, 1, 1), cell(each.mean_time_by_straight, 1, 2),
-            cell(each.mean_score, 1, 3), cell(each.least_to_obstacles, 100, 1),
-            cell(each.least_to_person, 100, 1), str(each.drives_with_recovery),
-        )
-        for each in summaries
-    ]  # fmt: skip
-    return table(rows, left=())
-
-
 def drive_line(drive: Drive) -> str:
     """One drive on one line."""
     why = f" ({drive.why})" if drive.why else ""
@@ -133,7 +112,3 @@ def drive_line(drive: Drive) -> str:
     return (f"{drive.name}: {drive.outcome}{why}, {drive.time:.1f} s (straight"
             f" {drive.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
             f" real time x{drive.real_time_factor:.2f}")
-
-
-def _mean(values: list[float]) -> float | None:
-    return statistics.fmean(values) if values else None

@@ -13,16 +13,16 @@ from pathlib import Path
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from gazebo_msgs.msg import ModelState, ModelStates
-from gazebo_msgs.srv import DeleteModel, SetModelState, SpawnModel
+from gazebo_msgs.msg import ModelStates
+from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
 
-from evaluation.session.launch import Launched
-from evaluation.session.simulator import WAFFLE, Place, call, models, place_of, pose_message
 from evaluation.yards.judge import Sample
-from evaluation.yards.sdf import PERSON_TOPIC
+from run_session.launch import Launched
+from run_session.simulator import WAFFLE, Place, call, models, place_of, pose_message, put
+from trial_worlds.models import PERSON_TOPIC
 
 START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
 FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 10 Hz
@@ -66,8 +66,7 @@ class Rig:
         for name in sorted(self._there):
             call_service("/gazebo/delete_model", DeleteModel, name)
             self._there.discard(name)
-        state = ModelState(model_name=WAFFLE, pose=pose_message(start), reference_frame="world")
-        call_service("/gazebo/set_model_state", SetModelState, state)
+        put(WAFFLE, start, ANSWER_LIMIT)
         for name, (text, place) in models.items():
             call_service("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
                        "world")

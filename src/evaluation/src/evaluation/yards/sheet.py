@@ -10,9 +10,9 @@ import numpy as np
 
 from evaluation.colours import CAR, FAINT, GOOD, lap_colour
 from evaluation.picture import write_tiles
-from evaluation.yards.crossing import APPROACH, PERSON_RADIUS, Crossing
 from evaluation.yards.results import CROSSINGS, YARDS, Drive
-from evaluation.yards.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
+from trial_worlds.crossing import APPROACH, PERSON_RADIUS, Crossing
+from trial_worlds.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
 
 YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
 ROOM = (-0.2, 5.2, *YARD[2:])

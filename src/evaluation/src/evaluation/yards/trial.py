@@ -9,15 +9,13 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.resources import find_package
-from evaluation.session.session import Session
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, ReportedTrial
+from evaluation.trial.table import table_of
 from evaluation.yards.chart import write_chart
-from evaluation.yards.crossing import draw_crossing
 from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
 from evaluation.yards.results import (
+    COLUMNS,
     CROSSINGS,
     LEAST_SHARE,
     YARDS,
@@ -25,12 +23,15 @@ from evaluation.yards.results import (
     drive_line,
     passed,
     summarize,
-    summary_table,
 )
 from evaluation.yards.rig import Rig
-from evaluation.yards.sdf import world, yard_model
 from evaluation.yards.sheet import write_sheets
-from evaluation.yards.yard import draw_yard
+from run_session.failure import RunError
+from run_session.resources import find_package
+from run_session.session import Session
+from trial_worlds.crossing import draw_crossing
+from trial_worlds.models import world, yard_model
+from trial_worlds.yard import draw_yard
 
 PARAMETERS = Path("config") / "yard.yaml"
 
@@ -112,13 +113,13 @@ class YardTrial(ReportedTrial):
         return drive_line(result)
 
     def table(self, results: Sequence[Drive]) -> str:
-        return summary_table(summarize(results))
+        return table_of(COLUMNS, summarize(results), left=())
 
     def values(self, results: Sequence[Drive]) -> dict:
         return {
             "least_share_of_yards": LEAST_SHARE,
             "passed": passed(results),
-            "summaries": [asdict(each) for each in summarize(results)],
+            "summaries": summarize(results),
             "drives": [{**asdict(drive), "score": drive.score} for drive in results],
         }
 

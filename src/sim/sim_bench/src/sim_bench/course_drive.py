@@ -7,9 +7,9 @@ from pathlib import Path
 
 import rospkg
 
-from evaluation.session import simulator
-from evaluation.session.failure import RunError
-from evaluation.session.processes import Child
+from run_session import simulator
+from run_session.failure import RunError
+from run_session.processes import Child
 from sim_bench.probes.follower import CLOCK, FRAME
 from sim_bench.ros_run import START_LIMIT, RosRun, read_lines
 

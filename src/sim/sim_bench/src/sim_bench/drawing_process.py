@@ -16,7 +16,7 @@ from bullet_sim.physics.quiet import STDOUT
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 from sim_bench.course import Course
 from sim_bench.pybullet_drawing import PybulletDrawing
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import psutil
 
-from evaluation.session import cpu
-from evaluation.session.versions import versions
+from run_session import cpu
+from run_session.versions import versions
 
 
 def describe() -> dict:

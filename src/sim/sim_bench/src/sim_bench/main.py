@@ -7,8 +7,8 @@ import importlib
 import os
 import time
 
-from evaluation.session.failure import RunError
 from evaluation.trial.program import NOT_RUN, PASSED, complain, run_program
+from run_session.failure import RunError
 from sim_bench import machine
 from sim_bench.acceptance import judge
 from sim_bench.chart import write_chart

@@ -7,7 +7,7 @@ import sys
 
 import rospkg
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 from sim_bench.ros_run import ros_run
 from sim_bench.settings import Settings
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.session.failure import RunError
 from evaluation.trial.command_line import Parser
+from run_session.failure import RunError
 
 PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
          "learning", "memory")

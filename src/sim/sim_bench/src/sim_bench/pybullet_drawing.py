@@ -20,7 +20,7 @@ from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.projection import projection_matrix, view_matrix
 from bullet_sim.rendering.scene import Node, Scene
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 PLUGIN_MODULE, PLUGIN_SUFFIX = "eglRenderer", "_eglRendererPlugin"
 # m: a plane lies so much lower than the next smaller one, or the two would flicker.

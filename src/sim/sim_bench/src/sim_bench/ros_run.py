@@ -14,9 +14,9 @@ from pathlib import Path
 
 import rosgraph
 
-from evaluation.session.failure import RunError
-from evaluation.session.launch import describe_exit
-from evaluation.session.processes import Child, Family
+from run_session.failure import RunError
+from run_session.launch import describe_exit
+from run_session.processes import Child, Family
 from sim_bench.settings import Settings
 
 POLL = 0.02  # s, wall

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import time
 
-from evaluation.session import simulator
-from evaluation.session.processes import Child
+from run_session import simulator
+from run_session.processes import Child
 from sim_bench.course_drive import (
     COMMANDS,
     Follower,

@@ -22,7 +22,7 @@ import numpy as np
 
 from bullet_sim.physics.quiet import STDOUT
 from bullet_sim.world import World
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 from sim_bench.course import Course, drive_of
 from sim_bench.drawing_process import OURS, PLUGIN, TINY
 from sim_bench.figures import Figure, figure, ratio

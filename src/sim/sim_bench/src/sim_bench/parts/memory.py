@@ -13,8 +13,8 @@ import statistics
 import time
 from collections.abc import Sequence
 
-from evaluation.session import simulator
-from evaluation.session.cpu import memory
+from run_session import simulator
+from run_session.cpu import memory
 from sim_bench.course_drive import (
     SIMULATOR,
     Follower,

@@ -11,7 +11,7 @@ import statistics
 
 import numpy as np
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 from sim_bench import analytic
 from sim_bench.course import Course
 from sim_bench.drawing_process import OURS, PLUGIN, TINY, DrawingProcess, Task

@@ -12,7 +12,7 @@ from pathlib import Path
 import rospkg
 
 from bullet_sim.formats.xacro.files import expand
-from evaluation.session import simulator
+from run_session import simulator
 from sim_bench.figures import Figure, figure
 from sim_bench.parts.growth import grid
 from sim_bench.ros_run import START_LIMIT, RosRun, read_lines, ros_run

@@ -15,8 +15,8 @@ import os
 import statistics
 import time
 
-from evaluation.session import simulator
-from evaluation.session.cpu import CpuMeter
+from run_session import simulator
+from run_session.cpu import CpuMeter
 from sim_bench.course_drive import (
     FOLLOWER,
     SIMULATOR,

@@ -17,7 +17,7 @@ from functools import partial
 
 from bullet_sim.model import Model
 from bullet_sim.physics.quiet import pybullet
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 from sim_bench.course import Course, drive_of
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.settings import Settings

@@ -17,7 +17,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
-from evaluation.session.failure import RunError
+from trial_worlds.errors import WorldError
 
 SPACING = 0.01  # m, from ray to ray along a side; no table leg slips between two
 INSIDE = 0.02   # m behind the surface, where rays begin: contacts give way a little
@@ -39,7 +39,7 @@ class Feelers:
     """Rays about the shapes of a robot that stands upright on the ground."""
 
     def __init__(self, world: World, urdf: str):
-        """Raises RunError for text that is no robot."""
+        """Raises WorldError for text that is no robot."""
         self._world = world
         starts, ways, self._names = [], [], []
         for name, collision, link in _collisions(urdf):
@@ -69,11 +69,11 @@ def _collisions(urdf: str) -> list[tuple[str, Collision, Pose]]:
     try:
         model = load_model(urdf, resources)
     except SimulationError as error:
-        raise RunError(f"parameter robot_description: {error}") from error
+        raise WorldError(f"parameter robot_description: {error}") from error
     found = [(each.name, each, link.pose) for link in model.links for each in link.collisions
              if isinstance(each.geometry, Box | Cylinder | Sphere)]
     if not found:
-        raise RunError("parameter robot_description: no box, cylinder or sphere to feel with")
+        raise WorldError("parameter robot_description: no box, cylinder or sphere to feel with")
     return found
 
 

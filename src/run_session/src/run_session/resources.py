@@ -11,7 +11,7 @@ from typing import Any
 import rospkg
 import yaml
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 
 def find_package(name: str) -> Path:
@@ -28,15 +28,15 @@ def located(text: str) -> Path:
     return find_package(package) / rest if text.startswith("package://") else Path(text)
 
 
-def load_record(kind: type, name: str, folder: str) -> Any:
-    """One of `kind`, a dataclass: record `name` of this package's folder, or the file of that path.
+def load_record(kind: type, name: str, folder: Path) -> Any:
+    """One of `kind`, a dataclass: NAME.yaml of a folder, or the file of that path.
 
     Fields have one of the types in RULES. RunError names file and key.
     """
-    there = find_package("evaluation") / folder
-    path = Path(name) if name.endswith(".yaml") else there / f"{name}.yaml"
+    path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
     if not name.endswith(".yaml") and not path.exists():
-        known, what = ", ".join(sorted(found.stem for found in there.glob("*.yaml"))), folder[:-1]
+        known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
+        what = folder.name[:-1]
         raise RunError(f"no {what} {name!r} (--{what}); there are: {known}")
     values = read_keys(path, [field.name for field in fields(kind)])
     for field in fields(kind):

@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 import cv2
 import numpy as np
 
-from evaluation.session.failure import RunError
+from trial_worlds.errors import WorldError
 
 MODEL = "model://"
 
@@ -25,13 +25,15 @@ def write_lit_world(world: Path, models: Path, sun: Path, factor: float, folder:
 
     `models` is where the world's own models are: copies of them with brighter textures go to
     FOLDER/models if the factor is above 1. `sun` is the folder of the model that lights the world.
+    Raises WorldError for a file that is no world.
     """
     folder.mkdir(parents=True, exist_ok=True)
     try:
         tree = ElementTree.parse(world)
         light = ElementTree.parse(sun / "model.sdf").getroot().find("light")
     except (OSError, ElementTree.ParseError) as error:
-        raise RunError(f"{world}: no world in which the light could be changed: {error}") from error
+        raise WorldError(
+            f"{world}: no world in which the light could be changed: {error}") from error
     scale_light(tree.getroot(), light, factor)
     shutil.rmtree(folder / "models", ignore_errors=True)
     if factor > 1:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evaluation.mapping.neighbours import widened
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.likelihood_field import distances
 from nav_algorithms.poses import invert, transform_points
 
 
@@ -56,7 +56,7 @@ def _are_near(grid: OccupancyGrid, which: np.ndarray, other: OccupancyGrid, want
     cells = other.cells_of(transform_points(grid_in_other, grid.centres_of(chosen)))
     inside = other.contains(cells)
     near = np.zeros(which.shape, bool)
-    hit = widened(wanted)[tuple(cells[inside].T)]
+    hit = (distances(wanted.astype(np.uint8)) < 1.5)[tuple(cells[inside].T)]  # cells, or beside
     near[tuple(chosen[inside][hit].T)] = True
     return near
 

@@ -1,15 +1,19 @@
-"""trials.png: RMS and speed of every lap, followers side by side, with the limits."""
+"""trials.png: RMS and speed of every lap, with the limits; paths_FOLLOWER.png: all its paths."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
-from evaluation.picture import chart
+import cv2
+
+from evaluation.picture import chart, write_tiles
 from evaluation.race_trials.results import Lap
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"
+TILE = (4.4, 3.6)  # inches, of a path
 
 # Label, its value, the limit, which side of it is good.
 ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
@@ -44,3 +48,19 @@ def _draw(axes: object, laps: Sequence[Lap], value: Callable[[Lap], float]) -> N
                           marker, color=COLOURS[number % len(COLOURS)], label=f"{follower}{how}")
     axes.set_xticks(range(len(seeds)), [str(seed) for seed in seeds])
     axes.margins(y=0.1)
+
+
+def write_path_sheet(laps: Sequence[Lap], out: Path) -> Path:
+    """Write OUT/paths_<follower>.png with a tile for each of the follower's laps."""
+    path = out / f"paths_{Path(laps[0].follower).stem}.png"
+    write_tiles(path, laps, partial(_draw_path, out), TILE)
+    return path
+
+
+def _draw_path(out: Path, axes: object, lap: Lap) -> tuple[str, bool]:
+    """The lap's path, and how it went."""
+    picture = cv2.imread(str(out / lap.folder / "path.png"), cv2.IMREAD_REDUCED_COLOR_2)
+    if picture is not None:
+        axes.imshow(picture[..., ::-1])
+    figures = f"{lap.mean_speed:.2f} m/s, RMS {lap.rms_lateral * 100:.1f} cm"
+    return f"{lap.track}, seed {lap.seed}: {lap.outcome}, {figures}", lap.within_limits

@@ -9,10 +9,10 @@ import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.launch import Launched
-from evaluation.session.processes import Child, Family
-from evaluation.session.status_line import StatusLine
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.processes import Child, Family
+from run_session.status_line import StatusLine
 
 DRIVEN = (0, 1)  # exit codes of a program that drove
 

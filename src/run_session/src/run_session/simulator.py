@@ -9,11 +9,12 @@ import math
 
 import rosgraph
 import rospy
-from gazebo_msgs.srv import DeleteModel, GetWorldProperties, SpawnModel
-from geometry_msgs.msg import Pose
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import DeleteModel, GetWorldProperties, SetModelState, SpawnModel
+from geometry_msgs.msg import Pose, Quaternion
 from std_srvs.srv import Empty
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 WAFFLE = "turtlebot3_waffle"
 Place = tuple[float, float, float]  # x, y, m; yaw, rad
@@ -91,7 +92,16 @@ def pose_message(place: Place) -> Pose:
 
 def place_of(pose: Pose) -> Place:
     """x, y and yaw of a pose that is upright, or nearly so."""
-    turn = pose.orientation
-    yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
-                     1 - 2 * (turn.y * turn.y + turn.z * turn.z))
-    return pose.position.x, pose.position.y, yaw
+    return pose.position.x, pose.position.y, yaw_of(pose.orientation)
+
+
+def yaw_of(turn: Quaternion) -> float:
+    """rad, of what is upright, or nearly so."""
+    return math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
+                      1 - 2 * (turn.y * turn.y + turn.z * turn.z))
+
+
+def put(name: str, place: Place, wait: float) -> None:
+    """Have a model stand at a place; `wait` as in `call`."""
+    state = ModelState(model_name=name, pose=pose_message(place), reference_frame="world")
+    call("/gazebo/set_model_state", SetModelState, state, wait=wait)

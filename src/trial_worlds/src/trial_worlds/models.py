@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from evaluation.yards.crossing import PERSON_HEIGHT, PERSON_RADIUS, ROOM
-from evaluation.yards.yard import RADIUS, Yard
+from trial_worlds.crossing import PERSON_HEIGHT, PERSON_RADIUS, ROOM
+from trial_worlds.yard import RADIUS, Yard
 
 HEIGHT, THICKNESS = 0.5, 0.1  # m, of cylinders and walls
 PERSON_TOPIC = "person/cmd_vel"

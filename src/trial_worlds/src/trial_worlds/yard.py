@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evaluation.yards.difficulty import Difficulty, difficulty
-from evaluation.yards.field import blocked, grow, shortest_path
+from trial_worlds.difficulty import Difficulty, difficulty
+from trial_worlds.field import blocked, grow, shortest_path
 
 SCALE = 0.306 / 0.430
 CELL = 0.15 * SCALE     # m

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.world import World
-from evaluation.house.feelers import Feelers
-from evaluation.house.house_file import House
-from evaluation.mapping.neighbours import reached
-from evaluation.mapping.true_map import open_walls, true_map
-from evaluation.session.failure import RunError
 from nav_algorithms.costmap.costs import FREE, INSCRIBED, Costmap
 from nav_algorithms.global_planning import navfn
-from nav_algorithms.grid import OCCUPIED, OccupancyGrid
+from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.likelihood_field import distances
 from nav_algorithms.poses import wrap_angle
+from trial_worlds.errors import WorldError
+from trial_worlds.feelers import Feelers
+from trial_worlds.true_map import open_walls, reached, true_map
 
 MOST_DRAWS = 10_000  # of a place for one goal
 
@@ -23,14 +22,22 @@ MOST_DRAWS = 10_000  # of a place for one goal
 class Ground:
     """True walls of a house, read from its world file; all poses in the world's frame."""
 
-    def __init__(self, house: House):
-        self._house = house
-        self._world = _open(house)
-        self.walls = _true_walls(self._world, house)
+    def __init__(self, world: Path, start: tuple[float, float, float], laser_height: float,
+                 passable: float, goal_clearance: float, goal_distance: float):
+        """Lengths in m, `passable` and `goal_clearance` from a wall, `goal_distance` from goal to
+        goal, all at least; WorldError for a file that is no world with walls about `start`.
+        """
+        self._start = start
+        self._goal_clearance, self._goal_distance = goal_clearance, goal_distance
+        try:
+            self._world = open_walls(world)
+            self.walls = true_map(self._world, laser_height, [start[:2]])
+        except (SimulationError, OSError, ValueError) as error:
+            raise WorldError(f"{world}: {error}") from error
         self._clearance = distances(
             (self.walls.cells == OCCUPIED).astype(np.uint8)) * self.walls.resolution
-        start = self.walls.cells_of(np.array([house.start[:2]]))
-        self._within = reached(self._clearance < house.passable, start)
+        start = self.walls.cells_of(np.array([start[:2]]))
+        self._within = reached(self._clearance < passable, start)
         self._costs = Costmap(np.where(self._within, FREE, INSCRIBED).astype(np.uint8),
                               self.walls.resolution, self.walls.origin)
 
@@ -44,14 +51,14 @@ class Ground:
         return bool(self.walls.contains(cell) and self._within[tuple(cell)])
 
     def draw_goals(self, count: int, seed: int) -> np.ndarray:
-        """Poses (count, 3), evenly over where there is room; RunError where there is too little.
+        """Poses (count, 3), evenly over where there is room; WorldError where there is too little.
 
         The first goals of a longer list are those of a shorter one.
         """
         generator = np.random.default_rng(seed)
-        cells = np.argwhere(self._within & (self._clearance >= self._house.goal_clearance))
+        cells = np.argwhere(self._within & (self._clearance >= self._goal_clearance))
         goals: list[np.ndarray] = []
-        before = np.array(self._house.start)
+        before = np.array(self._start)
         while len(goals) < count:
             before = self._draw_goal(generator, cells, before)
             goals.append(before)
@@ -70,21 +77,7 @@ class Ground:
         for _ in range(MOST_DRAWS if len(cells) else 0):
             place = self.walls.centres_of(cells[generator.integers(len(cells))])
             yaw = wrap_angle(generator.uniform(-np.pi, np.pi))
-            if np.linalg.norm(place - before[:2]) >= self._house.goal_distance:
+            if np.linalg.norm(place - before[:2]) >= self._goal_distance:
                 return np.array([*place, yaw])
-        raise RunError(f"no room for a goal {self._house.goal_clearance:g} m from all walls and "
-                       f"{self._house.goal_distance:g} m from the last: change the house file")
-
-
-def _open(house: House) -> World:
-    try:
-        return open_walls(house.world_path)
-    except (SimulationError, OSError) as error:
-        raise RunError(f"{house.world_path}: {error}") from error
-
-
-def _true_walls(world: World, house: House) -> OccupancyGrid:
-    try:
-        return true_map(world, house.laser_height, [house.start[:2]])
-    except ValueError as error:
-        raise RunError(f"{house.world_path}: {error}") from error
+        raise WorldError(f"no room for a goal {self._goal_clearance:g} m from all walls and "
+                       f"{self._goal_distance:g} m from the last: change the house file")

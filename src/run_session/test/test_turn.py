@@ -2,8 +2,8 @@
 
 import pytest
 
-from evaluation.session.failure import RunError
-from evaluation.session.turn import take_turn
+from run_session.failure import RunError
+from run_session.turn import take_turn
 
 
 def test_a_turn_is_waited_for_no_longer_than_the_limit(tmp_path):

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import rospkg
+from scipy import ndimage
 
 from bullet_sim.formats import Resources, load_world
 from bullet_sim.world import World
-from evaluation.mapping.neighbours import reached, widened
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.rays import cast
 
@@ -62,8 +62,20 @@ def true_map(world: World, height: float, inside: Sequence[tuple[float, float]],
         if not grid.contains(cell) or surface[tuple(cell)]:
             raise ValueError(f"{point} is in a wall, or outside all of them")
     free = reached(surface, starts)
-    found = np.where(free, FREE, np.where(surface & widened(free), OCCUPIED, UNKNOWN))
+    beside = ndimage.binary_dilation(free, np.ones((3, 3), bool))
+    found = np.where(free, FREE, np.where(surface & beside, OCCUPIED, UNKNOWN))
     return replace(grid, cells=found.astype(np.int8))
+
+
+def reached(closed: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Bool (rows, columns): what hangs together with `starts` (N, 2), row and column.
+
+    From cell to cell over a common side, never into one that is `closed`, bool (rows, columns).
+    """
+    parts, _ = ndimage.label(~closed)
+    inside = starts[((starts >= 0) & (starts < closed.shape)).all(axis=1)]
+    numbers = parts[tuple(inside.T)]
+    return np.isin(parts, numbers[numbers > 0])
 
 
 def visible_walls(grid: OccupancyGrid, poses: np.ndarray, angles: np.ndarray,

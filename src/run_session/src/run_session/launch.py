@@ -13,9 +13,9 @@ import xmlrpc.client
 from collections.abc import Callable
 from pathlib import Path
 
-from evaluation.session.failure import RunError
-from evaluation.session.processes import INTERRUPT_TIME, Child, Family
-from evaluation.session.turn import take_turn
+from run_session.failure import RunError
+from run_session.processes import INTERRUPT_TIME, Child, Family
+from run_session.turn import take_turn
 
 USUAL_PORT = 11311
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20

@@ -6,7 +6,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from evaluation.session.connections import _links_of
+from run_session.connections import _links_of
 
 
 @pytest.mark.parametrize(("answer", "links"), [

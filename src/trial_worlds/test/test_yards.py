@@ -13,10 +13,9 @@ from bullet_sim.formats import Resources, load_model
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
-from evaluation.mapping.true_map import open_walls
-from evaluation.yards import field, sdf, yard
-from evaluation.yards.clearance import clearance
-from evaluation.yards.crossing import (
+from trial_worlds import field, models, yard
+from trial_worlds.clearance import clearance
+from trial_worlds.crossing import (
     AHEAD,
     APPROACH,
     PERSON_RADIUS,
@@ -25,7 +24,8 @@ from evaluation.yards.crossing import (
     ROOM,
     draw_crossing,
 )
-from evaluation.yards.difficulty import difficulty
+from trial_worlds.difficulty import difficulty
+from trial_worlds.true_map import open_walls
 
 
 def cells(*rows: str) -> np.ndarray:
@@ -125,7 +125,7 @@ def test_the_world_file_has_its_cylinders_where_they_stand(tmp_path):
     found = yard.draw_yard(3)
     path = tmp_path / "worlds" / "yard_3.world"
     path.parent.mkdir()
-    path.write_text(sdf.world(sdf.yard_model(found)))
+    path.write_text(models.world(models.yard_model(found)))
     x, y = yard.places(found.path)[len(found.path) // 2]
     angles = np.arange(0, 2 * np.pi, 0.1)
     ways = np.stack((np.cos(angles), np.sin(angles)), axis=1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import os
 import queue
 import threading
@@ -20,13 +19,14 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo
 from std_srvs.srv import Empty
 
-from evaluation.lap import Sample
-from evaluation.session import names
-from evaluation.session.asking import Asker
-from evaluation.session.connections import Connections, look_up
-from evaluation.session.course_file import Course
-from evaluation.session.frames import FrameCount
+from run_session import names
+from run_session.asking import Asker
+from run_session.connections import Connections, look_up
+from run_session.course import Course
+from run_session.frames import FrameCount
+from run_session.simulator import place_of
 
+Seen = tuple[float, float, float, float]  # s, simulated; x, y, m; yaw, rad, in the world
 SAMPLE_RATE_HZ = 25.0
 SETUP_RATE_HZ = 5.0
 LAST_IMAGE_TIME, LAST_COMMAND_TIME = 1.0, 0.1  # s, wall, to wait for them
@@ -48,7 +48,7 @@ class Observer:
         self._course, self._listened = course, tuple(listened)
         os.environ["ROS_MASTER_URI"] = master_uri
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
-        self._samples: queue.SimpleQueue[tuple[float, Sample]] = queue.SimpleQueue()
+        self._samples: queue.SimpleQueue[tuple[float, Seen]] = queue.SimpleQueue()
         self._ended = threading.Event()
         self._asker = Asker(self._ended)
         self.missing = f"the simulator (service {names.WORLD})"
@@ -68,7 +68,7 @@ class Observer:
         """Look no more; does not wait for an answer that may never come."""
         self._ended.set()
 
-    def samples(self, wait: float) -> list[tuple[float, Sample]]:
+    def samples(self, wait: float) -> list[tuple[float, Seen]]:
         """All samples since the last call and within this time (s, wall), each with its arrival.
 
         Arrivals are s of time.monotonic().
@@ -153,7 +153,7 @@ class Observer:
         self._put(message.header.stamp, message.pose.pose)
 
     def _put(self, stamp: rospy.Time, pose: Pose) -> None:
-        self._samples.put((time.monotonic(), _to_sample(stamp, pose)))
+        self._samples.put((time.monotonic(), (stamp.to_sec(), *place_of(pose))))
 
 
 def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | None:
@@ -202,9 +202,3 @@ def _wait_for(condition: Callable[[], bool], limit: float) -> None:
     until = time.monotonic() + limit
     while not condition() and time.monotonic() < until:
         time.sleep(0.005)
-
-
-def _to_sample(stamp: rospy.Time, pose: Pose) -> Sample:
-    q = pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Sample(stamp.to_sec(), pose.position.x, pose.position.y, yaw)

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import IO
 
-from evaluation.session.failure import RunError
+from run_session.failure import RunError
 
 LIMIT = 300.0  # s, wall; as long as a roscore may take
 PERIOD = 0.05  # s, wall, between two looks

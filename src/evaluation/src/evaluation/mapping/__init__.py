@@ -1,1 +1,0 @@
-"""Maps and paths of navigation against the truth that the simulator knows."""

@@ -1,0 +1,1 @@
+"""What every watched run stands on: processes, a ROS master, the simulator, true poses."""

@@ -1,0 +1,66 @@
+"""What is driven: launch file, robot, topics and track."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from run_session.resources import find_package, located
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course file, key by key."""
+
+    launch: tuple[str, str]  # package and launch file, which has an argument `follower`
+    follower_package: str
+    followers: str  # files among which those that drive are, with * for any text: below the
+    # package's folder, or python://PACKAGE/... for modules
+    follower: str  # the script that drives unless another is asked for
+    drives_by: str  # a word that stands in files that drive
+    robot: str  # model name in the simulator; {VARIABLE:default} is taken from the environment
+    robot_argument: str  # launch argument that replaces the variable
+    track: str  # path, or package://PACKAGE/PATH
+    off_course: float  # m beside the line
+    out: str  # where results go
+    camera: str
+    camera_info: str
+    commands: str  # geometry_msgs/Twist, one for each image
+    odometry: str  # nav_msgs/Odometry, true poses
+    controllers: str  # namespace of the controller manager that takes the lockstep topics, or ""
+    lockstep: tuple[str, ...]  # topics that the world waits for after each image
+    sensors: tuple[str, ...]  # topics that go into the fingerprint
+    film_band: float  # share of the image's height where the film marks the line; 0: nowhere
+
+    def robot_name(self, launch_args: tuple[str, ...]) -> str:
+        """The model's name, as the launch file with these arguments (name:=value) spawns it."""
+        given = [arg.split(":=", 1) for arg in launch_args]
+        asked = [value for name, value in given if self.robot_argument and
+                 name == self.robot_argument]
+
+        def fill(found: re.Match) -> str:
+            return asked[-1] if asked else os.environ.get(found[1]) or found[2]
+
+        return re.sub(r"\{(\w+):(\w+)\}", fill, self.robot)
+
+    def controller_names(self) -> set[str]:
+        """Those that must have been started before time begins."""
+        within = f"{self.controllers}/"
+        return {topic.removeprefix(within).partition("/")[0] for topic in self.lockstep
+                if self.controllers and topic.startswith(within)}
+
+    def follower_files(self) -> list[Path]:
+        """All files that `followers` fits."""
+        package, _, rest = self.followers.removeprefix("python://").partition("/")
+        if not self.followers.startswith("python://"):
+            return list(find_package(self.follower_package).glob(self.followers))
+        folders = importlib.import_module(package).__path__
+        return [path for folder in folders for path in Path(folder).glob(rest)]
+
+    def track_path(self) -> Path:
+        """Where the track file is."""
+        return located(self.track)
+

@@ -1,0 +1,6 @@
+"""Installs the package through catkin."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["trial_worlds"], package_dir={"": "src"}))

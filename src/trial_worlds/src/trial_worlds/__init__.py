@@ -1,0 +1,1 @@
+"""Worlds that trials drive in: made, lit, mapped, and how near a robot is to them."""
