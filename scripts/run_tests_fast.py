@@ -1,7 +1,8 @@
 """Which tests `make test FAST=1` runs: those of what has changed since main, without processes.
 
-First the changed test files, then those that look at all of the code, then the others of the
-packages in which anything has changed (for what is in no package: those of test/), then the core's.
+First the changed test files and those that look at all of the code, then the others of each package
+in which anything has changed (for what is in no package: those of test/), then the core's. Each
+of these is one run of pytest, since to collect all tests takes longer than there is time.
 """
 
 from __future__ import annotations
@@ -15,22 +16,23 @@ from run_tests_processes import ROOT
 ALWAYS = ("test_arrows.py", "test_docstrings.py")  # in test/
 CORE = ("src/sim/bullet_sim/test", "src/navigation/nav_algorithms/test")
 MAIN = ("origin/main", "main")
-BEGIN_WITHIN = 65.0  # s; tests that have not begun by then are skipped, as conftest.py says
+BEGIN_WITHIN = 60.0  # s; tests that have not begun by then are skipped, as conftest.py says
 UNTIL = "TESTS_BEGIN_UNTIL"  # environment variable: s since 1970
 
 
-def fast_files(apart: Iterable[Path]) -> list[Path]:
-    """The files, in the order in which they run; none that is `apart`."""
+def fast_groups(apart: Iterable[Path]) -> list[list[Path]]:
+    """The files in the order in which they run, grouped by run; none that is `apart`."""
     return choose(changed_files(), set(apart))
 
 
-def choose(changed: list[Path], apart: set[Path]) -> list[Path]:
+def choose(changed: list[Path], apart: set[Path]) -> list[list[Path]]:
     """The same for these changed files."""
     homes = [*sorted({_home(path) for path in changed}), *(ROOT / name for name in CORE)]
-    others = [path for home in homes for path in sorted(home.rglob("test_*.py"))]
-    files = [*(path for path in changed if path in others),
-             *(ROOT / "test" / name for name in ALWAYS), *others]
-    return [path for path in dict.fromkeys(files) if path not in apart]
+    tests = {home: sorted({*home.rglob("test_*.py")} - apart) for home in homes}
+    first = [path for path in changed if path in tests[_home(path)]]
+    first = list(dict.fromkeys([*first, *(ROOT / "test" / name for name in ALWAYS)]))
+    groups = [first, *([path for path in files if path not in first] for files in tests.values())]
+    return [group for group in groups if group]
 
 
 def changed_files() -> list[Path]:

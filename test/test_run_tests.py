@@ -126,11 +126,13 @@ def test_fast_takes_changed_tests_first_and_no_file_with_processes(runner):
     apart = set(runner.files_that_say(runner.PROCESSES, "test_*.py"))
     changed = [package / "test/test_map_files.py", package / "src/map_server/errors.py",
                ROOT / "Makefile"]
-    files = fast.choose(changed, apart)
     always = [ROOT / "test/test_arrows.py", ROOT / "test/test_docstrings.py"]
     core = [ROOT / "src/sim/bullet_sim", ROOT / "src/navigation/nav_algorithms"]
-    assert files[:3] == [changed[0], *always]
-    assert list(dict.fromkeys(path.parents[1] for path in files[3:])) == [package, ROOT, *core]
+    first, *groups = fast.choose(changed, apart)
+    assert first == [changed[0], *always]
+    assert [{path.parents[1] for path in group} for group in groups] == [
+        {home} for home in (package, ROOT, *core)]
+    files = sum(groups, first)
     assert len(set(files)) == len(files) and not apart & set(files)
     unchanged = fast.choose([], apart)
-    assert unchanged[:2] == always and {path.parents[1] for path in unchanged[2:]} == set(core)
+    assert unchanged == [always, *groups[2:]]
