@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE / "src" / "evaluation"
 SHARED = {"session", "trial", "laps", "house"}  # what trials stand on
 TRIALS = {"course_run", "race_trials", "avoid", "lane", "tracking", "navigation", "localisation",
-          "yards"}
+          "yards", "autorace"}
 
 
 def imports(path: Path) -> set[str]:

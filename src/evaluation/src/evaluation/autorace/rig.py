@@ -17,7 +17,7 @@ from run_session.launch import Launched
 
 ROBOT = "autorace"
 START_LIMIT, SILENCE = 240.0, 60.0  # s, wall
-LOOK_PERIOD = 0.1  # s, wall
+LOOK_PERIOD = 0.3  # s, wall
 STATE_HZ = 10.0
 SHOWN = ("traffic_light_", "traffic_bar_")
 

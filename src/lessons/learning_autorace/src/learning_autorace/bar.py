@@ -9,7 +9,7 @@ import numpy as np
 
 from learning_autorace.calibration import Calibration, to_pixel
 
-RED = (0, 150, 30), (6, 255, 255)  # hue 0..180, saturation, value, from, to; it may lie in shade
+RED = (0, 150, 16), (6, 255, 255)  # hue 0..180, saturation, value, from, to; it may lie in shade
 LONG = 0.12  # m, the bar's red piece
 LYING = 1.8  # at least so much wider than high
 STOP = 0.35  # m from the camera
