@@ -164,7 +164,7 @@ def test_a_thousand_places_and_no_more_populations_after_them(load, caplog):
     began = time.process_time()
     assert len(load(crowd * 5).models) == 1000
     assert time.process_time() - began < 5.0  # 20 norms for each pair of places took a minute
-    assert "<population>s of more than 1000 models; the rest is left out" in caplog.text
+    assert "<population>s of over 1000 models; the rest is left out" in caplog.text
 
 
 # --- roads

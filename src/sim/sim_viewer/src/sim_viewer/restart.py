@@ -43,8 +43,7 @@ def restart(options: Options, port: int) -> None:
 def parameter_words(options: Options) -> list[str]:
     """The options as words of a command line, `_port:=8080`; all but the token."""
     values = {**asdict(options), "hosts": ",".join(options.hosts)}
-    del values["token"]
-    return [f"_{name}:={json.dumps(value)}" for name, value in values.items()]
+    return [f"_{name}:={json.dumps(value)}" for name, value in values.items() if name != "token"]
 
 
 def _run_id() -> str | None:

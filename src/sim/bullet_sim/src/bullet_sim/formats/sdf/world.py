@@ -142,8 +142,7 @@ def read_entities(element: Element, source: Source) -> Entities:
     copies = 0
     for child in element:
         if child.tag == "population" and copies >= MOST_MODELS:
-            source.warn_once(f"<population>s of more than {MOST_MODELS} models; the rest is left"
-                             " out", "populations")
+            source.warn_once(f"<population>s of over {MOST_MODELS} models; the rest is left out")
             continue
         read = or_without(_read, child, source) or ()
         copies += len(read) if child.tag == "population" else 0
