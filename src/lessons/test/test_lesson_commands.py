@@ -67,4 +67,5 @@ def test_a_terminal_stays_for_what_a_command_leaves_behind(tmp_path):
 
 @pytest.mark.parametrize("scenario", CASES)
 def test_commands(scenario, tmp_path):
-    assert scenarios.run(scenario, tmp_path) is None
+    problem = scenarios.run(scenario, tmp_path)
+    assert not problem, problem

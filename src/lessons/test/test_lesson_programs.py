@@ -26,4 +26,5 @@ def test_every_program_is_started():
 
 @pytest.mark.parametrize("scenario", CASES)
 def test_program(scenario, tmp_path):
-    assert scenarios.run(scenario, tmp_path) is None
+    problem = scenarios.run(scenario, tmp_path)
+    assert not problem, problem
