@@ -9,9 +9,10 @@ def main():
     # log_level: debug lines are shown too.  显示 debug 日志
     # disable_signals: Ctrl-C is KeyboardInterrupt, as in plain Python.  Ctrl-C 交给 Python 处理
     rospy.init_node("init", anonymous=True, log_level=rospy.DEBUG, disable_signals=True)
-    rospy.logdebug("my name is %s", rospy.get_name())
     try:
-        rospy.spin()
+        rospy.logdebug("my name is %s", rospy.get_name())
+        while not rospy.is_shutdown():  # spin() would keep the interrupt  spin() 会自己处理
+            rospy.sleep(0.1)
     except KeyboardInterrupt:
         print("Ctrl-C came as KeyboardInterrupt")
 

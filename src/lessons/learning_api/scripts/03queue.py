@@ -4,7 +4,7 @@
 import rospy
 from std_msgs.msg import Int32
 
-SLOW = 0.5  # s that a message takes
+SLOW = 0.3  # s that a message takes
 
 
 def number_callback(message):
@@ -19,7 +19,7 @@ def main():
     publisher = rospy.Publisher("number", Int32, queue_size=100)
     while publisher.get_num_connections() == 0:  # a message before that is lost  否则会丢
         rospy.sleep(0.01)
-    for number in range(10):  # ten a second, five times too many  发得太快
+    for number in range(10):  # ten a second, three times too many  发得太快
         publisher.publish(number)
         rospy.sleep(0.1)
     rospy.sleep(SLOW * (size + 1))

@@ -1,0 +1,30 @@
+"""The lessons' C++ programs: each shows what lesson_commands.yaml expects of its script."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.processes
+HERE = Path(__file__).resolve().parent
+_spec = importlib.util.spec_from_file_location("scenarios", HERE / "scenarios.py")
+scenarios = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(scenarios)
+CASES = [pytest.param(scenario, id=f"{package}: {scenario['name']}")
+         for package, listed in scenarios.twins().items() for scenario in listed]
+
+
+def test_every_program_is_started():
+    source = HERE.parents[1]
+    programs = {path.stem for folder in ("learning_topic", "lessons/learning_*")
+                for path in source.glob(f"{folder}/src/*.cpp")} - {"describe", "use_library"}
+    typed = " ".join(step["type"] for listed in scenarios.twins().values() for scenario in listed
+                     for step in scenario["terminals"]).split()
+    launched = {"multi_tf_sub", "generate_new", "demo04_pub", "demo04_sub"}  # by cpp:=true
+    assert programs - set(typed) == launched
+
+
+@pytest.mark.parametrize("scenario", CASES)
+def test_program(scenario, tmp_path):
+    problem = scenarios.run(scenario, tmp_path)
+    assert not problem, problem
