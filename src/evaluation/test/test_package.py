@@ -10,7 +10,8 @@ import rospkg
 PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE / "src" / "evaluation"
 SHARED = {"session", "trial", "laps", "house", "mapping"}  # what trials stand on
-TRIALS = {"course_run", "race_trials", "lane", "tracking", "navigation", "localisation", "yards"}
+TRIALS = {"autorace", "course_run", "race_trials", "lane", "tracking", "navigation", "localisation",
+          "yards"}
 
 
 def imports(path: Path) -> set[str]:
