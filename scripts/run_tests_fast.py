@@ -1,6 +1,6 @@
 """Which tests `make test FAST=1` runs: those of what has changed since main, without processes.
 
-First the changed test files and those that look at all of the code, then the others of each package
+First those that look at all of the code and the changed test files, then the others of each package
 in which anything has changed (for what is in no package: those of test/), then the core's. Each
 of these is one run of pytest, since to collect all tests takes longer than there is time.
 """
@@ -29,8 +29,8 @@ def choose(changed: list[Path], apart: set[Path]) -> list[list[Path]]:
     """The same for these changed files."""
     homes = [*sorted({_home(path) for path in changed}), *(ROOT / name for name in CORE)]
     tests = {home: sorted({*home.rglob("test_*.py")} - apart) for home in homes}
-    first = [path for path in changed if path in tests[_home(path)]]
-    first = list(dict.fromkeys([*first, *(ROOT / "test" / name for name in ALWAYS)]))
+    first = [ROOT / "test" / name for name in ALWAYS]
+    first += [path for path in changed if path in tests[_home(path)] and path not in first]
     groups = [first, *([path for path in files if path not in first] for files in tests.values())]
     return [group for group in groups if group]
 

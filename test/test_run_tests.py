@@ -120,7 +120,7 @@ def test_style_and_many_failures_are_no_accident(runner, monkeypatch):
     assert not run
 
 
-def test_fast_takes_changed_tests_first_and_no_file_with_processes(runner):
+def test_fast_takes_changed_tests_early_and_no_file_with_processes(runner):
     import run_tests_fast as fast
     package = ROOT / "src/navigation/map_server"
     apart = set(runner.files_that_say(runner.PROCESSES, "test_*.py"))
@@ -129,7 +129,7 @@ def test_fast_takes_changed_tests_first_and_no_file_with_processes(runner):
     always = [ROOT / "test/test_arrows.py", ROOT / "test/test_docstrings.py"]
     core = [ROOT / "src/sim/bullet_sim", ROOT / "src/navigation/nav_algorithms"]
     first, *groups = fast.choose(changed, apart)
-    assert first == [changed[0], *always]
+    assert first == [*always, changed[0]]
     assert [{path.parents[1] for path in group} for group in groups] == [
         {home} for home in (package, ROOT, *core)]
     files = sum(groups, first)
