@@ -1,6 +1,8 @@
 """The film of a drive: one picture a period of simulated time, whatever the pace and the gaps."""
 
+import os
 import signal
+import threading
 from pathlib import Path
 
 import cv2
@@ -77,3 +79,16 @@ def test_an_encoder_that_hangs_holds_nothing_up_and_leaves_no_broken_film(tmp_pa
     assert film.close() == "ffmpeg took no picture for 0.2 s"
     assert encoder.poll() is not None
     assert not film.codec and not (tmp_path / "run.mp4").exists()
+
+
+def test_a_ctrl_c_while_a_picture_waits_for_the_encoder_ends_that(tmp_path):
+    film = FilmFile(tmp_path / "run.mp4")
+    film._add(PAGE)
+    encoder = film._writer._process
+    encoder.send_signal(signal.SIGSTOP)
+    before = signal.signal(signal.SIGUSR1, signal.default_int_handler)  # shells may ignore SIGINT
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+    with film._lock, pytest.raises(KeyboardInterrupt):  # as the thread that adds a picture does
+        film.close()
+    signal.signal(signal.SIGUSR1, before)
+    assert encoder.poll() is not None

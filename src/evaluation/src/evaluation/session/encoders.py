@@ -69,11 +69,15 @@ class FfmpegEncoder:
         except subprocess.TimeoutExpired:
             self._fault = self._fault or f"ffmpeg did not end within {FINISH_TIME:g} s"
         finally:
-            self._process.kill()
-            self._process.wait()
+            self.kill()
         if self._process.returncode:
             self._fault = self._fault or self._reason()
         return self._fault
+
+    def kill(self) -> None:
+        """End it at once, also while another thread writes."""
+        self._process.kill()
+        self._process.wait()
 
     def _reason(self) -> str:
         """Its first words, which name the cause."""
@@ -99,3 +103,6 @@ class OpenCvEncoder:
         self._writer.release()
         whole = cv2.VideoCapture(str(self._path)).isOpened()
         return "" if whole else "OpenCV could not write it: is the disk full?"
+
+    def kill(self) -> None:
+        """There is no process that could go on."""

@@ -58,6 +58,8 @@ class FilmFile:
                 fault = self._writer.close() if self._writer is not None else ""
         finally:
             if fault:
+                if self._writer is not None:
+                    self._writer.kill()
                 self.codec = ""
                 self._path.unlink(missing_ok=True)
         return fault
