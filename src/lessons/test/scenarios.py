@@ -13,6 +13,9 @@ HERE = Path(__file__).resolve().parent
 LESSONS = HERE.parent
 SCENARIOS = yaml.safe_load((HERE / "lesson_commands.yaml").read_text(encoding="utf-8"))
 ELSEWHERE = SCENARIOS.pop("tested elsewhere")
+# Packages whose scenarios start the simulator: tested in a file of their own, beside the others.
+SIMULATED = {"ai_robot_tracking", "lane_keeping", "learning_autorace", "learning_laser", "nav_demo",
+             "urdf02_gazebo"}
 PROGRAM = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")
 LAUNCHED = re.compile(r"\broslaunch (learning_\w+) (\w+\.launch)")
 

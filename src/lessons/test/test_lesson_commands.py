@@ -20,7 +20,8 @@ _spec = importlib.util.spec_from_file_location("scenarios", HERE / "scenarios.py
 scenarios = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(scenarios)
 CASES = [pytest.param(scenario, id=f"{package}: {scenario['name']}")
-         for package, listed in scenarios.SCENARIOS.items() for scenario in listed]
+         for package, listed in scenarios.SCENARIOS.items() for scenario in listed
+         if package not in scenarios.SIMULATED]
 
 
 def commands_in(readme: Path) -> set[str]:

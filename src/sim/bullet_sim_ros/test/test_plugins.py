@@ -13,6 +13,8 @@ from bullet_sim.description import (
 )
 from bullet_sim.world import World
 from bullet_sim_ros.errors import PluginError
+from bullet_sim_ros.lockstep import Lockstep
+from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.plugin_host import registry
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
@@ -69,7 +71,8 @@ def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
     scheduler = Scheduler(world)
-    return load_plugins(SharedByPlugins(world, None, scheduler, None, None), model), scheduler
+    shared = SharedByPlugins(world, None, scheduler, None, Lockstep("", 0.0, Mailbox()))
+    return load_plugins(shared, model), scheduler
 
 
 def test_an_unknown_plugin_is_one_warning_that_names_it_and_its_model(world, caplog):
