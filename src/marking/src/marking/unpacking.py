@@ -75,6 +75,7 @@ def _unpack(source: Path, folder: Path) -> None:
         else:
             with tarfile.open(source) as opened:
                 _write(_tar_members(opened), folder)
+    # zipfile says NotImplementedError of a compression and RuntimeError of a password.
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError,
             NotImplementedError, RuntimeError, OSError, ValueError) as error:
         raise UnpackError(f"cannot be unpacked: {error}") from error
