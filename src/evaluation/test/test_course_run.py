@@ -20,7 +20,8 @@ from evaluation.trial.program import NOT_RUN
 
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
-FAKE = ("--launch", "evaluation", "fake_course.launch")
+FILMED = ("--launch", "evaluation", "fake_course.launch")
+FAKE = (*FILMED, "--no-video")
 END_TIME = 3.0  # s that Ctrl-C may take while nobody else wants the processors
 LIMIT = 60.0  # s for anything else
 
@@ -111,7 +112,7 @@ def start(tmp_path) -> Iterator[Callable[..., Run]]:
 
 
 def test_closed_laps_are_reported_and_drawn(start):
-    run = start(*FAKE, "--laps", "2", "--launch-arg", "factor:=15")
+    run = start(*FILMED, "--laps", "2", "--launch-arg", "factor:=15")
     assert run.wait() == 0, run.output
     report = json.loads((run.out / "report.json").read_text())
     assert report["outcome"] == "closed" and report["laps_closed"] == 2
@@ -131,7 +132,7 @@ def test_runs_that_begin_together_have_masters_of_their_own(tmp_path):
     runs = []
     for number in range(3):
         (tmp_path / str(number)).mkdir()
-        runs.append(Run(tmp_path / str(number) / "course", *FAKE, "--duration", "2", "--no-video"))
+        runs.append(Run(tmp_path / str(number) / "course", *FAKE, "--duration", "2"))
     try:
         assert [run.wait() for run in runs] == [1, 1, 1]  # no lap yet
         for run in runs:
@@ -143,7 +144,7 @@ def test_runs_that_begin_together_have_masters_of_their_own(tmp_path):
 
 
 def test_the_report_shows_followers_side_by_side(start):
-    slow = ("--duration", "3", "--no-video")
+    slow = ("--duration", "3")
     assert start(*FAKE, *slow, "--follower", "05follower_proporation.py").wait() == 1
     run = start(*FAKE, *slow, "--follower", "06follower_pid.py")
     assert run.wait() == 1
@@ -165,14 +166,14 @@ def report_of(run: Run) -> dict:
 def test_fast_runs_are_equal_to_the_last_figure(start):
     reports = []
     for _ in range(2):
-        run = start(*FAKE, "--fast", "--duration", "30", "--seed", "2")
+        run = start(*FILMED, "--fast", "--duration", "30", "--seed", "2")
         assert run.wait() == 1, run.output
         reports.append(report_of(run))
     assert reports[0] == reports[1]
     assert reports[0]["frames_sent"] == 902 and reports[0]["frames_dropped"] == 0
     assert reports[0]["fast"] and reports[0]["seed"] == 2
     assert len(reports[0]["drive_sha256"]) == 64
-    run = start(*FAKE, "--fast", "--duration", "30", "--seed", "3", "--no-video")
+    run = start(*FAKE, "--fast", "--duration", "30", "--seed", "3")
     assert run.wait() == 1, run.output
     assert report_of(run)["drive_sha256"] != reports[0]["drive_sha256"]
 
@@ -215,7 +216,7 @@ def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
     hanging.write_text("#!/bin/sh\nexec sleep 1000\n")
     hanging.chmod(0o755)
     monkeypatch.setenv("PATH", str(hanging.parent), prepend=os.pathsep)
-    run = start(*FAKE)
+    run = start(*FILMED)
     run.wait_for_driving()
     run.process.send_signal(signal.SIGINT)
     wait_until((run.out / "report.json").exists, LIMIT, "the report")
