@@ -127,7 +127,7 @@ def test_a_track_files_texture_lies_where_its_line_is(make_track, tmp_path):
             assert np.abs(image[row, column] - bgr).max() < 12, (s, beside)
 
 
-@pytest.mark.parametrize("seed", range(31))
+@pytest.mark.parametrize("seed", range(0, 31, 3))
 def test_random_circuits_keep_their_promises(seed):
     course, _ = from_seed(seed, Wishes("random"))
     line = course.line
