@@ -1,7 +1,8 @@
 """A learner's workspace on top of ours: it builds with each tool, runs, and wins over ours.
 
 `workspaces/shapes` holds a package of each shape that learners bring, `workspaces/tutorial_a`
-packages with the names, dependencies and kinds of targets of those that tutorial A clones.
+packages with the names, dependencies and kinds of targets of those that tutorial A clones; the
+tutorial builds these by catkin_make alone.
 It compiles on all processors, so it runs alone.
 """
 
@@ -25,6 +26,7 @@ BUILDS = {
     "catkin build": "catkin build --no-status --no-color --no-notify "
                     "--cmake-args -DCATKIN_ENABLE_TESTING=OFF",
 }
+KINDS = {"catkin_make": ("shapes", "tutorial_a"), "catkin build": ("shapes",)}
 LEFT_OUT = {
     "shape_controller": ["includes <controller_interface/controller.h>, and the C++ API of "
                          "ros_control is not here"],
@@ -46,13 +48,15 @@ PROGRAMS = [
     ("rosrun turtlebot3_teleop whose", "the learner"),
     ("roslaunch --files turtlebot3_teleop whose.launch",
      "/src/turtlebot3_teleop/launch/whose.launch"),
-    ("rospack find turtlebot3_gazebo", "/src/turtlebot3_simulations/turtlebot3_gazebo"),
     ("rospack find learning_topic", "/src/learning_topic"),
     ("rospack find racecar_description", str(ROOT / "src/racecar_description")),
     ("python -c 'import turtlebot3_teleop as t; print(t.__file__)'", "/devel/lib/python3/"),
     ("rosmsg show shape_msgs/Reading", "float64 value"),
-    ("rosmsg show turtlebot3_msgs/VersionInfo", "string firmware"),
     ("xacro $(rospack find shape_description)/urdf/box.urdf.xacro", '<box size="0.2 0.2 0.2"'),
+]
+PROGRAMS_OF_TUTORIAL_A = [
+    ("rospack find turtlebot3_gazebo", "/src/turtlebot3_simulations/turtlebot3_gazebo"),
+    ("rosmsg show turtlebot3_msgs/VersionInfo", "string firmware"),
 ]
 REFUSED = [
     ("rosrun shape_gazebo uses_plugin", "uses_plugin was left out when shape_gazebo was built"),
@@ -82,7 +86,7 @@ def in_terminal(command: str, setup: Path, port: int | None = None,
 def built(request, tmp_path_factory) -> tuple[Path, str]:
     """A workspace with all packages, built by one tool; its folder and what the tool printed."""
     folder = tmp_path_factory.mktemp("catkin_ws")
-    for kind in ("shapes", "tutorial_a"):
+    for kind in KINDS[request.param]:
         shutil.copytree(WORKSPACES / kind, folder / "src", dirs_exist_ok=True)
     ours = ROOT / "devel/setup.bash"
     made = in_terminal(f"cd {folder}/src && catkin_create_pkg learning_topic rospy std_msgs "
@@ -112,6 +116,12 @@ def test_nothing_else_is_left_out(built):
 def test_a_program_runs(built, command, said):
     done = in_terminal(command, built[0] / "devel/setup.bash")
     assert done.returncode == 0 and said in done.stdout, done.stdout
+
+
+@pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
+@pytest.mark.parametrize(("command", "said"), PROGRAMS_OF_TUTORIAL_A)
+def test_a_package_of_the_tutorial_is_found(built, command, said):
+    test_a_program_runs(built, command, said)
 
 
 @pytest.mark.parametrize(("command", "said"), REFUSED)
