@@ -5,8 +5,9 @@ and mostly waits for them: rostest files, and the pytest files marked `processes
 gets a session of its own, a free port for its master and a time limit. What it leaves running is
 killed and counts as a failure.
 Files that say `runs alone` measure time: they come last, one after the other.
-A few failed files that start processes run once more, alone: a busy machine starves them. They are
-called unsteady then; a hang or a process left running stays a failure.
+A few failed files that start processes run once more, alone, those of pytest only what failed of
+them: a busy machine starves them. They are called unsteady then; a hang or a process left running
+stays a failure.
 """
 
 from __future__ import annotations
@@ -79,7 +80,13 @@ def second_run(first: Result, limit: float) -> Result:
     folder = OUT / first.name.replace("/", ".")
     if folder.exists():
         folder.rename(folder.with_name(f"{folder.name}.first"))
-    second = run_file(ROOT / first.name, limit)[0]
+    file = ROOT / first.name
+    if file.suffix == ".test" or len(first.failed_cases) < len(first.failures):
+        second = run_file(file, limit)[0]
+    else:
+        second = run_pytest_file(file, limit, first.failed_cases)
+        second.passed, second.skipped = second.passed + first.passed, first.skipped
+        print(second.line(), flush=True)
     second.first_failures, second.first_output = first.failures, first.output
     return second
 
@@ -128,7 +135,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=3, help="files with processes at a time (3)")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds for one of these files")
-    parser.add_argument("--pytest-limit", type=float, default=1500.0, help="seconds for pytest")
+    parser.add_argument("--pytest-limit", type=float, default=3000.0, help="seconds for pytest")
     parser.add_argument("--fast", action="store_true", help="what run_tests_fast.py says, in 90 s")
     args = parser.parse_args()
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

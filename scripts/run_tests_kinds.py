@@ -74,8 +74,8 @@ def pytest_command(cases: Path) -> list[str]:
             "--continue-on-collection-errors"]
 
 
-def run_pytest_file(path: Path, limit: float) -> Result:
-    """One file in a process of its own."""
+def run_pytest_file(path: Path, limit: float, tests: list[str] | None = None) -> Result:
+    """One file in a process of its own, or these tests of it."""
     name = str(path.relative_to(ROOT))
     result = Result(name)
     if processes.stopping:
@@ -84,7 +84,8 @@ def run_pytest_file(path: Path, limit: float) -> Result:
     folder.mkdir(parents=True)
     cases, log = folder / "pytest.xml", folder / "output.log"
     began = time.monotonic()
-    code, left = run_marked([*pytest_command(cases), name], log, limit, unseen)
+    what = [f"{name}::{test}" for test in tests] if tests else [name]
+    code, left = run_marked([*pytest_command(cases), *what], log, limit, unseen)
     result = pytest_cases(cases).get(name, result)
     result.seconds = time.monotonic() - began
     note_end(result, code, bool(result.failures), left)

@@ -21,6 +21,7 @@ class Result:
     passed: int = 0
     skipped: int = 0
     failures: list[str] = field(default_factory=list)
+    failed_cases: list[str] = field(default_factory=list)  # names of the failures that are tests
     final: bool = False  # a process was left or a time limit reached: no second run mends that
     output: str = ""
     first_failures: list[str] = field(default_factory=list)  # of a run before this one
@@ -30,6 +31,7 @@ class Result:
         """Count a test case of a report, and its time."""
         self.seconds += float(case.get("time") or 0.0)
         if case.find("failure") is not None or case.find("error") is not None:
+            self.failed_cases.append(case.get("name"))
             self.failures.append(f"{self.name}: {case.get('name')}")
             said = "".join(ET.tostring(part, "unicode") for part in case)
             self.final = self.final or bool(TIMED_OUT.search(said))

@@ -111,6 +111,22 @@ def test_a_file_that_fails_twice_has_failed(runner, monkeypatch, capsys):
     assert not runner.show_totals(results)
 
 
+def test_of_a_pytest_file_only_what_failed_runs_again(runner, monkeypatch, capsys):
+    name, asked = "src/evaluation/test/test_course_run.py", []
+
+    def run_pytest_file(file, limit, tests):
+        asked.append((file, tests))
+        return runner.Result(name, passed=1)
+
+    monkeypatch.setattr(runner, "run_pytest_file", run_pytest_file)
+    first = runner.Result(name, passed=4, skipped=1)
+    first.add_case(ET.fromstring("<testcase name='test_a[b c]' time='1'><failure/></testcase>"))
+    (result,) = runner.run_failed_again([first], 1.0)
+    assert asked == [(ROOT / name, ["test_a[b c]"])]
+    assert (result.passed, result.skipped, result.failures) == (5, 1, [])
+    assert result.first_failures == [f"{name}: test_a[b c]"]
+
+
 def test_style_and_many_failures_are_no_accident(runner, monkeypatch):
     run = second(runner, monkeypatch, passed=True)
     style = runner.Result("ruff check", failures=["ruff check"])
