@@ -54,6 +54,7 @@ def run_pytest(limit: float, words: list[str]) -> list[Result]:
     itself."""
     cases, log = OUT / "pytest.xml", OUT / "pytest.log"
     whole = Result("pytest")
+    cases.unlink(missing_ok=True)  # of the group before
     began = time.monotonic()
     code, left = run_marked([*pytest_command(cases), *words], log, limit, Progress())
     whole.seconds = time.monotonic() - began

@@ -45,6 +45,7 @@ def test_the_lane():
     assert why(whole[:200], "lane") == "did not come to its end"
     aside = [*whole[:100], Sample(99.0, 1.0, -1.5), *whole[100:]]
     assert why(aside, "lane") == "left the lane at 1.00, -1.50"
+    assert why([*whole, Sample(100.0, 0.5, -1.3)], "lane") is None  # the bar's mission by then
     assert why(whole, "lane", ["barrier_2", "tunnel_wall"]) == "touched barrier_2"
 
 
@@ -69,6 +70,8 @@ def test_parking():
         (0.48, 0.8), (0.48, 1.747), (0.0, 1.747))
     assert why(drive(*way_in, ("stand", 1.5), *way_out), "parking") is None
     assert why(drive(*way_in, ("stand", 0.5), *way_out), "parking") == "stood in no bay"
+    twice = *way_in, ("stand", 0.6), (0.7, 0.8), ("stand", 0.6), *way_out
+    assert why(drive(*twice), "parking") == "stood in no bay"
     assert why(drive(*way_in, ("stand", 1.5)), "parking") == "did not come back to the lane"
 
 
@@ -83,6 +86,8 @@ def test_tunnel_and_finish():
 def test_a_mistyped_mission_is_one_line():
     with pytest.raises(RunError, match="there are: lane, traffic_light, "):
         RaceTrial().parse(["--mission", "bars"])
+    with pytest.raises(RunError, match=r"--seeds \(SEEDS=\) must be a whole number, 1 to"):
+        RaceTrial().parse(["--seeds", "0"])
 
 
 def test_the_light_of_a_world_is_dimmed(tmp_path):

@@ -10,6 +10,7 @@ import pytest
 
 from evaluation.avoid import drive
 from evaluation.avoid.trial import AvoidTrial
+from run_session.failure import RunError
 
 pytestmark = pytest.mark.processes
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -41,7 +42,13 @@ def test_a_result_is_read_back_as_it_was_written():
     assert trial.passed([found]) and "reached" in trial.line(found)
 
 
-def test_it_drives_through_a_hall(tmp_path):
+def test_a_mistyped_script_is_one_line():
+    with pytest.raises(RunError, match=r"no avoider 'avoid.py' .*there are: avoid_obstacles.py"):
+        AvoidTrial().parse(["--avoider", "avoid.py"])
+
+
+def test_it_drives_through_a_hall(tmp_path, monkeypatch):
+    monkeypatch.setenv("TURTLEBOT3_MODEL", "burger")  # as a reader has it set for other lessons
     done = subprocess.run(
         [sys.executable, str(PACKAGE / "scripts" / "avoid.py"), "--seeds", "1",
          "--first-seed", QUICK, "--out", str(tmp_path)],

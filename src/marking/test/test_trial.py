@@ -1,14 +1,19 @@
 """Which drives a case takes, and which earlier marks stay, without a simulator."""
 
 import json
+import re
+import shutil
 
 import made_up
 import pytest
 from marking.case_files import read_case
 from marking.drive_report import BY_TIME
+from marking.sandbox import Kind
 from marking.trial import TIMED, MarkingTrial
 
+from marking import trial as trial_module
 from run_session.failure import RunError
+from run_session.resources import find_package
 
 CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "laps_wanted": 1,
           "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03, "mean_speed_m_s": 0.2}
@@ -79,3 +84,39 @@ def test_a_changed_submission_is_marked_again(marking, tmp_path, capsys):
     (tmp_path / "in" / "good.py").write_text("changed")
     assert trial.earlier(options) == []
     assert capsys.readouterr().out == "good: the submission has changed, it is marked again\n"
+
+
+def test_marks_of_other_tracks_or_without_the_sandbox_are_not_gone_on_with(
+        marking, tmp_path, monkeypatch):
+    trial, options = marking
+    (options.out / "report.json").parent.mkdir(exist_ok=True)
+    (options.out / "report.json").write_text(json.dumps(trial.values([])))
+    monkeypatch.setattr(trial_module, "available", lambda: Kind.USER)
+    words = ["--submissions", str(tmp_path / "in"), "--out", str(tmp_path / "out"), "--rules"]
+    boxed = MarkingTrial()
+    boxed.parse([*words, str(tmp_path / "marking.yaml")])
+    with pytest.raises(RunError, match="was marked without a sandbox, this run is in a sandbox"):
+        boxed.earlier(options)
+
+
+def test_a_changed_track_is_another_rule(tmp_path):
+    made_up.write(tmp_path / "in", {"good"})
+    track = tmp_path / "track.yaml"
+    shutil.copy(find_package("racecar_description") / "tracks" / "racetrack.yaml", track)
+    rules = made_up.write_rules(tmp_path / "marking.yaml")
+    rules.write_text(re.sub(r"(?m)^tracks:.*", "tracks: [track.yaml]", rules.read_text()))
+    words = ["--submissions", str(tmp_path / "in"), "--rules", str(rules), "--out",
+             str(tmp_path / "out"), "--no-sandbox"]
+    first, second = MarkingTrial(), MarkingTrial()
+    first.parse(words)
+    track.write_text(track.read_text() + "# changed\n")
+    options = second.parse(words)
+    options.out.mkdir()
+    (options.out / "report.json").write_text(json.dumps(first.values([])))
+    with pytest.raises(RunError, match="other rules or tracks"):
+        second.earlier(options)
+
+
+def test_a_mistake_names_the_program_s_own_package():
+    with pytest.raises(RunError, match=r"see: rosrun marking mark.py --help"):
+        MarkingTrial().parse([])

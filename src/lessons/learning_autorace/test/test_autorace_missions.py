@@ -1,6 +1,7 @@
 """What the lessons see in made-up pictures and scans, and what they do then."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -82,6 +83,15 @@ def test_a_wrong_number_of_the_calibration_is_named(tmp_path, change, said):
         load_calibration(path)
     with pytest.raises(CalibrationError, match="No such file"):
         load_calibration(tmp_path / "none.yaml")
+    path.write_bytes("height: 高".encode("gbk"))
+    with pytest.raises(CalibrationError, match=r"camera.yaml: 'utf-8' codec"):
+        load_calibration(path)
+
+
+def test_a_camera_that_looks_elsewhere_sees_no_bar():
+    image = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    for pitch in (-1.0, 1.0):
+        assert bar_distance(image, replace(CALIBRATION, pitch=pitch)) is None
 
 
 def test_the_picture_of_a_lane_becomes_the_lane_from_above():

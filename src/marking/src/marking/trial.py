@@ -35,6 +35,8 @@ from run_session.session import Session
 
 NOT_RUN, SUBMISSION = "not run", "submission"
 TIMED = "driven in real time: it did not answer each image with a command"
+SANDBOXED = {kind.value: "without a sandbox" if kind is Kind.NONE else "in a sandbox"
+             for kind in Kind}
 TRIES = 3  # of a case in which the course itself could not be run
 
 
@@ -50,7 +52,7 @@ class MarkedCase(Case):
 class MarkingTrial(ReportedTrial):
     """Submissions times tracks times seeds."""
 
-    program = "mark"
+    package, program = "marking", "mark"
     does = "Mark a folder of submissions; each drives in a sandbox."
     good = "every case could be run"
     writes = "marks.csv, marks.html, report.json and a folder of each student"
@@ -79,8 +81,7 @@ class MarkingTrial(ReportedTrial):
         self._rules = dataclasses.replace(rules, course=course,
                                           seeds=options.seeds or rules.seeds)
         self._rules_path, self._out, self._film = path, options.out, options.film
-        self._rules_digest = hashlib.sha256(
-            f"{course} {path.read_text(encoding='utf-8')}".encode()).hexdigest()
+        self._rules_digest = _digest(course, [path, *map(Path, rules.tracks)])
         self._submissions = {each.student: each for each in find_submissions(options.submissions)}
         self._kind = Kind.NONE if options.no_sandbox else available()
         self._refuse_what_the_sandbox_shows(options)
@@ -174,7 +175,11 @@ class MarkingTrial(ReportedTrial):
 
     def from_values(self, values: dict) -> list[Mark]:
         if values["rules_sha256"] != self._rules_digest:
-            raise RunError(f"{self._out}: was marked by other rules; choose another --out")
+            raise RunError(f"{self._out}: was marked by other rules or tracks; "
+                           "choose another --out")
+        if (values["sandbox"] == Kind.NONE.value) != (self._kind is Kind.NONE):
+            raise RunError(f"{self._out}: was marked {SANDBOXED[values['sandbox']]}, this run is "
+                           f"{SANDBOXED[self._kind.value]}; choose another --out")
         marks = [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
                  if each["outcome"] != NOT_RUN]
         changed = {student for student, rows in by_student(marks).items()
@@ -192,6 +197,14 @@ class MarkingTrial(ReportedTrial):
 
     def _folder(self, case: MarkedCase) -> Path:
         return self._out / "cases" / case.student / _case_name(case)
+
+
+def _digest(course: str, files: Sequence[Path]) -> str:
+    """SHA-256 of what a mark depends on beside the submission."""
+    sums = hashlib.sha256(course.encode())
+    for file in files:
+        sums.update(hashlib.sha256(file.read_bytes()).digest())
+    return sums.hexdigest()
 
 
 def _case_name(case: MarkedCase) -> str:

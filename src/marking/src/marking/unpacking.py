@@ -20,6 +20,7 @@ from marking.text import file_name, one_line
 MOST_BYTES = 64 * 2**20  # of all files together, unpacked
 MOST_FILES = 2000
 MOST_MEMORY, MOST_TIME = 2**30, 20  # bytes, and s of a processor, for unpacking
+TOO_MUCH = "it takes too much memory or time to unpack"
 LONGEST_NAME = 200  # bytes of one name in UTF-8; file systems take 255
 UTF8_NAME = 0x800  # bit of a zip entry's flags: its name is UTF-8
 ENDINGS = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
@@ -60,8 +61,8 @@ def unpack(source: Path, folder: Path) -> None:
     if done.returncode:
         shutil.rmtree(folder, ignore_errors=True)
         why = done.stdout.decode(errors="replace").strip()
-        raise UnpackError(f"{file_name(source.name)}: "
-                          f"{why or 'it takes too much memory or time to unpack'}")
+        why = why or (TOO_MUCH if done.returncode < 0 else "cannot be unpacked")  # < 0: a signal
+        raise UnpackError(f"{file_name(source.name)}: {why}")
 
 
 def _unpack(source: Path, folder: Path) -> None:
@@ -155,6 +156,9 @@ def main(source: str, folder: str) -> int:
         _unpack(Path(source), Path(folder))
     except UnpackError as error:
         print(one_line(str(error)))
+        return 1
+    except MemoryError:
+        print(TOO_MUCH)
         return 1
     return 0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import re
@@ -80,14 +81,25 @@ class Family:
         self.stop()
 
     def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
-        """End one child that was started here, by force if it takes longer than this (s, wall)."""
+        """End one child that was started here with all that it started, by force if that takes
+        longer than this (s, wall)."""
         self._children.remove(child)
+        try:
+            below = psutil.Process(child.process.pid).children(recursive=True)
+        except psutil.NoSuchProcess:
+            below = []
+        until = time.monotonic() + limit
         child.process.send_signal(signal.SIGINT)
         try:
             child.process.wait(limit)
         except subprocess.TimeoutExpired:
             child.process.kill()
             child.process.wait()
+        _, left = psutil.wait_procs(below, max(0.0, until - time.monotonic()))
+        for each in left:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                each.kill()
+        psutil.wait_procs(left)
 
     def stop(self) -> None:
         """End all: politely, then firmly, then by force; returns when they are gone."""

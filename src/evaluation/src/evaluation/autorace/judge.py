@@ -103,9 +103,9 @@ def _lane(samples: Sequence[Sample]) -> Found:
     for each in samples:
         if off_lane(each.x, each.y) > HALF_LANE:
             return each.time, f"left the lane at {each.x:.2f}, {each.y:.2f}"
-    end = next((each.time for each in samples if each.x < -1.5 and each.y < LANE_END),
-               None)
-    return end, None if end else "did not come to its end"
+        if each.x < -1.5 and each.y < LANE_END:
+            return each.time, None
+    return None, "did not come to its end"
 
 
 def _shown(samples: Sequence[Sample], at: int, name: str) -> bool:
@@ -133,15 +133,16 @@ def _bar(samples: Sequence[Sample]) -> Found:
 
 
 def _parking(samples: Sequence[Sample]) -> Found:
-    stood = 0.0
+    stood, parked = 0.0, False
     for before, each in pairwise(samples):
         near = any(abs(each.x - x) < IN_BAY[0] and abs(each.y - y) < IN_BAY[1]
                    for x, y in BAYS.values())
         still = math.dist((before.x, before.y), (each.x, each.y)) < STANDING
-        stood = stood + each.time - before.time if near and still else stood
-        if stood >= PARKED and each.x < 0.2 and each.y > 1.6:
+        stood = stood + each.time - before.time if near and still else 0.0
+        parked = parked or stood >= PARKED
+        if parked and each.x < 0.2 and each.y > 1.6:
             return each.time, None
-    return None, "stood in no bay" if stood < PARKED else "did not come back to the lane"
+    return None, "did not come back to the lane" if parked else "stood in no bay"
 
 
 def _tunnel(samples: Sequence[Sample]) -> Found:

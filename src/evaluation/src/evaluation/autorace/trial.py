@@ -16,7 +16,6 @@ from evaluation.autorace.sheet import write_sheet
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import cell, table
-from run_session.failure import RunError
 from run_session.resources import find_package
 from run_session.session import Session
 
@@ -83,15 +82,13 @@ class RaceTrial(ReportedTrial):
         self._rig: Rig | None = None
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 10, "drives", variable="SEEDS")
+        parser.add_whole("--seeds", 10, "drives", variable="SEEDS", least=1)
         parser.add_whole("--first-seed", 0, "seed of the first of them")
         parser.add_argument("--mission", default=ALL, metavar="NAME",
                             help=f"one of {', '.join(TASKS)} ({ALL})")
 
     def check(self, options: argparse.Namespace) -> None:
         one_of("mission", "MISSION", TASKS, options.mission)
-        if options.seeds == 0:
-            raise RunError("--seeds 0: nothing to drive")
 
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
         seeds = range(options.first_seed, options.first_seed + options.seeds)

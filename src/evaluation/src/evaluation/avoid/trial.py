@@ -14,9 +14,10 @@ from learning_laser import hall
 from evaluation.avoid import drive
 from evaluation.avoid.drive import CONTACT, REACHED, Drive
 from evaluation.picture import write_tiles
-from evaluation.trial.command_line import Parser
+from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.table import table
+from run_session.resources import find_package
 from run_session.session import Session
 
 TILE = (5.0, 1.9)  # inches
@@ -44,7 +45,9 @@ class AvoidTrial(ReportedTrial):
                             help="a script of learning_laser (avoid_obstacles.py)")
 
     def check(self, options: argparse.Namespace) -> None:
-        self._avoider = options.avoider
+        scripts = (find_package("learning_laser") / "scripts").glob("*.py")
+        self._avoider = one_of("avoider", "--avoider", sorted(each.name for each in scripts),
+                               options.avoider)
 
     def cases(self, options: argparse.Namespace) -> list[Hall]:
         first = options.first_seed

@@ -21,7 +21,7 @@ def run_program(name: str, work: Callable[[], int]) -> int:
             return work()
     except PermissionError as refused:
         complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
-                                "or give one with --out"))
+                                "or give one with --out") if refused.filename else refused)
         return NOT_RUN
     except (RunError, TrackError, WorldError, OSError) as failure:
         complain(name, failure)

@@ -33,6 +33,7 @@ class Trial(ABC):
     the same arguments (`parse`) and is handed the case.
     """
 
+    package: ClassVar[str] = "evaluation"  # that has the program
     program: ClassVar[str]
     does: ClassVar[str]  # for --help
     good: ClassVar[str]  # what exit code 0 means
@@ -100,7 +101,7 @@ class Trial(ABC):
     def parse(self, arguments: Sequence[str]) -> argparse.Namespace:
         """Options from the command line, or RunError."""
         parser = Parser(
-            prog=f"{self.program}.py", description=self.does,
+            package=self.package, prog=f"{self.program}.py", description=self.does,
             epilog=f"Exit code: 0 {self.good}, 1 not so, 2 could not run.")
         self.add_options(parser)
         parser.add_out(f"out/{self.program}", self.writes)

@@ -21,8 +21,11 @@ def bar_distance(image: np.ndarray, calibration: Calibration) -> float | None:
     height, width = image.shape[:2]
     columns, rows = to_pixel(np.ones(4), np.array([0.6, -0.6, 0.0, 0.0]),
                              np.array([0.0, 0.0, 0.25, -0.25]), width, height, calibration)
-    left, right, top, bottom = (int(each) for each in (columns[0], columns[1], rows[2], rows[3]))
-    hsv = cv2.cvtColor(image[top:bottom, left:right], cv2.COLOR_BGR2HSV)
+    left, right, top, bottom = (max(int(each), 0) for each in (*columns[:2], *rows[2:]))
+    part = image[top:bottom, left:right]
+    if not part.size:
+        return None
+    hsv = cv2.cvtColor(part, cv2.COLOR_BGR2HSV)
     found = []
     for _, _, wide, high, area in cv2.connectedComponentsWithStats(cv2.inRange(hsv, *RED))[2][1:]:
         if wide > LYING * high and area > 0.5 * wide * high and wide > width / 50:

@@ -1,0 +1,22 @@
+"""A child that is ended takes all with it that it started."""
+
+import os
+import time
+
+import psutil
+
+from run_session.processes import Family
+
+# Ends at Ctrl-C; what it has started, in a session of its own, does not.
+PARENT = ("import subprocess, sys, time; child = subprocess.Popen(['sh', '-c', 'trap \"\" INT; "
+          "sleep 1000'], start_new_session=True); print(child.pid, flush=True); time.sleep(1000)")
+
+
+def test_what_a_child_has_started_ends_with_it(tmp_path):
+    family = Family()
+    child = family.start("parent", ["python3", "-c", PARENT], os.environ, tmp_path / "log")
+    until = time.monotonic() + 20.0
+    while not (lines := child.new_lines()) and time.monotonic() < until:
+        time.sleep(0.05)
+    family.end(child, 0.5)
+    assert not psutil.pid_exists(int(lines[0]))
