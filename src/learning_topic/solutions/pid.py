@@ -22,7 +22,8 @@ KD = 0.001  # rad/s per px/s  微分
 def line_offset(image):
     """px (of WIDTH), how far right of the middle the line is in the near rows, or None."""
     top = 5 * image.shape[0] // 6
-    hsv = cv2.cvtColor(image[top : top + 20], cv2.COLOR_BGR2HSV)
+    band = image[top : top + image.shape[0] // 54]  # 20 rows of 1080
+    hsv = cv2.cvtColor(band, cv2.COLOR_BGR2HSV)
     moments = cv2.moments(cv2.inRange(hsv, LOWER_YELLOW, UPPER_YELLOW), binaryImage=True)
     if moments["m00"] == 0:
         return None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from driving_courses.tasks import LapTask
 from exercises.finding import Finding, at_least, at_most, holds
 from exercises.program import load, numbers, part
 
-SIZE = 640, 360  # px
+SIZE = 320, 180  # px
 TIMESTEP = 0.004  # s, of the engine
 LONGEST = 90.0  # simulated s
 CALL = "Driver().drive(image, time)"
@@ -25,7 +24,7 @@ CALL = "Driver().drive(image, time)"
 
 def drive(driver: Any, off_course: float) -> dict[str, Any]:
     """LapTask's report of a lap by driver.drive(BGR image, s) -> m/s, rad/s."""
-    course = replace(load_course("line_follow"))
+    course = load_course("line_follow")
     task, simulation = LapTask(course, 1), Simulation(course, SIZE, TIMESTEP)
     episode = draw(Randomisation(), np.random.default_rng(0))
     try:

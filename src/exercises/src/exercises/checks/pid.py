@@ -13,7 +13,7 @@ from exercises.program import load, numbers, part
 
 PULL = 0.15  # rad/s to the left, that nobody has commanded
 SPEED, AHEAD, PX_PER_M = 0.3, 0.3, 2700.0  # m/s; m from the axle to the rows; px (of 1920)
-RATE, LATE, SECONDS = 30, 3, 20.0  # pictures a second; so many pictures late; s
+RATE, LATE, SECONDS = 30, 6, 20.0  # pictures a second; so many pictures late; s
 SIDEWAYS = 0.1  # m beside the line at the start, to the left of it
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,9 +10,8 @@ from geometry_msgs.msg import Twist
 from turtlesim.msg import Pose
 
 from exercises.finding import Finding, holds, near
-from exercises.node import START, running
+from exercises.node import PAUSE, START, running
 
-STEP = 0.02  # s, wall: between two poses, as turtlesim nearly has it
 ALONG = 5.5  # m, where it starts, and its y
 
 
@@ -30,9 +28,8 @@ class Turtle:
 
     def live(self) -> bool:
         """Goes on for a step and says where it is; whether any command has come."""
-        self.x += STEP * self.speed
+        self.x += PAUSE * self.speed
         self._poses.publish(Pose(x=self.x, y=ALONG, linear_velocity=self.speed))
-        time.sleep(STEP)
         return self.commands > 0
 
 
