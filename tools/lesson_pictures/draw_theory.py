@@ -31,6 +31,7 @@ TOPIC = Path(__file__).resolve().parents[2] / "src" / "learning_topic"
 sys.path.insert(0, str(TOPIC / "test"))
 import drawn_course  # noqa: E402
 
+matplotlib.use("Agg")
 YELLOW, GREEN, BLUE, RED, GREY = "#c8a000", "#208040", "#2060c0", "#c03030", "#808080"
 WIDTH, HEIGHT = 1920, 1080  # px
 
@@ -87,22 +88,28 @@ def receive(axes):
 def channels(axes):
     """Lesson 2: one row of the image, channel by channel."""
     row = photo()[900].astype(int)
-    for channel, (name, colour) in enumerate((("blue", BLUE), ("green", GREEN), ("red", RED))):
-        axes.plot(row[:, channel], color=colour, label=f"image[900, :, {channel}] {name}")
+    for channel, (name, colour, style) in enumerate((
+            ("blue", BLUE, "-"), ("green", GREEN, "-"), ("red", RED, ":"))):
+        axes.plot(row[:, channel], style, color=colour, lw=2.5,
+                  label=f"image[900, :, {channel}] {name}")
     axes.set(xlabel="column, px", ylabel="brightness", ylim=(-5, 265))
     axes.legend()
 
 
 def colours(axes):
-    """Lesson 3: the image's pixels by hue and saturation, and the bounds."""
+    """Lesson 3: the yellow line's pixels in less and less light."""
     three = lesson("03follower_color_filter")
-    hsv = cv2.cvtColor(photo()[HEIGHT // 2 + 20::5, ::5], cv2.COLOR_BGR2HSV).reshape(-1, 3)
-    lower, upper = three.LOWER_YELLOW, three.UPPER_YELLOW
-    inside = ((hsv >= lower) & (hsv <= upper)).all(axis=1)
-    for chosen, colour, name in ((~inside, GREY, "all else"), (inside, YELLOW, "in the mask")):
-        axes.scatter(hsv[chosen, 0], hsv[chosen, 1], s=9, color=colour, label=name)
-    axes.add_patch(plt.Rectangle(lower[:2], *(upper - lower)[:2], fill=False, color=RED))
-    axes.set(xlabel="hue, 0 to 180", ylabel="saturation", xlim=(-3, 183), ylim=(-5, 262))
+    yellow = photo()[three.yellow_mask(photo()) > 0]
+    light = np.arange(1.0, 0.04, -0.05)
+    dimmed = np.rint(light[:, None, None] * yellow).astype(np.uint8)
+    red = dimmed.mean(axis=1)[:, 2]
+    hue, saturation, value = cv2.cvtColor(dimmed, cv2.COLOR_BGR2HSV).mean(axis=1).T
+    for seen, style, colour, name in (
+            (red, "-", RED, "red"), (value, ":", "black", "value"),
+            (saturation, "-", GREEN, "saturation"), (hue, "-", YELLOW, "hue")):
+        axes.plot(100 * light, seen, style, color=colour, lw=2.5, label=name)
+    axes.axhline(three.LOWER_YELLOW[2], color=GREY, ls="--", label="least value in the mask")
+    axes.set(xlabel="light, %", ylabel="mean of the line's pixels", xlim=(102, 3))
     axes.legend(loc="center right")
 
 
@@ -141,22 +148,23 @@ def pid(axes):
 def arcs(axes):
     """Lesson 7: two points of the line on the floor, and the arcs that lead to them."""
     seven, course = lesson("07follower_ground"), drawn_course.Course()
-    x, y = course.line[130]
-    yaw = np.arctan2(*course.along[130][::-1]) + 0.15
+    yaw = np.arctan2(*course.along[130][::-1])
+    x, y = course.line[130] + 0.06 * np.array([np.sin(yaw), -np.cos(yaw)])  # beside the line
     points = seven.see_line(course.view((x, y, yaw)).copy(), seven.CAMERA)
     turned = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
     line = (course.line - (x, y)) @ turned
-    line = line[np.hypot(*line.T) < 0.6]
-    axes.plot(-line[:, 1], line[:, 0], ".", color=YELLOW, label="the line")
+    line = line[(np.abs(line[:, 1]) < 0.3) & (np.abs(line[:, 0] - 0.25) < 0.35)]
+    axes.plot(*line.T, ".", color=YELLOW, label="the line")
     for (ahead, left), name, colour in zip(points, ("near", "far"), (RED, BLUE)):
         bend = seven.bend_to(ahead, left)
-        way = np.linspace(0, 2 * np.arctan2(left, ahead) / bend, 50)
-        axes.plot((np.cos(bend * way) - 1) / bend, np.sin(bend * way) / bend, color=colour,
+        angle = np.linspace(0, 2 * np.arctan2(left, ahead), 50)
+        axes.plot(np.sin(angle) / bend, (1 - np.cos(angle)) / bend, color=colour,
                   label=f"{name} arc, κ = {bend:.2f} 1/m")
-        axes.plot(-left, ahead, "o", color=colour)
-    axes.plot(0, 0, "k^", ms=10)
-    axes.set(xlabel="m to the right", ylabel="m ahead", aspect="equal", ylim=(-0.05, 0.55))
-    axes.legend(loc="center left", bbox_to_anchor=(1.05, 0.5))
+        axes.plot(ahead, left, "o", color=colour)
+    axes.plot(0, 0, "k>", ms=10)
+    axes.set(xlabel="x, m ahead", ylabel="y, m to the left", aspect="equal", xlim=(-0.05, 0.6),
+             ylim=(-0.15, 0.1))
+    axes.legend(loc="lower left")
 
 
 def windows(axes):
@@ -205,6 +213,14 @@ PICTURES = {
 }
 
 
+def listed():
+    """(package, its folder of images, picture's name, what draws it) of each."""
+    for package, pictures in PICTURES.items():
+        folder = TOPIC if package == "learning_topic" else TOPIC.parent / "lessons" / package
+        for name, draw_into in pictures.items():
+            yield package, folder / "images", name, draw_into
+
+
 def write(draw_into, path: Path) -> None:
     """One picture of 640 by 300 px; same code, same bytes."""
     with matplotlib.rc_context({"font.size": 9, "legend.fontsize": 8}):
@@ -219,13 +235,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, metavar="FOLDER")
     out = parser.parse_args().out
-    matplotlib.use("Agg")
-    for package, pictures in PICTURES.items():
-        folder = TOPIC if package == "learning_topic" else TOPIC.parent / "lessons" / package
-        for name, draw_into in pictures.items():
-            path = out / f"{package}-{name}.png" if out else folder / "images" / f"{name}.png"
-            write(draw_into, path)
-            print(path)
+    for package, folder, name, draw_into in listed():
+        path = out / f"{package}-{name}.png" if out else folder / f"{name}.png"
+        write(draw_into, path)
+        print(path)
 
 
 if __name__ == "__main__":

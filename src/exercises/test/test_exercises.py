@@ -2,7 +2,6 @@
 
 import os
 import re
-from pathlib import Path
 
 import pytest
 
@@ -38,7 +37,8 @@ def test_rosrun_finds_the_starting_file_and_not_the_solution(exercise):
 def test_the_lessons_page_has_the_task_the_command_and_hints(folder, page):
     text = (folder / page).read_text(encoding="utf-8")
     own = [name for name, each in EXERCISES.items() if each.start.is_relative_to(folder)]
-    assert sorted(re.findall(r"^rosrun evaluation check_exercise (\w+)$", text, re.M)) == sorted(own)
+    typed = re.findall(r"^rosrun evaluation check_exercise (\w+)$", text, re.M)
+    assert sorted(typed) == sorted(own)
     for name in own:
         hints = text.partition(f"check_exercise {name}\n```\n")[2].split("\n\n<details>")[1:3]
         assert len(hints) == 2, f"{page}: {name} has no two hints"
@@ -85,8 +85,9 @@ def test_a_mistake_of_the_program_is_a_failed_check(tmp_path, capsys, body, said
 
 
 def test_a_table_that_is_no_controllers_file(tmp_path, capsys):
-    file = Path(tmp_path) / "mine.yaml"
-    for text, code, said in (("a: [", 2, "no YAML"), ("robot: {}", 1, "first key must be `racecar`"),
+    file = tmp_path / "mine.yaml"
+    for text, code, said in (("a: [", 2, "no YAML"),
+                             ("robot: {}", 1, "first key must be `racecar`"),
                              ("racecar: {left: {type: x}}", 1, "left: lacks `joint`")):
         file.write_text(text, encoding="utf-8")
         assert main(["steering", str(file)]) == code

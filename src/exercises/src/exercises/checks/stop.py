@@ -46,4 +46,5 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
                limits["tolerance"], " m")
     yield at_least("least distance", min(apart), limits["distance"] - limits["tolerance"], " m")
     yield at_most("speed at the end", abs(speed), 0.0, " m/s")
-    yield near("bearing at the end", math.degrees(math.remainder(bearing, 2 * math.pi)), 0.0, 5.0, "°")
+    degrees = math.degrees(math.remainder(bearing, 2 * math.pi))
+    yield near("bearing at the end", degrees, 0.0, 5.0, "°")
