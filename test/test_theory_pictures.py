@@ -1,4 +1,4 @@
-"""The theory's pictures are what tools/lesson_pictures/draw_theory.py draws from today's lessons."""
+"""The theory's pictures are what draw_theory.py of tools/lesson_pictures draws today."""
 
 import importlib.util
 import re
@@ -35,7 +35,7 @@ def test_the_shipped_pictures_are_todays(theory, tmp_path):
 def test_a_picture_drawn_twice_is_the_same_file(theory, tmp_path):
     files = [tmp_path / "one.png", tmp_path / "two.png"]
     for file in files:
-        theory.write(theory.receive, file)
+        theory.write(theory.distance, file)
     assert files[0].read_bytes() == files[1].read_bytes()
 
 

@@ -37,6 +37,7 @@ CHECKS = {  # module of exercises.checks -> its limits, in SI units unless the n
 class Exercise:
     """An entry of an exercises.yaml."""
 
+    file: Path  # the exercises.yaml
     name: str
     title: str
     start: Path  # where the learner edits
@@ -56,7 +57,7 @@ def find_exercises(packages: dict[str, Path] | None = None) -> dict[str, Exercis
             for name, exercise in read_exercises(folder / FILE).items():
                 if name in found:
                     raise CannotCheck(f"{folder / FILE}: {name!r} is also in"
-                                      f" {found[name].start.parents[1] / FILE}: rename one")
+                                      f" {found[name].file}: rename one")
                 found[name] = exercise
     return found
 
@@ -90,7 +91,7 @@ def _exercise(file: Path, name: str, entry: Any) -> Exercise:
     for key, value in limits.items():
         if type(value) not in (int, float) or not math.isfinite(value):
             raise CannotCheck(f"{place}: limits: {key}: must be a number, is {value!r}")
-    return Exercise(name, entry["title"], start, solution, entry["check"], limits)
+    return Exercise(file, name, entry["title"], start, solution, entry["check"], limits)
 
 
 def _check_keys(place: str, table: Any, expected: tuple[str, ...]) -> None:

@@ -31,7 +31,7 @@ def drive(picture):
     seen = largest_red(picture)
     if seen is None:
         return 0.0, SEARCH_TURN
-    column, radius = seen
+    column = seen[0]  # px; seen[1] is the radius  半径在 seen[1]
     speed = SPEED  # yours: 0 from STOP_RADIUS on  请修改：到 STOP_RADIUS 就停
     return speed, -TURN_GAIN * (column - picture.shape[1] / 2)
 

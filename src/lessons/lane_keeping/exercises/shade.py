@@ -11,7 +11,7 @@ SHARE = 0.6  # a line is darker than this share of the mean  线比均值的这�
 
 
 def line_mask(grey):
-    """255 where a (rows, columns) grey picture may show a dark line, 0 elsewhere.  可能是线处为 255"""
+    """255 where a grey picture (rows, columns) may show a dark line, else 0.  可能是线处为 255"""
     # Yours: compare each pixel with its own surroundings.  请修改：与各像素自己的周围比较
     return cv2.threshold(grey, float(grey.mean()), 255, cv2.THRESH_BINARY_INV)[1]
 

@@ -11,7 +11,7 @@ SHARE = 0.6  # a line is darker than this share of the mean  线比均值的这�
 
 
 def line_mask(grey):
-    """255 where a (rows, columns) grey picture may show a dark line, 0 elsewhere.  可能是线处为 255"""
+    """255 where a grey picture (rows, columns) may show a dark line, else 0.  可能是线处为 255"""
     mean = cv2.blur(grey, (BLOCK_PX, BLOCK_PX))
     return cv2.compare(grey, cv2.convertScaleAbs(mean, alpha=SHARE), cv2.CMP_LT)
 

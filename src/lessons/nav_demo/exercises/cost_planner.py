@@ -13,7 +13,7 @@ NEIGHBOURS = [(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 
 
 
 class Planner:
-    """Yours: the way with the least sum of costs, not of cells.  请修改：代价之和最小，而不是格数"""
+    """Yours: the least sum of costs, not of cells.  请修改：代价之和最小，而不是格数"""
 
     def initialize(self, name, costmap):
         """Once, at the start; `name` is the class's, for parameters and topics below ~name."""
