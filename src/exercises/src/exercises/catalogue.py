@@ -19,7 +19,7 @@ CHECKS = {  # module of exercises.checks -> its limits, in SI units unless the n
     "bag": ("messages", "period", "tolerance"),
     "chase": ("distance", "tolerance", "seconds"),
     "halls": ("halls", "seconds"),
-    "lane": ("places", "off", "right_share"),
+    "lane": ("places", "aside", "right_share"),
     "lap": ("speed", "rms", "off_course"),
     "line": ("pictures", "error_px"),
     "mask": ("kept_share", "taken_share"),

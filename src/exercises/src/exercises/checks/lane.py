@@ -69,6 +69,6 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
         grey = cv2.cvtColor(region(picture, settings.roi_share), cv2.COLOR_BGR2GRAY)
         mask = mask_of(line_mask(grey), grey.shape, CALL).astype(np.uint8) * 255
         found = plan(opening(mask, settings.opening_px), view, settings)
-        right += found is not None and beside(found.target, pose, view, track) < limits["off"]
+        right += found is not None and beside(found.target, pose, view, track) < limits["aside"]
     yield at_least(f"share of {count} places with the lane's middle found within"
-                   f" {limits['off']:g} m", right / count, limits["right_share"])
+                   f" {limits['aside']:g} m", right / count, limits["right_share"])
