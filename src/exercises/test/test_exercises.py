@@ -2,6 +2,8 @@
 
 import os
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -83,6 +85,16 @@ def test_a_mistake_of_the_program_is_a_failed_check(tmp_path, capsys, body, said
     assert main(["white_line", str(tmp_path / "mine.py")]) == 1
     last = capsys.readouterr().out.splitlines()[-1]
     assert last.startswith("FAIL  ") and said in last
+
+
+def test_a_loop_without_end_is_one_line(tmp_path):
+    (tmp_path / "mine.py").write_text("while True:\n    pass\n", encoding="utf-8")
+    code = "import sys, exercises.main as m; m.LIMIT = 1; sys.exit(m.run())"
+    done = subprocess.run([sys.executable, "-c", code, "white_line", str(tmp_path / "mine.py")],
+                          capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr == ("check_exercise: not done after 1 s: does a loop of the program never"
+                           " end?\n")
 
 
 def test_a_table_that_is_no_controllers_file(tmp_path, capsys):

@@ -6,12 +6,13 @@ import argparse
 import importlib
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import rospkg
 
 from exercises.catalogue import Exercise, find_exercises
-from exercises.errors import CannotCheck, Mistake
+from exercises.errors import CannotCheck, Mistake, TimeUp
 from exercises.finding import Finding
 from exercises.program import line_in, said
 from run_session.failure import RunError
@@ -20,6 +21,21 @@ from run_session.interruption import interruptible
 PASSED, FAILED, COULD_NOT, INTERRUPTED = 0, 1, 2, 130
 LIMIT = 300  # s, wall: of one check
 EPILOG = "Exit code 0: passed; 1: failed; 2: could not be checked; 130: interrupted."
+
+
+def run() -> int:
+    """`main` in a terminal, where Ctrl-C and the time limit end what does not end by itself."""
+    signal.signal(signal.SIGALRM, _give_up)
+    signal.alarm(LIMIT)
+    try:
+        with interruptible():
+            return main()
+    except TimeUp:
+        print(f"check_exercise: not done after {LIMIT} s: does a loop of the program never end?",
+              file=sys.stderr)
+        return COULD_NOT
+    except KeyboardInterrupt:
+        return INTERRUPTED
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -33,15 +49,10 @@ def main(arguments: list[str] | None = None) -> int:
         known = find_exercises()
         if options.name is None:
             return list_all(known)
-        signal.signal(signal.SIGALRM, _give_up)
-        signal.alarm(LIMIT)
-        with interruptible():
-            return check(chosen(known, options.name), options.file)
+        return check(chosen(known, options.name), options.file)
     except (CannotCheck, RunError) as error:
         print(f"check_exercise: {error}", file=sys.stderr)
         return COULD_NOT
-    except KeyboardInterrupt:
-        return INTERRUPTED
 
 
 def list_all(known: dict[str, Exercise]) -> int:
@@ -79,11 +90,11 @@ def check(exercise: Exercise, file: Path | None = None) -> int:
     return FAILED if failed else PASSED
 
 
-def findings(exercise: Exercise, file: Path) -> list[Finding]:
+def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
     """What the exercise's check says of a file; Mistake where the learner's program fails."""
     module = importlib.import_module(f"exercises.checks.{exercise.check}")
     try:
-        return list(module.look(file.resolve(), exercise.limits))
+        yield from module.look(file.resolve(), exercise.limits)
     except (CannotCheck, Mistake, RunError):
         raise
     except Exception as error:
@@ -102,4 +113,4 @@ def shown(path: Path) -> str:
 
 
 def _give_up(_number: int, _frame: object) -> None:
-    raise CannotCheck(f"not done after {LIMIT} s: does a loop of the program never end?")
+    raise TimeUp

@@ -11,6 +11,7 @@ from driving_courses.drives import RacecarDrive
 from driving_courses.packages import find_file
 from driving_courses.resources import package_folder, resources
 
+from bullet_sim.errors import SimulationError
 from bullet_sim.formats import load_model, load_world
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.formats.xml_values import parse_xml
@@ -31,8 +32,8 @@ def read(file: Path) -> None:
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
         raise Mistake(f"{file}: its first key must be `racecar`, with controllers below it")
     for name, entry in table["racecar"].items():
-        keys = () if str(entry).find("JointStateController") > 0 else ("joint", "pid")
-        for key in ("type", *keys):
+        publishes = "JointStateController" in str(entry)  # it moves nothing
+        for key in ("type",) if publishes else ("type", "joint", "pid"):
             if not isinstance(entry, dict) or key not in entry:
                 raise Mistake(f"{file}: {name}: lacks `{key}`")
 
@@ -51,7 +52,10 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
             drive.command(0.0, limits["angle"])
             drive.run(world.tick + round(limits["seconds"] / world.timestep))
         except KeyError as error:
-            raise Mistake(f"{file}: {error} is no controller of this car") from error
+            raise Mistake(f"{file}: {error} is no controller of this car, or missing in a pid") \
+                from error
+        except SimulationError as error:
+            raise Mistake(f"{file}: {error}") from error
         for joint in JOINTS:
             yield near(f"{joint} after {limits['seconds']:g} s", car.joint(joint).position,
                        limits["angle"], limits["tolerance"], " rad")
