@@ -13,7 +13,7 @@ from exercises.program import load, numbers, part
 
 WIDTH, HEIGHT, HFOV = 640, 480, 1.3962634  # px, px, rad: as my_robot's camera
 RADIUS, TALL, LENS = 0.2, 0.6, 0.25  # m: the cylinder, and how high the lens is
-RED, FLOOR, STEP = (20, 20, 200), (150, 150, 150), 0.1  # BGR, BGR, s
+RED, FLOOR, STEP = (20, 20, 200), (150, 150, 150), 0.2  # BGR, BGR, s
 FOCAL = WIDTH / 2 / math.tan(HFOV / 2)  # px
 CALL = "drive(picture)"
 
