@@ -4,10 +4,14 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from exercises import node
 from exercises.catalogue import find_exercises
+from exercises.errors import Mistake
 from exercises.main import main
 
 EXERCISES = find_exercises()
@@ -85,6 +89,13 @@ def test_a_mistake_of_the_program_is_a_failed_check(tmp_path, capsys, body, said
     assert main(["white_line", str(tmp_path / "mine.py")]) == 1
     last = capsys.readouterr().out.splitlines()[-1]
     assert last.startswith("FAIL  ") and said in last
+
+
+def test_a_node_that_has_ended_is_a_mistake():
+    child = SimpleNamespace(process=SimpleNamespace(poll=lambda: 1),
+                            last_lines=lambda _count: "no turtle here\n")
+    with pytest.raises(Mistake, match=r"^mine\.py: ended, exit code 1: no turtle here$"):
+        node.wait(Path("mine.py"), child, lambda: False, 1.0)
 
 
 def test_a_loop_without_end_is_one_line(tmp_path):

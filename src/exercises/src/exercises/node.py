@@ -36,12 +36,13 @@ def running(file: Path) -> Iterator[Callable[[Callable[[], object], float], bool
         rospy.init_node("check_exercise", disable_signals=True, disable_rosout=True)
         child = launched.start("exercise", [sys.executable, str(file)])
         try:
-            yield lambda condition, limit: _wait(file, child, condition, limit)
+            yield lambda condition, limit: wait(file, child, condition, limit)
         finally:
             rospy.signal_shutdown("checked")
 
 
-def _wait(file: Path, child: Child, condition: Callable[[], object], limit: float) -> bool:
+def wait(file: Path, child: Child, condition: Callable[[], object], limit: float) -> bool:
+    """Whether the condition holds within `limit`, s, wall; Mistake if the node ends before."""
     end = time.monotonic() + limit
     while not (holds := bool(condition())) and time.monotonic() < end:
         code = child.process.poll()
