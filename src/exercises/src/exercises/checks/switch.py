@@ -14,7 +14,8 @@ from exercises.finding import Finding, holds
 from exercises.node import START, running
 
 SERVICE, TOPIC = "/turtle_drive", "/turtle1/cmd_vel"
-QUIET = 0.3  # s: what was sent before a call has arrived by then
+QUIET = 0.5  # s: what was sent before a call has arrived by then
+PATIENCE = 5.0  # s, for the first command of one that shall drive
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
@@ -32,7 +33,7 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
                 raise Mistake(f"{file}: {SERVICE} failed: {error}") from error
             until(lambda: False, QUIET)
             speeds.clear()
-            drives = until(lambda: any(speeds), limits["seconds"])
+            drives = until(lambda: any(speeds), PATIENCE if wanted else limits["seconds"])
             yield holds(f"after {SERVICE} {str(wanted).lower()}", _words(drives), _words(wanted),
                         drives == wanted)
             yield holds(f"its answer to {str(wanted).lower()}", f"success {success}",
