@@ -16,9 +16,9 @@ from pathlib import Path
 from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
 
-OUR_FOLDERS = ("car_control", "compat", "evaluation", "interfaces", "learning_topic", "lessons",
-               "marking", "navigation", "racecar_description", "run_session", "sim",
-               "trial_worlds", "workspace_needs")
+OUR_FOLDERS = ("car_control", "compat", "evaluation", "exercises", "interfaces",
+               "learning_topic", "lessons", "marking", "navigation", "racecar_description",
+               "run_session", "sim", "trial_worlds", "workspace_needs")
 MARKER = "CATKIN_IGNORE"
 MARK = "made by the build: a package of this name elsewhere in src/ is built instead\n"
 

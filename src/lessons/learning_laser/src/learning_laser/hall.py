@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
 LENGTH, WIDTH = 10.0, 3.0  # m; it begins 1 m behind the start, whose axis is its middle
@@ -12,6 +15,7 @@ GAP = 0.7  # m of air between two columns, and between a column and a wall
 COLUMNS, TRIES = 12, 500
 LASER, SEES = -0.064, 3.5  # m: the waffle's laser ahead of its axle; how far it sees
 ANGLES = np.radians(np.arange(360.0))  # rad, of its beams
+PERIOD, CLEAR = 0.2, 0.21  # s from scan to scan; m, of the circle round the waffle's body
 
 
 def columns(seed: int) -> np.ndarray:
@@ -40,6 +44,28 @@ def scan(pose: tuple[float, float, float], columns: np.ndarray) -> np.ndarray:
         ends = (np.where(rays[:, 0] > 0, LENGTH - 1, -1.0) - x) / rays[:, 0]
     ranges = np.fmin(hits.min(axis=1, initial=np.inf), np.fmin(sides, ends))
     return np.where(ranges < SEES, ranges, np.inf)
+
+
+def drive(command: Callable[[np.ndarray, np.ndarray], tuple[float, float]], seed: int,
+          limit: float) -> tuple[float | None, float]:
+    """A robot without slip drives through hall `seed` by command(angles, ranges) -> m/s, rad/s.
+
+    Time (s) to the finish, None if it took more than `limit`, and the least air (m) round it.
+    """
+    places, pose, least = columns(seed), (0.0, 0.0, 0.0), math.inf
+    for step in range(round(limit / PERIOD)):
+        ranges = scan(pose, places)
+        seen = np.isfinite(ranges)
+        speed, turn = command(ANGLES[seen], ranges[seen])
+        x, y, yaw = pose
+        pose = (x + PERIOD * speed * math.cos(yaw), y + PERIOD * speed * math.sin(yaw),
+                yaw + PERIOD * turn)
+        middle = np.array([x + LASER * math.cos(yaw), y + LASER * math.sin(yaw)])
+        least = min(least, WIDTH / 2 - abs(middle[1]) - CLEAR,
+                    np.hypot(*(places - middle).T).min() - RADIUS - CLEAR)
+        if pose[0] > FINISH:
+            return step * PERIOD, least
+    return None, least
 
 
 def world(seed: int) -> str:

@@ -1,0 +1,1 @@
+"""Checks a learner's file by what it does."""

@@ -1,0 +1,108 @@
+"""Which exercises there are: the file exercises.yaml of each package that rospack finds."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import rospkg
+import yaml
+
+from exercises.errors import CannotCheck
+
+FILE = "exercises.yaml"
+KEYS = ("title", "start", "solution", "check", "limits")
+CHECKS = {  # module of exercises.checks -> its limits, in SI units unless the name says otherwise
+    "bag": ("messages", "period", "tolerance"),
+    "chase": ("distance", "tolerance", "seconds"),
+    "halls": ("halls", "seconds"),
+    "lane": ("places", "aside", "right_share"),
+    "lap": ("speed", "rms", "off_course"),
+    "line": ("pictures", "error_px"),
+    "mask": ("kept_share", "taken_share"),
+    "pid": ("left_px", "swing_px"),
+    "planner": ("cost", "way_share"),
+    "radar": ("x", "y", "z", "tolerance"),
+    "steering": ("angle", "tolerance", "seconds"),
+    "stop": ("distance", "tolerance", "seconds"),
+    "switch": ("seconds",),
+    "wall": ("least_x", "most_x", "seconds"),
+}
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An entry of an exercises.yaml."""
+
+    file: Path  # the exercises.yaml
+    name: str
+    title: str
+    start: Path  # where the learner edits
+    solution: Path
+    check: str
+    limits: dict[str, float]
+
+
+def find_exercises(packages: dict[str, Path] | None = None) -> dict[str, Exercise]:
+    """Name -> exercise, of these packages (name -> folder) or of all that rospack finds.
+
+    CannotCheck where a file is wrong or two packages use one name.
+    """
+    found: dict[str, Exercise] = {}
+    for _, folder in sorted((packages or _all_packages()).items()):
+        if (folder / FILE).is_file():
+            for name, exercise in read_exercises(folder / FILE).items():
+                if name in found:
+                    raise CannotCheck(f"{folder / FILE}: {name!r} is also in"
+                                      f" {found[name].file}: rename one")
+                found[name] = exercise
+    return found
+
+
+def read_exercises(file: Path) -> dict[str, Exercise]:
+    """Name -> exercise of one file; CannotCheck names file and key of what is wrong."""
+    try:
+        table = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise CannotCheck(f"{file}: {' '.join(str(error).split())}") from error
+    if not isinstance(table, dict):
+        raise CannotCheck(f"{file}: must be a table of exercises, NAME: {{{', '.join(KEYS)}}}")
+    return {name: _exercise(file, str(name), entry) for name, entry in table.items()}
+
+
+def _exercise(file: Path, name: str, entry: Any) -> Exercise:
+    place = f"{file}: {name}"
+    _check_keys(place, entry, KEYS)
+    for key in ("title", "start", "solution", "check"):
+        if not isinstance(entry[key], str):
+            raise CannotCheck(f"{place}: {key}: must be a text, is {entry[key]!r}")
+    start, solution = (file.parent / entry[key] for key in ("start", "solution"))
+    for key, path in (("start", start), ("solution", solution)):
+        if not path.is_file():
+            raise CannotCheck(f"{place}: {key}: no file {path}")
+    if entry["check"] not in CHECKS:
+        raise CannotCheck(f"{place}: check: no check {entry['check']!r}; there are:"
+                          f" {', '.join(CHECKS)}")
+    limits = entry["limits"]
+    _check_keys(f"{place}: limits", limits, CHECKS[entry["check"]])
+    for key, value in limits.items():
+        if type(value) not in (int, float) or not math.isfinite(value):
+            raise CannotCheck(f"{place}: limits: {key}: must be a number, is {value!r}")
+    return Exercise(file, name, entry["title"], start, solution, entry["check"], limits)
+
+
+def _check_keys(place: str, table: Any, expected: tuple[str, ...]) -> None:
+    given = table if isinstance(table, dict) else {}
+    for key in [*given, *expected]:
+        if key not in expected or key not in given:
+            which = "missing" if key in expected else "unknown"
+            raise CannotCheck(f"{place}: {which} key {key!r}; there are: {', '.join(expected)}")
+
+
+@functools.cache
+def _all_packages() -> dict[str, Path]:
+    known = rospkg.RosPack()
+    return {name: Path(known.get_path(name)) for name in known.list()}

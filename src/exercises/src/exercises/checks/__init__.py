@@ -1,0 +1,1 @@
+"""One module a check: look(file, limits) gives its findings, one after the other."""

@@ -1,0 +1,116 @@
+"""The command: list the exercises, or check a file."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import rospkg
+
+from exercises.catalogue import Exercise, find_exercises
+from exercises.errors import CannotCheck, Mistake, TimeUp
+from exercises.finding import Finding
+from exercises.program import line_in, said
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+
+PASSED, FAILED, COULD_NOT, INTERRUPTED = 0, 1, 2, 130
+LIMIT = 300  # s, wall: of one check
+EPILOG = "Exit code 0: passed; 1: failed; 2: could not be checked; 130: interrupted."
+
+
+def run() -> int:
+    """`main` in a terminal, where Ctrl-C and the time limit end what does not end by itself."""
+    signal.signal(signal.SIGALRM, _give_up)
+    signal.alarm(LIMIT)
+    try:
+        with interruptible():
+            return main()
+    except TimeUp:
+        print(f"check_exercise: not done after {LIMIT} s: does a loop of the program never end?",
+              file=sys.stderr)
+        return COULD_NOT
+    except KeyboardInterrupt:
+        return INTERRUPTED
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The exit code."""
+    parser = argparse.ArgumentParser(
+        prog="check_exercise", description=__doc__, epilog=EPILOG)
+    parser.add_argument("name", nargs="?", help="of the exercise; without it: list all")
+    parser.add_argument("file", nargs="?", type=Path, help="yours (default: the exercise's own)")
+    options = parser.parse_args(arguments)
+    try:
+        known = find_exercises()
+        if options.name is None:
+            return list_all(known)
+        return check(chosen(known, options.name), options.file)
+    except (CannotCheck, RunError) as error:
+        print(f"check_exercise: {error}", file=sys.stderr)
+        return COULD_NOT
+
+
+def list_all(known: dict[str, Exercise]) -> int:
+    """Name, title and file of each, one line each."""
+    width = max(map(len, known), default=0)
+    for name, exercise in known.items():
+        print(f"{name:{width}}  {exercise.title}  ({shown(exercise.start)})")
+    print("Check one: rosrun evaluation check_exercise NAME")
+    return PASSED
+
+
+def chosen(known: dict[str, Exercise], name: str) -> Exercise:
+    """The exercise of that name; CannotCheck lists all."""
+    if name not in known:
+        raise CannotCheck(f"no exercise {name!r}; there are: {', '.join(known)}")
+    return known[name]
+
+
+def check(exercise: Exercise, file: Path | None = None) -> int:
+    """Print a line for each finding; the exit code."""
+    file = file or exercise.start
+    if not file.is_file():
+        raise CannotCheck(f"{file}: no such file; leave FILE out to check {exercise.start}")
+    print(f"{exercise.title}  ({shown(file)})")
+    failed, count = 0, 0
+    try:
+        for finding in findings(exercise, file):
+            print(finding, flush=True)
+            count, failed = count + 1, failed + (not finding.passed)
+    except Mistake as mistake:
+        print(f"FAIL  {mistake}")
+        return FAILED
+    print(f"{failed} of {count} checks failed: the lesson's README has hints" if failed
+          else f"passed, {count} of {count}")
+    return FAILED if failed else PASSED
+
+
+def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
+    """What the exercise's check says of a file; Mistake where the learner's program fails."""
+    module = importlib.import_module(f"exercises.checks.{exercise.check}")
+    try:
+        yield from module.look(file.resolve(), exercise.limits)
+    except (CannotCheck, Mistake, RunError):
+        raise
+    except Exception as error:
+        if line_in(error, file.resolve()) is None:
+            raise
+        raise Mistake(said(error, file.resolve())) from error
+
+
+def shown(path: Path) -> str:
+    """The path as PACKAGE/REST where it lies in a package."""
+    package = rospkg.get_package_name(str(path.resolve()))
+    folder = Path(rospkg.RosPack().get_path(package)) if package else None
+    if folder and path.resolve().is_relative_to(folder.resolve()):
+        return f"{package}/{path.resolve().relative_to(folder.resolve())}"
+    return str(path)
+
+
+def _give_up(_number: int, _frame: object) -> None:
+    raise TimeUp

@@ -1,0 +1,81 @@
+"""A learner's Python file as a module, and its mistakes as one line each."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Iterable
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from exercises.errors import CannotCheck, Mistake
+
+
+def compiled(file: Path) -> CodeType:
+    """The file's code; CannotCheck says in a line what of it is no Python."""
+    try:
+        return compile(file.read_bytes(), str(file), "exec")
+    except (SyntaxError, ValueError) as error:
+        line = (getattr(error, "text", None) or "").strip()
+        raise CannotCheck(f"{file}:{getattr(error, 'lineno', None) or 1}: {error.args[0]}"
+                          + f": {line}" * bool(line)) from error
+
+
+def load(file: Path) -> ModuleType:
+    """The file, imported anew; CannotCheck says in a line what went wrong."""
+    code = compiled(file)
+    module = ModuleType(f"exercise_{file.stem}", None)
+    module.__file__ = str(file)
+    sys.path.insert(0, str(file.parent))
+    try:
+        exec(code, module.__dict__)
+    except (Exception, SystemExit) as error:
+        raise CannotCheck(f"{said(error, file)}; mend it, then check again") from error
+    finally:
+        sys.path.remove(str(file.parent))
+    return module
+
+
+def part(module: ModuleType, call: str) -> Any:
+    """What the module calls so: "steer(offset_px)"; CannotCheck where there is none."""
+    found = getattr(module, call.partition("(")[0], None)
+    if not callable(found):
+        raise CannotCheck(f"{module.__file__}: has no `{call}`, which the check calls: keep it")
+    return found
+
+
+def line_in(error: BaseException, file: Path) -> int | None:
+    """The last line of the file that an exception came through; None where it met none."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
+             if frame.filename == str(file)]
+    return lines[-1] if lines else None
+
+
+def said(error: BaseException, file: Path) -> str:
+    """Where in the file an exception came from, and which."""
+    return f"{file}:{line_in(error, file) or 1}: {type(error).__name__}:" \
+           f" {' '.join(str(error).split())}"
+
+
+def numbers(value: Any, count: int, call: str) -> tuple[float, ...]:
+    """So many finite numbers that a call answered; Mistake of anything else."""
+    given = value if isinstance(value, Iterable) else [value]
+    try:
+        found = tuple(float(each) for each in given)
+    except (TypeError, ValueError):
+        found = ()
+    if len(found) != count or not np.isfinite(found).all():
+        wanted = "a finite number" if count == 1 else f"{count} finite numbers"
+        raise Mistake(f"{call} answered {value!r}, wanted {wanted}")
+    return found
+
+
+def mask_of(value: Any, shape: tuple[int, ...], call: str) -> np.ndarray:
+    """(rows, columns) bool of a mask that a call answered; Mistake of anything else."""
+    if not isinstance(value, np.ndarray) or value.shape != shape:
+        seen = f"an array {value.shape}" if isinstance(value, np.ndarray) else repr(value)[:60]
+        raise Mistake(f"{call} answered {seen}, wanted a mask {shape}")
+    return value > 0

@@ -1,0 +1,118 @@
+"""Each exercise: its starting file fails its check, its solution passes; no ROS master here."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from exercises import node
+from exercises.catalogue import find_exercises
+from exercises.errors import Mistake
+from exercises.main import main
+
+EXERCISES = find_exercises()
+NODES = "radar", "switch", "wall"  # checks that need a master: test_exercise_nodes.py tries one
+WITHOUT_MASTER = [name for name, exercise in EXERCISES.items() if exercise.check not in NODES]
+LESSONS = {exercise.start.parents[1] for exercise in EXERCISES.values()}
+
+
+@pytest.mark.parametrize("name", WITHOUT_MASTER)
+def test_the_starting_file_fails_and_the_solution_passes(name, capsys):
+    assert main([name]) == 1
+    assert "FAIL  " in capsys.readouterr().out
+    assert main([name, str(EXERCISES[name].solution)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[-1].startswith("passed, ") and all(" wanted " in line for line in said[1:-1])
+
+
+@pytest.mark.parametrize("exercise", EXERCISES.values(), ids=EXERCISES)
+def test_rosrun_finds_the_starting_file_and_not_the_solution(exercise):
+    assert exercise.start.name == exercise.solution.name
+    assert os.access(exercise.start, os.X_OK) == (exercise.start.suffix == ".py")
+    assert not os.access(exercise.solution, os.X_OK)
+    if exercise.start.suffix == ".py":
+        assert exercise.start.read_text(encoding="utf-8").startswith("#!/usr/bin/env python3\n")
+
+
+@pytest.mark.parametrize("folder", sorted(LESSONS), ids=lambda folder: folder.name)
+@pytest.mark.parametrize("page", ("README.md", "README.zh-CN.md"))
+def test_the_lessons_page_has_the_task_the_command_and_hints(folder, page):
+    text = (folder / page).read_text(encoding="utf-8")
+    own = [name for name, each in EXERCISES.items() if each.start.is_relative_to(folder)]
+    typed = re.findall(r"^rosrun evaluation check_exercise (\w+)$", text, re.M)
+    assert sorted(typed) == sorted(own)
+    for name in own:
+        behind = text.partition(f"check_exercise {name}\n```\n")[2]
+        hints = behind.partition("check_exercise")[0].count("<details><summary>")
+        assert behind.startswith("\n<details><summary>") and hints >= 2, name
+
+
+def test_without_a_name_it_lists_all(capsys):
+    assert main([]) == 0
+    listed = capsys.readouterr().out
+    assert all(f"{name} " in listed and each.title in listed for name, each in EXERCISES.items())
+
+
+def test_an_unknown_name_lists_all(capsys):
+    assert main(["white_lane"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and all(name in said for name in EXERCISES)
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    (None, "no such file"),
+    ("def white_mask(image)\n", ":1: expected ':': def white_mask(image)"),
+    ("import no_such_module\n", ":1: ModuleNotFoundError: No module named 'no_such_module'"),
+    ("import sys\nsys.exit('no screen')\n", ":2: SystemExit: no screen"),
+    ("def mask(image): pass\n", "has no `white_mask(image)`, which the check calls"),
+])
+def test_what_cannot_be_checked_is_one_line(tmp_path, capsys, text, said):
+    file = tmp_path / "mine.py"
+    if text is not None:
+        file.write_text(text, encoding="utf-8")
+    assert main(["white_line", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.startswith(f"check_exercise: {file}") and error.count("\n") == 1
+
+
+@pytest.mark.parametrize(("body", "said"), [
+    ("1 / 0", "mine.py:2: ZeroDivisionError: division by zero"),
+    ("return None", "white_mask(image) answered None, wanted a mask (120, 90)"),
+    ("return image", "answered an array (120, 90, 3), wanted a mask (120, 90)"),
+])
+def test_a_mistake_of_the_program_is_a_failed_check(tmp_path, capsys, body, said):
+    (tmp_path / "mine.py").write_text(f"def white_mask(image):\n    {body}\n", encoding="utf-8")
+    assert main(["white_line", str(tmp_path / "mine.py")]) == 1
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("FAIL  ") and said in last
+
+
+def test_a_node_that_has_ended_is_a_mistake():
+    child = SimpleNamespace(process=SimpleNamespace(poll=lambda: 1),
+                            last_lines=lambda _count: "no turtle here\n")
+    with pytest.raises(Mistake, match=r"^mine\.py: ended, exit code 1: no turtle here$"):
+        node.wait(Path("mine.py"), child, lambda: False, 1.0)
+
+
+def test_a_loop_without_end_is_one_line(tmp_path):
+    (tmp_path / "mine.py").write_text("while True:\n    pass\n", encoding="utf-8")
+    code = "import sys, exercises.main as m; m.LIMIT = 1; sys.exit(m.run())"
+    done = subprocess.run([sys.executable, "-c", code, "white_line", str(tmp_path / "mine.py")],
+                          capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr == ("check_exercise: not done after 1 s: does a loop of the program never"
+                           " end?\n")
+
+
+def test_a_table_that_is_no_controllers_file(tmp_path, capsys):
+    file = tmp_path / "mine.yaml"
+    for text, code, said in (("a: [", 2, "no YAML"),
+                             ("robot: {}", 1, "first key must be `racecar`"),
+                             ("racecar: {left: {type: x}}", 1, "left: lacks `joint`")):
+        file.write_text(text, encoding="utf-8")
+        assert main(["steering", str(file)]) == code
+        assert said in "".join(capsys.readouterr())

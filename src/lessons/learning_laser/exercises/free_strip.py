@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Exercise free_strip: the robot is wider than a beam.  练习：机器人比一束激光宽。"""
+
+import math
+import time
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import LaserScan
+
+HALF_WIDTH = 0.27  # m: the waffle's 0.153, and room beside it
+REACH = 2.5  # m: what is farther does not count
+HEADINGS = np.radians(np.arange(-90, 91, 5))  # rad, left positive
+SPEED, TURN = 0.22, 1.0  # m/s, rad/s, at most
+TURN_GAIN = 1.5  # rad/s for each rad
+STOP, SLOW = 0.35, 0.5  # m: no farther ahead than STOP; slower from STOP + SLOW on
+DEAD_END = 0.5  # m: less is worth nothing, then it turns to wherever it is freest
+
+
+def free_lengths(angles, ranges):
+    """How far (m, at most REACH) a strip is free in each of HEADINGS.
+
+    angles, ranges: (N,) rad and m of a scan; inf where it saw nothing.
+    """
+    turned = angles - HEADINGS[:, None]  # (H, N)
+    # Yours: all points in a strip of HALF_WIDTH to each side count, not only those in one beam.
+    # 请修改：左右各 HALF_WIDTH 的通道里的点都要算，而不只是一束激光
+    in_beam = np.abs(turned) < np.radians(0.6)
+    return np.where(in_beam, ranges, REACH).min(axis=1, initial=REACH)
+
+
+def command(angles, ranges):
+    """Speed (m/s) and turn (rad/s, left positive) after a scan."""
+    free = free_lengths(angles, ranges)
+    worth = free * np.cos(HEADINGS)
+    best = np.argmax(worth if worth.max() >= DEAD_END else free)
+    ahead = free[len(HEADINGS) // 2]
+    speed = SPEED * np.clip((ahead - STOP) / SLOW, 0, 1)
+    return speed, np.clip(TURN_GAIN * HEADINGS[best], -TURN, TURN)
+
+
+class AvoidObstacles:
+    def __init__(self):
+        self.publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        self.subscriber = rospy.Subscriber("scan", LaserScan, self.take_scan, queue_size=1)
+
+    def take_scan(self, msg):
+        ranges = np.array(msg.ranges)
+        ranges[~(ranges >= msg.range_min)] = math.inf  # 0 and nan: nothing seen
+        angles = msg.angle_min + msg.angle_increment * np.arange(len(ranges))
+        seen = np.isfinite(ranges)
+        twist = Twist()
+        twist.linear.x, twist.angular.z = command(angles[seen], ranges[seen])
+        self.publisher.publish(twist)
+
+    def stop(self):
+        self.subscriber.unregister()  # or the next scan would start the robot again
+        self.publisher.publish(Twist())
+        time.sleep(0.2)  # s, wall: sending takes a moment
+
+
+def main():
+    rospy.init_node("free_strip")
+    rospy.on_shutdown(AvoidObstacles().stop)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Exercise keep_apart: turtle2 stops 1 m from turtle1.  练习：turtle2 在离 turtle1 一米处停下。"""
+
+import math
+
+import rospy
+import tf2_ros
+from geometry_msgs.msg import Twist
+
+RATE_HZ = 10
+DRIVE_GAIN = 0.5  # m/s per m of distance
+TURN_GAIN = 4.0  # rad/s per rad of bearing
+APART = 1.0  # m
+WAIT = rospy.Duration(3.0)  # for the frames, at the start  开始时等待坐标变换
+
+
+def follow(x, y):
+    """Towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
+    command = Twist()
+    # Yours: 0 at APART, and never backwards.  请修改：到 APART 处为 0，且不倒车
+    command.linear.x = DRIVE_GAIN * math.hypot(x, y)
+    command.angular.z = TURN_GAIN * math.atan2(y, x)
+    return command
+
+
+def main():
+    rospy.init_node("tf_sub")
+    buffer = tf2_ros.Buffer()
+    tf2_ros.TransformListener(buffer)
+    publisher = rospy.Publisher("/turtle2/cmd_vel", Twist, queue_size=1)
+    rate = rospy.Rate(RATE_HZ)
+    while not rospy.is_shutdown():
+        try:
+            target = buffer.lookup_transform("turtle2", "turtle1", rospy.Time(0), WAIT)
+            publisher.publish(follow(target.transform.translation.x,
+                                     target.transform.translation.y))
+        except tf2_ros.TransformException as error:
+            rospy.logwarn_throttle(1.0, f"not yet: {error}")
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while sleeping  睡眠时按下 Ctrl-C

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Exercise cost_planner: the cheapest way, not the shortest.  练习：代价最小的路，而不是最短的路。
+
+nav07_planner.py with costs. Try it in the lesson: copy it over src/nav_demo/nav07_planner.py, and
+name the class BreadthFirst again.
+"""
+
+import heapq
+import math
+from copy import deepcopy
+
+INSCRIBED = 253  # from this cost on the car would touch something; 255 was never seen
+NEIGHBOURS = [(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)]
+
+
+class Planner:
+    """The way with the least sum of costs (Dijkstra)."""
+
+    def initialize(self, name, costmap):
+        """Once, at the start; `name` is the class's, for parameters and topics below ~name."""
+        self.costmap = costmap
+
+    def make_plan(self, start, goal):
+        """List of PoseStamped from start to goal; empty where there is no way."""
+        grid = self.costmap.snapshot()  # cells (rows, columns), resolution (m), origin (x, y)
+        first, last = cell_of(grid, start.pose.position), cell_of(grid, goal.pose.position)
+        came_from, spent, waiting = {}, {first: 0.0}, [(0.0, first, None)]
+        while waiting and last not in came_from:
+            cost, cell, before = heapq.heappop(waiting)
+            if cell in came_from:
+                continue  # a cheaper way to it is known  已有更省的路
+            came_from[cell] = before
+            for row, column in NEIGHBOURS:
+                near = (cell[0] + row, cell[1] + column)
+                if near not in came_from and is_free(grid, near):
+                    there = cost + math.hypot(row, column) * (1 + grid.cells[near] / 50)
+                    if there < spent.get(near, math.inf):
+                        spent[near] = there
+                        heapq.heappush(waiting, (there, near, cell))
+        if last not in came_from:
+            return []
+        cells = [last]
+        while came_from[cells[-1]] is not None:
+            cells.append(came_from[cells[-1]])
+        between = [pose_at(grid, cell, start) for cell in reversed(cells[1:-1])]
+        return [start, *between, goal]
+
+
+def cell_of(grid, point):
+    """(row, column) of a point in m."""
+    x, y = grid.origin
+    return int((point.y - y) // grid.resolution), int((point.x - x) // grid.resolution)
+
+
+def is_free(grid, cell):
+    """Whether the car's middle may be there."""
+    rows, columns = grid.cells.shape
+    return (0 <= cell[0] < rows and 0 <= cell[1] < columns) and grid.cells[cell] < INSCRIBED
+
+
+def pose_at(grid, cell, like):
+    """The cell's middle, otherwise as the pose `like`."""
+    pose = deepcopy(like)
+    pose.pose.position.x = grid.origin[0] + (cell[1] + 0.5) * grid.resolution
+    pose.pose.position.y = grid.origin[1] + (cell[0] + 0.5) * grid.resolution
+    return pose
