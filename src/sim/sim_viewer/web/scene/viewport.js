@@ -14,6 +14,8 @@ const HORIZON = [0.8, 0.86, 0.92]; // as the simulator's cameras have them
 const ZENITH = [0.3, 0.5, 0.8];
 const BEHIND = new THREE.Vector3(-1.6, -1.2, 1.1); // from where a model is looked at, in its sizes
 
+const FLOOR = new THREE.Plane(new THREE.Vector3(0, 0, 1));
+
 THREE.ColorManagement.enabled = false;
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
 
@@ -48,6 +50,7 @@ function drawnByProcessor() {
 
 export class Viewport {
   constructor(parent, root) {
+    this.root = root;
     const slow = drawnByProcessor();
     this._renderer = new THREE.WebGLRenderer({ antialias: !slow });
     this._renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -72,6 +75,53 @@ export class Viewport {
     this._fit(parent);
     this._waiting = false;
     this._last = 0;
+    this._whenDrawn = [];
+    this._rays = new THREE.Raycaster();
+  }
+
+  get canvas() {
+    return this._renderer.domElement;
+  }
+
+  /** Resolves when the next picture is drawn. */
+  drawn() {
+    this.draw();
+    return new Promise((resolve) => this._whenDrawn.push(resolve));
+  }
+
+  /** Whether dragging moves the camera. */
+  set movable(wanted) {
+    this._controls.enabled = wanted;
+  }
+
+  /** Where the ray through an event's pixel meets something solid, or else the floor; or null. */
+  pick(event, solid = true) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    this._rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - left) / width - 1,
+      1 - 2 * (event.clientY - top) / height), this._camera);
+    const [hit] = solid ? this._rays.intersectObject(this.root) : [];
+    return hit?.point ?? this._rays.ray.intersectPlane(FLOOR, new THREE.Vector3());
+  }
+
+  /** Look at a place in m from `distance` m, by yaw and pitch in rad as rviz's Orbit has them. */
+  orbit(place, distance, yaw, pitch) {
+    const flat = distance * Math.cos(pitch);
+    this._controls.target.set(...place);
+    this._camera.position.set(place[0] + flat * Math.cos(yaw), place[1] + flat * Math.sin(yaw),
+      place[2] + distance * Math.sin(pitch));
+    this._controls.update();
+    this.draw();
+  }
+
+  /** m that the picture is high at a distance of 1 m. */
+  get opening() {
+    return 2 * Math.tan(this._camera.fov * Math.PI / 360);
+  }
+
+  /** The place that is looked at becomes this one. */
+  focus(place) {
+    this.shift(place.clone().sub(this._controls.target));
+    this.draw();
   }
 
   /** Soon; however often it is called, one picture. */
@@ -132,6 +182,7 @@ export class Viewport {
     if (this._closed) return;
     this._last = performance.now();
     this._renderer.render(this._scene, this._camera);
+    this._whenDrawn.splice(0).forEach((resolve) => resolve());
     if (this._pause) this._breathe(this._last);
   }
 
