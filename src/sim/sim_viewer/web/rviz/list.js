@@ -17,19 +17,22 @@ export class DisplayList {
     this._fixed = element("input", { id: "rviz-fixed", list: "rviz-frames", value: session.fixed,
       onchange: () => this._fix(this._fixed.value) });
     this._frames = element("datalist", { id: "rviz-frames" });
+    this._target = element("input", { id: "rviz-target", list: "rviz-frames",
+      value: session.target, onchange: () => session.follow(this._target.value) });
     this._global = element("p", { class: "status", id: "rviz-global" });
     this.element = element("div", { class: "rviz-list" },
       element("label", { class: "option" },
         element("b", { text: t("Fixed frame", "固定坐标系") }), this._fixed, this._frames),
-      this._global, this._displays, this._adder());
+      this._global, element("label", { class: "option" },
+        element("span", { text: t("Camera follows", "视角跟随") }), this._target), this._displays, this._adder());
     session.displays.forEach((display) => this._show(display));
     this._link = link;
-    this._stops = [link.watch("topics", {}, (rows) => this._learn(rows))];
+    this._stopTopics = link.watch("topics", {}, (rows) => this._learn(rows));
     this._watchFrames();
   }
 
   close() {
-    this._stops.forEach((stop) => stop());
+    this._stopTopics();
     this._stopFrames();
   }
 
@@ -37,7 +40,11 @@ export class DisplayList {
   tell(display) {
     const entry = this._entries.get(display);
     if (!entry) return;
-    entry.element.dataset.level = display.statuses.length ? worst(display.statuses) : "";
+    const [, level, text] = worst(display.statuses);
+    entry.element.dataset.level = display.enabled ? level : "";
+    entry.worst.textContent = display.enabled && level !== "ok" ? text : "";
+    entry.worst.className = `status ${level}`;
+    entry.showNamespaces(display.namespaces);
     entry.status.replaceChildren(...display.statuses.map(([name, level, text]) =>
       element("p", { class: `status ${level}`, text: `${name}: ${text}` })));
   }
@@ -55,7 +62,8 @@ export class DisplayList {
 
   _show(display) {
     const kind = this._session.types.get(display.class);
-    const status = element("div");
+    const status = element("div", { class: "statuses" });
+    const worst = element("span");
     const box = checkbox("", display.name, display.enabled, (wanted) => {
       display.enabled = wanted;
       this._session.restart(display);
@@ -64,20 +72,36 @@ export class DisplayList {
       element("summary", {}, element("span", { class: "level" }), box,
         element("span", { class: "muted", text: short(display.class) }),
         element("button", { class: "remove", text: "✕", title: t("remove", "移除"),
-          onclick: () => this._remove(display) })),
+          onclick: () => this._remove(display) }), worst),
       status, ...(kind ? this._settings(display, kind) : []));
-    this._entries.set(display, { element: made, status });
+    this._entries.set(display, { element: made, status, worst,
+      showNamespaces: (names) => this._showNamespaces(display, made, names) });
     this._displays.append(made);
     this.tell(display);
     return made;
   }
 
+  /** Markers say which namespaces there are; each can be hidden. */
+  _showNamespaces(display, made, names = []) {
+    const shown = display.options.Namespaces ?? {};
+    const unknown = names.filter((name) => !(name in shown));
+    if (!unknown.length) return;
+    display.options.Namespaces = { ...shown, ...Object.fromEntries(
+      unknown.map((name) => [name, true])) };
+    const option = this._session.types.get(display.class).options.find(
+      (one) => one.name === "Namespaces");
+    made.querySelector("[data-option=Namespaces]").replaceWith(this._option(display, option));
+  }
+
+  _option(display, option) {
+    return optionLine(option, display.options[option.name], (value) => {
+      display.options = { ...display.options, [option.name]: value };
+      display.shown?.change(this._session.fixed);
+    });
+  }
+
   _settings(display, kind) {
-    const lines = kind.options.map((option) => optionLine(option, display.options[option.name],
-      (value) => {
-        display.options = { ...display.options, [option.name]: value };
-        display.shown?.change(this._session.fixed);
-      }));
+    const lines = kind.options.map((option) => this._option(display, option));
     if (!kind.messages.length) return lines;
     const known = element("datalist", { id: `rviz-topics-${display.id}` });
     const topic = element("input", { class: "topic", list: known.id, value: display.topic,

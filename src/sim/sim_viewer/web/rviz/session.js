@@ -5,6 +5,7 @@ import { Shown } from "./shown.js";
 
 const IMAGE = "rviz/Image";
 const LIKELY = ["map", "odom", "world"]; // fixed frames, where the person has chosen none
+const FIXED = "<Fixed Frame>";
 const WORST = ["ok", "warning", "error"];
 
 export class Session {
@@ -14,6 +15,7 @@ export class Session {
     this.topics = config.topics;
     this.view = config.view;
     this.background = config.background;
+    this.target = config.view.frame === FIXED ? "" : config.view.frame ?? ""; // of the camera
     this.displays = [];
     this._next = 1;
     config.displays.forEach((display) => this._add(display));
@@ -44,15 +46,18 @@ export class Session {
     Object.assign(this, { _link: link, _viewport: viewport, _pictures: pictures,
       _onStatus: onStatus });
     this.displays.forEach((display) => this.start(display));
+    this.follow(this.target, [0, 0, 0]); // the camera stands as seen from there
   }
 
   close() {
+    this._stopFollowing();
     this.displays.forEach((display) => this.stop(display));
   }
 
   start(display) {
     if (!display.enabled || !display.supported || !this.fixed) return;
-    const tell = (statuses) => {
+    const tell = (statuses, namespaces = []) => {
+      display.namespaces = namespaces;
       display.statuses = [...display.warnings.map((text) => ["Option", "warning", text]),
         ...statuses];
       this._onStatus(display);
@@ -76,6 +81,20 @@ export class Session {
     this._onStatus(display);
   }
 
+  /** The camera goes along with a frame from `last` on, its place in m; "": it stays. */
+  follow(target, last) {
+    this._stopFollowing?.();
+    this.target = target;
+    this._stopFollowing = () => {};
+    if (!target || !this.fixed) return;
+    this._stopFollowing = this._link.watch("rviz_place", { frame: this.fixed, target },
+      (place) => {
+        if (!Array.isArray(place)) return;
+        this._viewport.focus(place, last);
+        last = place;
+      });
+  }
+
   /** Another fixed frame. */
   fix(frame) {
     const first = !this.fixed;
@@ -84,6 +103,7 @@ export class Session {
       if (first) this.start(display);
       else display.shown?.change(frame);
     }
+    this.follow(this.target);
   }
 
   /** The frame that is most likely meant, of `{frame: parent}`; "" if there is none. */
@@ -93,7 +113,8 @@ export class Session {
   }
 }
 
-/** The worst level of statuses. */
+/** The worst of the statuses, or what says that all is well. */
 export function worst(statuses) {
-  return WORST[Math.max(0, ...statuses.map(([, level]) => WORST.indexOf(level)))];
+  const rank = ([, level]) => WORST.indexOf(level);
+  return statuses.reduce((one, other) => (rank(other) > rank(one) ? other : one), ["", "ok", ""]);
 }

@@ -5,6 +5,8 @@ import { decodeFrame } from "./frame.js";
 import { place } from "./look.js";
 import { PARTS } from "./parts.js";
 
+let next = 1; // the server's number for a display; each start has another one
+
 export class Shown {
   /** `display` as session.js has it; `onStatus(statuses)` for each change. */
   constructor(display, link, viewport, onStatus) {
@@ -18,9 +20,9 @@ export class Shown {
   }
 
   start(frame) {
-    const { id, class: kind, topic, options } = this._display;
+    const { class: kind, topic, options } = this._display;
     // When the connection comes back, the link watches by these again.
-    this._args = { display: id, class: kind, options, frame, ...(topic && { topic }) };
+    this._args = { display: next++, class: kind, options, frame, ...(topic && { topic }) };
     this._viewport.root.add(this.group);
     this._stop = this._link.watch("rviz_display", this._args, (data) => this._take(data),
       (reason) => this._onStatus([["Display", "error", reason]]));
@@ -44,13 +46,16 @@ export class Shown {
 
   async _take(data) {
     if (!(data instanceof DataView)) {
-      this._onStatus(data.status);
+      this._onStatus(data.status, data.namespaces);
       return;
     }
     const { number, parts } = decodeFrame(data);
-    this._show(parts);
-    await this._viewport.drawn();
-    this._link.tell("rviz_drawn", { display: this._display.id, frame: number });
+    try {
+      this._show(parts);
+    } finally { // or it would be the last one
+      await this._viewport.drawn();
+      this._link.tell("rviz_drawn", { display: this._args.display, frame: number });
+    }
   }
 
   _show(parts) {

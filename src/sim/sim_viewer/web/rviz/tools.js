@@ -88,7 +88,7 @@ export class Tools {
       this._viewport.root.add(this._mark);
       this._viewport.draw();
     } else if (this._name === "measure") this._measure(place);
-    else if (this._name === "focus") this._done(() => this._viewport.focus(place));
+    else if (this._name === "focus") this._done(() => this._viewport.focus(place.toArray()));
     else this._done(() => this._publish(place, 0));
   }
 

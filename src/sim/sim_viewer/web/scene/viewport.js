@@ -118,9 +118,9 @@ export class Viewport {
     return 2 * Math.tan(this._camera.fov * Math.PI / 360);
   }
 
-  /** The place that is looked at becomes this one. */
-  focus(place) {
-    this.shift(place.clone().sub(this._controls.target));
+  /** This place in m becomes the one that is looked at, or takes the camera along from `last`. */
+  focus(place, last = this._controls.target.toArray()) {
+    this.shift(new THREE.Vector3(...place).sub(new THREE.Vector3(...last)));
     this.draw();
   }
 

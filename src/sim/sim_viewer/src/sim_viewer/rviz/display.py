@@ -1,7 +1,8 @@
 """`rviz_display`: one display of one page, from its topic to frames of drawing.py.
 
-Events are bytes, a frame, or {"status": [[name, level, text]]}. The page answers a frame by the
-operation `rviz_drawn` once it is drawn, and only then comes the next: the newest there is by then.
+Events are bytes, a frame, or {"status": [[name, level, text]], "namespaces": of markers}. The page
+answers a frame by the operation `rviz_drawn` once it is drawn, and only then comes the next: the
+newest there is by then.
 """
 
 import asyncio
@@ -9,6 +10,7 @@ import contextlib
 import time
 from typing import Any
 
+import numpy as np
 import rospy
 from roslib.message import get_message_class
 
@@ -131,34 +133,43 @@ class Display:
         while True:
             self._news.clear()
             if self._pace.free:
-                data = await self._context.run_in_thread(self._look)
-                if data:
-                    self._send(data)
+                await self._draw()
             self._send_status()
             await asyncio.sleep(1 / RATE_HZ)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._news.wait(), self._kind.period or LONGEST_REST)
 
+    async def _draw(self) -> None:
+        try:
+            data = await self._context.run_in_thread(self._look)
+        except Exception as error:  # of a message that somebody else made
+            self._showing.fail("Error", f"{type(error).__name__}: {error}")
+            return
+        if data:
+            self._send(data)
+
     def _look(self) -> bytes | None:
         """A frame, if there is something new."""
         self._view.most_points = self._pace.most_points
         self._showing.change(*self._wanted)
-        parts = self._showing.look()
-        if parts is None:
-            return None
-        content = encode(parts, self._known)
+        with np.errstate(all="ignore"):  # of numbers that somebody else made
+            parts = self._showing.look()
+            if parts is None:
+                return None
+            content = encode(parts, self._known)
         if content == self._last:
             return None
         self._last, self._parts = content, parts
         return frame(self._pace.sent(points_of(parts), time.monotonic()), content)
 
     def _send_status(self) -> None:
-        status = [[name, level, text]
-                  for name, (level, text) in list(self._showing.statuses.items())]
+        status = {"status": [[name, level, text]
+                             for name, (level, text) in list(self._showing.statuses.items())],
+                  "namespaces": self._showing.namespaces}
         last, due = self._status
         if status != last and time.monotonic() >= due:
             self._status = status, time.monotonic() + STATUS_PERIOD
-            self._send({"status": status}, keep=True)
+            self._send(status, keep=True)
 
 
 def _checked(kind: DisplayType, options: dict[str, Any]) -> dict[str, Any]:

@@ -52,6 +52,7 @@ class Drawer:
     """One display's state. Called in one thread at a time."""
 
     statuses: Statuses
+    namespaces: list[str] = []  # of markers
 
     def __init__(self, options: dict[str, Any]):
         self.options = options

@@ -8,7 +8,7 @@ from sim_viewer.rviz.config import ConfigError, beginning, read_config
 from sim_viewer.rviz.display_type import ERROR, OK, WARNING
 from sim_viewer.rviz.types import TYPES
 from sim_viewer.tools.paced import Paced
-from sim_viewer.transforms import Transforms
+from sim_viewer.transforms import NoPose, Transforms
 
 
 @operation("rviz_types")
@@ -28,6 +28,28 @@ async def rviz_config(context: Context) -> dict[str, Any]:
         return await context.run_in_thread(read_config, path) if path else beginning()
     except ConfigError as error:
         raise Refused(str(error)) from None
+
+
+@watchable("rviz_place")
+class Place(Paced):
+    """Sends x, y, z in m of the argument `target`, a frame, in the fixed frame, the argument
+    `frame`, when it has moved."""
+
+    PERIOD = 0.1
+
+    def __init__(self, context: Context, args: dict[str, Any], send: Any):
+        super().__init__(context, args, send)
+        self._frames = argument(args, "frame", str), argument(args, "target", str)
+        self._transforms: Transforms = context.node.shared(Transforms)
+
+    def open(self) -> None:
+        self.closing.enter_context(self._transforms.held())
+
+    def collect(self) -> Any:
+        try:
+            return self.changed(self._transforms.pose(*self._frames).position)
+        except NoPose:
+            return None
 
 
 @watchable("rviz_frames")

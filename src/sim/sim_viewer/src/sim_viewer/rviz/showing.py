@@ -44,6 +44,11 @@ class Showing:
         """As rviz lists them below the display."""
         return {**self._own, **self._drawer.statuses, **self._problem}
 
+    @property
+    def namespaces(self) -> list[str]:
+        """Of markers, as far as they are known."""
+        return self._drawer.namespaces
+
     def fail(self, name: str, text: str) -> None:
         """A status that something went wrong."""
         self._own[name] = (ERROR, text)

@@ -12,7 +12,7 @@ SHAFT, HEAD = 0.01, 0.02  # m: diameters of arrows, at scale 1
 HEAD_LENGTH = 0.08  # m
 ARROW = (255, 150, 178, 255)
 TEXT = (255, 255, 255, 255)
-TEXT_HEIGHT = 0.08  # m
+TEXT_HEIGHT = 0.1  # m
 
 
 class Frames(Drawer):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bullet_sim.description import Material, Mesh, Visual
-from bullet_sim.pose import Pose
+from bullet_sim.pose import IDENTITY, Pose
 from sim_viewer.rviz.display_type import ERROR, DisplayType, Drawer, Problem, View
 from sim_viewer.rviz.displays.marker_shapes import MESH, colour_of, marker_parts, scale_of
 from sim_viewer.rviz.drawing import Part
@@ -16,6 +16,7 @@ from sim_viewer.rviz.options import Option
 DELETE, DELETE_ALL = 2, 3
 MOST_MARKERS = 20_000
 MOST_STATUSES = 20
+MOST_NAMESPACES = 100
 Key = tuple[str, int]  # namespace and id
 
 
@@ -25,9 +26,38 @@ class Shown:
 
     marker: Any
     ends: float  # s; infinite without a lifetime
-    pose: Pose
+    pose: Pose = IDENTITY
     parts: list[Part] = field(default_factory=list)
+    visuals: tuple[Visual, ...] = ()  # of a mesh
     place: Pose | None = None
+    problem: str = ""  # why there is nothing to be drawn
+    lost: str = ""  # why its frame has no place
+
+    def build(self, view: View, most_points: int) -> None:
+        """Work out what it looks like."""
+        try:
+            self.pose = pose_of(self.marker.pose)
+            if self.marker.type == MESH:
+                scale = tuple(map(float, scale_of(self.marker)))
+                path = view.resolve(self.marker.mesh_resource)
+                self.visuals = (Visual("mesh", Mesh(path, scale), material=_material(self.marker)),)
+            else:
+                self.parts = marker_parts(self.marker, most_points)
+        except Problem as problem:
+            self.problem = str(problem)
+
+    def put(self, view: View) -> bool:
+        """Find its frame, where that is due; whether it has moved."""
+        locked = self.marker.frame_locked
+        if self.place is not None and not locked:
+            return False
+        header, before = self.marker.header, self.place
+        try:
+            self.place = view.pose(header.frame_id, 0.0 if locked else header.stamp.to_sec())
+            self.lost = ""
+        except Problem as problem:
+            self.lost = str(problem)
+        return self.place != before
 
 
 class Markers(Drawer):
@@ -36,11 +66,10 @@ class Markers(Drawer):
     def __init__(self, options: dict[str, Any]):
         super().__init__(options)
         self._shown: dict[Key, Shown] = {}
-        self._problems: dict[Key, str] = {}
         self._new: set[Key] = set()
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
-        for marker in getattr(message, "markers", None) or [message]:
+        for marker in message.markers if hasattr(message, "markers") else [message]:
             self._take(marker, now)
         self.changed = True
 
@@ -48,101 +77,56 @@ class Markers(Drawer):
         key = (marker.ns, marker.id)
         if marker.action == DELETE_ALL:
             self._shown.clear()
-            self._problems.clear()
         elif marker.action == DELETE:
-            self._forget(key)
+            self._shown.pop(key, None)
         elif key in self._shown or len(self._shown) < MOST_MARKERS:
-            self._forget(key)
+            if marker.ns not in self.namespaces:
+                self.namespaces = [*self.namespaces, marker.ns][:MOST_NAMESPACES]
             life = marker.lifetime.to_sec()
-            try:
-                self._shown[key] = Shown(marker, now + life if life > 0 else np.inf,
-                                         pose_of(marker.pose))
-                self._new.add(key)
-            except Problem:
-                self._problems[key] = "Contains invalid floating point values or quaternions"
-
-    def _forget(self, key: Key) -> None:
-        self._shown.pop(key, None)
-        self._problems.pop(key, None)
+            self._shown[key] = Shown(marker, now + life if life > 0 else np.inf)
+            self._new.add(key)
 
     def draw(self, view: View) -> list[Part] | None:
         for key in [key for key, one in self._shown.items() if one.ends <= view.now]:
-            self._forget(key)
+            del self._shown[key]
             self.changed = True
-        new, self._new = self._new, set()
-        for key in new & set(self._shown):
-            self._build(key, view.most_points // max(len(new), 1))
-        for key, one in self._shown.items():
-            self._place(key, one, view)
-        self.statuses = {f"{ns}/{number}": (ERROR, text) for (ns, number), text in
-                         list(self._problems.items())[:MOST_STATUSES]}
-        if not self.changed:
+        new, self._new = self._new & set(self._shown), set()
+        for key in new:
+            self._shown[key].build(view, view.most_points // len(new))
+        moved = [one.put(view) for one in self._shown.values()]
+        wrong = [(key, one) for key, one in self._shown.items() if one.problem or one.lost]
+        self.statuses = {f"{ns}/{number}": (ERROR, one.problem or one.lost)
+                         for (ns, number), one in wrong[:MOST_STATUSES]}
+        if not self.changed and not any(moved):
             return None
         self.changed = False
-        return self._parts(view)
-
-    def _build(self, key: Key, most: int) -> None:
-        one = self._shown[key]
-        try:
-            if one.marker.type == MESH:
-                scale_of(one.marker)
-            else:
-                one.parts = marker_parts(one.marker, most)
-        except Problem as problem:
-            self._problems[key] = str(problem)
-
-    def _place(self, key: Key, one: Shown, view: View) -> None:
-        if one.place is not None and not one.marker.frame_locked:
-            return
-        header = one.marker.header
-        locked = one.marker.frame_locked
-        try:
-            place = view.pose(header.frame_id, 0.0 if locked else header.stamp.to_sec())
-        except Problem as problem:
-            self._problems[key] = str(problem)
-            return
-        if one.place is None:
-            self._problems.pop(key, None) if one.parts or one.marker.type == MESH else None
-        self.changed |= place != one.place
-        one.place = place
-
-    def _parts(self, view: View) -> list[Part]:
         hidden = {name for name, wanted in self.options["Namespaces"].items() if not wanted}
-        seen = {key: one for key, one in self._shown.items()
-                if one.place is not None and key[0] not in hidden}
-        merged: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
-        parts = []
-        for one in seen.values():
-            pose = one.place * one.pose
-            for part in one.parts:
-                if part.kind == "shapes":
-                    merged.setdefault(part.fields["shape"], []).append(
-                        (moved(part.arrays["rows"], pose), part.arrays["colour"]))
-                else:
-                    parts.append(Part(part.kind, part.arrays, part.fields, pose))
-        parts += [Part("shapes", {"rows": np.concatenate([rows for rows, _ in found]
-                                                         ).astype(np.float32),
-                                  "colour": np.concatenate([colours for _, colours in found])},
-                       {"shape": shape}) for shape, found in merged.items()]
-        return parts + self._meshes(seen, view)
+        return _parts({key: one for key, one in self._shown.items()
+                       if one.place is not None and key[0] not in hidden}, view)
 
-    def _meshes(self, seen: dict[Key, Shown], view: View) -> list[Part]:
-        visuals, rows = {}, []
-        for (ns, number), one in seen.items():
-            if one.marker.type != MESH:
-                continue
-            try:
-                path = view.resolve(one.marker.mesh_resource)
-            except Problem as problem:
-                self._problems[ns, number] = str(problem)
-                continue
-            visuals[f"{ns}/{number}"] = (Visual("mesh", Mesh(
-                path, tuple(map(float, scale_of(one.marker)))), material=_material(one.marker)),)
-            pose = one.place * one.pose
+
+def _parts(seen: dict[Key, Shown], view: View) -> list[Part]:
+    """All shapes of a kind in one part; meshes in one as well."""
+    merged: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    parts, visuals, rows = [], {}, []
+    for (ns, number), one in seen.items():
+        pose = one.place * one.pose
+        for part in one.parts:
+            if part.kind == "shapes":
+                merged.setdefault(part.fields["shape"], []).append(
+                    (moved(part.arrays["rows"], pose), part.arrays["colour"]))
+            else:
+                parts.append(Part(part.kind, part.arrays, part.fields, pose))
+        if one.visuals:
+            visuals[f"{ns}/{number}"] = one.visuals
             rows.append([*pose.position, *pose.orientation])
-        if not visuals:
-            return []
-        return [Part("links", {"rows": np.array(rows, np.float32)}, view.links(visuals))]
+    for shape, found in merged.items():
+        table = np.concatenate([rows_of for rows_of, _ in found]).astype(np.float32)
+        colours = np.concatenate([colours for _, colours in found])
+        parts.append(Part("shapes", {"rows": table, "colour": colours}, {"shape": shape}))
+    if visuals:
+        parts.append(Part("links", {"rows": np.array(rows, np.float32)}, view.links(visuals)))
+    return parts
 
 
 def _material(marker: Any) -> Material | None:

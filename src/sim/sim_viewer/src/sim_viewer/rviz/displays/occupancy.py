@@ -6,7 +6,15 @@ from typing import Any
 import numpy as np
 
 from bullet_sim.pose import Pose
-from sim_viewer.rviz.display_type import OK, WARNING, DisplayType, Drawer, Problem, View
+from sim_viewer.rviz.display_type import (
+    OK,
+    WARNING,
+    DisplayType,
+    Drawer,
+    NoTransform,
+    Problem,
+    View,
+)
 from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import finite, pose_of
 from sim_viewer.rviz.options import Option
@@ -44,7 +52,11 @@ class Map(Drawer):
         if self._cells is None:
             self.statuses = {"Map": (WARNING, "No map received")}
             return []
-        place = view.pose(self._frame) * self._place
+        try:
+            place = view.pose(self._frame) * self._place
+        except NoTransform:
+            raise NoTransform(
+                f"No transform from [{self._frame}] to [{view.fixed_frame}]") from None
         self._part = self._part or self._picture()
         self._part.pose = place
         return [self._part]

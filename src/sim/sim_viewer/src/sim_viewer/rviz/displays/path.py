@@ -16,12 +16,13 @@ HIDDEN, ARROWS, AXES = "None", "Arrows", "Axes"
 
 def path_lines(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
     """A line, and arrows or axes at each pose where they are wanted."""
-    positions = points([one.pose.position for one in message.poses])
+    chosen = message.poses[::max(1, -(-len(message.poses) // most))]
+    positions = points([one.pose.position for one in chosen])
     positions += [options[f"Offset/{axis}"] for axis in "XYZ"]
     wide = options["Line Style"] == "Billboards"
     parts = [strip(positions, rgba(options), options["Line Width"] if wide else 0.0)]
     if options["Pose Style"] != HIDDEN and len(positions):
-        rows = pose_rows([one.pose for one in message.poses])
+        rows = pose_rows([one.pose for one in chosen])
         rows[:, :3] = positions
         parts += _poses(rows, options)
     return parts, {}
