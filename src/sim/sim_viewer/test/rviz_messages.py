@@ -19,7 +19,7 @@ from geometry_msgs.msg import (
     Vector3,
 )
 from nav_msgs.msg import OccupancyGrid, Path
-from sensor_msgs.msg import LaserScan, PointCloud2, PointField, Range
+from sensor_msgs.msg import Image, LaserScan, PointCloud2, PointField, Range
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -101,6 +101,10 @@ def footprint() -> PolygonStamped:
 
 def sonar() -> Range:
     return Range(Header(frame_id="laser"), Range.ULTRASOUND, 0.5, 0.1, 3.0, 1.2)
+
+
+def picture() -> Image:
+    return Image(Header(), 48, 64, "rgb8", 0, 3 * 64, bytes((0, 128, 255)) * 48 * 64)
 
 
 def cloud(points: int = CLOUD) -> PointCloud2:

@@ -97,6 +97,7 @@ export class Viewport {
   /** Where the ray through an event's pixel meets something solid, or else the floor; or null. */
   pick(event, solid = true) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    this._camera.updateMatrixWorld(); // it may have moved since the last picture
     this._rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - left) / width - 1,
       1 - 2 * (event.clientY - top) / height), this._camera);
     const [hit] = solid ? this._rays.intersectObject(this.root) : [];
