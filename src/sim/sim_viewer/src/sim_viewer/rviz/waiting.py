@@ -7,7 +7,7 @@ from typing import Any
 
 QUEUE = 10  # messages, as rviz's filter has it; older ones are dropped
 QUEUE_OF_ALL = 2000  # where each counts
-MOST_BYTES = 64 << 20  # of raw messages, but the newest two stay
+MOST_BYTES = 32 << 20  # of raw messages, but the newest two stay
 
 
 class Waiting:
