@@ -39,4 +39,4 @@ def test_the_master_does_not_learn_the_token(monkeypatch, capsys):
 
     asyncio.run(announce())
     assert said == {"~url": "http://127.0.0.1:8081/"}
-    assert "viewer: http://127.0.0.1:8081/?token=0123\n" in capsys.readouterr().out
+    assert "viewer: http://127.0.0.1:8081/?token=0123#rviz\n" in capsys.readouterr().out

@@ -57,7 +57,7 @@ class Transforms(SharedSubscription):
         """Of `frame` in the frame `fixed` at a time in s, 0: the newest. NoPose if unknown."""
         # tf2 has no leading slashes; old tf nodes write them.
         fixed, frame = fixed.lstrip("/"), frame.lstrip("/")
-        if frame == fixed and self.has(frame):
+        if frame == fixed:
             return IDENTITY
         try:
             found = self._buffer.lookup_transform_core(fixed, frame, rospy.Time.from_sec(stamp))

@@ -64,12 +64,13 @@ export class DisplayList {
     const kind = this._session.types.get(display.class);
     const status = element("div", { class: "statuses" });
     const worst = element("span");
-    const box = checkbox("", display.name, display.enabled, (wanted) => {
+    const box = checkbox("", "", display.enabled, (wanted) => {
       display.enabled = wanted;
       this._session.restart(display);
     });
     const made = element("details", { class: "rviz-display", "data-name": display.name },
       element("summary", {}, element("span", { class: "level" }), box,
+        element("span", { class: "name", text: display.name }),
         element("span", { class: "muted", text: short(display.class) }),
         element("button", { class: "remove", text: "✕", title: t("remove", "移除"),
           onclick: () => this._remove(display) }), worst),

@@ -112,7 +112,7 @@ class Simple(Drawer):
         keep = int(self.options.get("Buffer Length", 1))
         decay = self.options.get("Decay Time", 0.0)
         if decay:
-            fresh = [one for one in self._kept if one[0] > view.now - decay]
+            fresh = [one for one in self._kept if view.now - decay < one[0] <= view.now]
         else:
             fresh = self._kept[-keep:]
         if not self.changed and len(fresh) == len(self._kept):
