@@ -143,7 +143,7 @@ class Display:
         try:
             data = await self._context.run_in_thread(self._look)
         except Exception as error:  # of a message that somebody else made
-            self._showing.fail("Error", f"{type(error).__name__}: {error}")
+            self._showing.stumble(error)
             return
         if data:
             self._send(data)

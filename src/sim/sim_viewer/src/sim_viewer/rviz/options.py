@@ -1,6 +1,5 @@
 """A display's options by rviz's names, with what each may be. Without ROS."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -43,7 +42,7 @@ class Option:
     def _number(self, value: Any) -> float | None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             return None
-        return value if math.isfinite(value) and self.low <= value <= self.high else None
+        return value if self.low <= value <= self.high else None  # what is no number is not
 
     def _integer(self, value: Any) -> int | None:
         return value if isinstance(value, int) and self._number(value) is not None else None

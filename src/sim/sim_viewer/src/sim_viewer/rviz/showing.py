@@ -53,6 +53,10 @@ class Showing:
         """A status that something went wrong."""
         self._own[name] = (ERROR, text)
 
+    def stumble(self, error: Exception) -> None:
+        """What nobody thought of, until the next look."""
+        self._problem["Error"] = (ERROR, f"{type(error).__name__}: {error}")
+
     def change(self, options: dict[str, Any], fixed_frame: str) -> None:
         """Other options, or another fixed frame: what was shown is shown anew."""
         if options != self._options:
@@ -75,7 +79,7 @@ class Showing:
         except (Problem, SimulationError) as problem:
             self._problem["Error"] = (ERROR, str(problem))
         except Exception as error:  # of a message that somebody else made
-            self._problem["Error"] = (ERROR, f"{type(error).__name__}: {error}")
+            self.stumble(error)
         return [] if self._kind.period else None
 
     def _take(self) -> None:
