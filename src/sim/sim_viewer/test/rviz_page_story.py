@@ -93,6 +93,9 @@ class RvizPage(unittest.TestCase):
                          "not supported here")
         self.page.wait_for("document.querySelector('.rviz-pictures img')?.naturalWidth === 64")
         self.page.wait_for("document.querySelector('[data-name=Lost]').dataset.level === 'error'")
+        # What takes long to draw here is not drawn any more.
+        self.entry("Cloud", "entry.querySelector('.check input').click()")
+        self.page.wait_for(f"!{self.display('Cloud')}.shown")
 
     def test_2_options_topics_and_the_fixed_frame_are_changed(self):
         self.entry("Scan", """const box = entry.querySelector('[data-option="Style"] select');
@@ -116,10 +119,6 @@ class RvizPage(unittest.TestCase):
         self.wait("Axes", "parts.length === 3")
         self.entry("Axes", "entry.querySelector('.remove').click()")
         self.assertFalse(self.page.evaluate(f"Boolean({self.display('Axes')})"))
-        self.entry("Map", "entry.querySelector('.check input').click()")
-        self.page.wait_for(f"!{self.display('Map')}.shown")
-        self.entry("Map", "entry.querySelector('.check input').click()")
-        self.wait("Map", "parts.length === 1")
 
     # --- tools
 

@@ -24,7 +24,8 @@ export class DisplayList {
       element("label", { class: "option" },
         element("b", { text: t("Fixed frame", "固定坐标系") }), this._fixed, this._frames),
       this._global, element("label", { class: "option" },
-        element("span", { text: t("Camera follows", "视角跟随") }), this._target), this._displays, this._adder());
+        element("span", { text: t("Camera follows", "视角跟随") }), this._target),
+      this._displays, this._adder());
     session.displays.forEach((display) => this._show(display));
     this._link = link;
     this._stopTopics = link.watch("topics", {}, (rows) => this._learn(rows));
@@ -42,8 +43,8 @@ export class DisplayList {
     if (!entry) return;
     const [, level, text] = worst(display.statuses);
     entry.element.dataset.level = display.enabled ? level : "";
-    entry.worst.textContent = display.enabled && level !== "ok" ? text : "";
-    entry.worst.className = `status ${level}`;
+    entry.trouble.textContent = display.enabled && level !== "ok" ? text : "";
+    entry.trouble.className = `status ${level}`;
     entry.showNamespaces(display.namespaces);
     entry.status.replaceChildren(...display.statuses.map(([name, level, text]) =>
       element("p", { class: `status ${level}`, text: `${name}: ${text}` })));
@@ -63,7 +64,7 @@ export class DisplayList {
   _show(display) {
     const kind = this._session.types.get(display.class);
     const status = element("div", { class: "statuses" });
-    const worst = element("span");
+    const trouble = element("span");
     const box = checkbox("", "", display.enabled, (wanted) => {
       display.enabled = wanted;
       this._session.restart(display);
@@ -73,9 +74,9 @@ export class DisplayList {
         element("span", { class: "name", text: display.name }),
         element("span", { class: "muted", text: short(display.class) }),
         element("button", { class: "remove", text: "✕", title: t("remove", "移除"),
-          onclick: () => this._remove(display) }), worst),
+          onclick: () => this._remove(display) }), trouble),
       status, ...(kind ? this._settings(display, kind) : []));
-    this._entries.set(display, { element: made, status, worst,
+    this._entries.set(display, { element: made, status, trouble,
       showNamespaces: (names) => this._showNamespaces(display, made, names) });
     this._displays.append(made);
     this.tell(display);

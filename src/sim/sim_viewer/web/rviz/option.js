@@ -7,22 +7,20 @@ const hex = (rgb) => "#" + rgb.split(";").map((one) => Number(one).toString(16).
   .join("");
 const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16)).join("; ");
 
+const numeric = (step) => (option, value, set) => {
+  const box = element("input", { type: "number", step, min: option.low, max: option.high, value,
+    onchange: () => box.checkValidity() && box.value && set(Number(box.value)) });
+  return box;
+};
+
 const INPUTS = {
   color: (option, value, set) => {
     const box = element("input", { type: "color", value: hex(value),
       oninput: () => set(rgb(box.value)) });
     return box;
   },
-  number: (option, value, set) => {
-    const box = element("input", { type: "number", step: "any", min: option.low, max: option.high,
-      value, onchange: () => box.checkValidity() && box.value && set(Number(box.value)) });
-    return box;
-  },
-  integer: (option, value, set) => {
-    const box = element("input", { type: "number", step: 1, min: option.low, max: option.high,
-      value, onchange: () => box.checkValidity() && box.value && set(Number(box.value)) });
-    return box;
-  },
+  number: numeric("any"),
+  integer: numeric(1),
   switch: (option, value, set) => checkbox("", "", value, set),
   choice: (option, value, set) => choice("", option.choices.map((one) => [one, one]), value, set),
   text: (option, value, set) => {
