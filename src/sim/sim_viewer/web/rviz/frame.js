@@ -2,7 +2,7 @@
 
 const KINDS = { f4: Float32Array, u1: Uint8Array };
 
-/** `{number, parts}`; a part has `kind`, `pose`, `key`, its fields, and `arrays` by name, if any. */
+/** `{number, parts}`; a part has `kind`, `pose`, `key`, its fields, and `arrays` by name. */
 export function decodeFrame(data) {
   const number = data.getUint32(0, true);
   const length = data.getUint32(4, true);

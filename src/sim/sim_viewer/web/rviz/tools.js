@@ -35,7 +35,8 @@ export class Tools {
       .filter(([, tool]) => tool.free || link.control)
       .map(([name, { title }]) => [name, element("button", {
         id: `rviz-tool-${name}`, text: title, onclick: () => this.take(name) })]));
-    this.element = element("div", { class: "row rviz-tools" }, ...this._buttons.values(), this._say);
+    this.element = element("div", { class: "row rviz-tools" }, ...this._buttons.values(),
+      this._say);
     this._events = { pointerdown: (event) => this._press(event),
       pointermove: (event) => this._drag(event), pointerup: (event) => this._release(event) };
     for (const [name, listener] of Object.entries(this._events)) {
