@@ -18,7 +18,8 @@ from geometry_msgs.msg import (
     TransformStamped,
     Vector3,
 )
-from nav_msgs.msg import OccupancyGrid, Path
+from map_msgs.msg import OccupancyGridUpdate
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from sensor_msgs.msg import Image, LaserScan, PointCloud2, PointField, Range
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
@@ -116,6 +117,22 @@ def cloud(points: int = CLOUD) -> PointCloud2:
     fields = [PointField(axis, 4 * i, PointField.FLOAT32, 1) for i, axis in enumerate("xyz")]
     return PointCloud2(Header(frame_id="map"), 1, points, fields, False, 12, 12 * points,
                        table.tobytes(), True)
+
+
+def odometry() -> Odometry:
+    message = Odometry(header=Header(frame_id="odom"))
+    message.pose.pose = at(-1.0, 1.0, 0.5)
+    return message
+
+
+def update() -> OccupancyGridUpdate:
+    """A cell of 50 at column 10 of row 20."""
+    return OccupancyGridUpdate(Header(frame_id="map"), 10, 20, 1, 1, [50])
+
+
+def marker() -> Marker:
+    return Marker(header=Header(frame_id="map"), ns="one", pose=at(-2.0, 2.0), type=Marker.SPHERE,
+                  scale=Vector3(0.4, 0.4, 0.4), color=ColorRGBA(1.0, 0.6, 0.0, 0.5))
 
 
 def markers() -> MarkerArray:

@@ -18,6 +18,7 @@ TOPICS = {"/tf_static": lambda: TFMessage(made_up.transforms()), "/map": made_up
           "/scan": made_up.scan, "/plan": made_up.path, "/particlecloud": made_up.particles,
           "/amcl_pose": made_up.estimate, "/footprint": made_up.footprint,
           "/sonar": made_up.sonar, "/markers": made_up.markers, "/cloud": made_up.cloud,
+          "/odom": made_up.odometry, "/marker": made_up.marker,
           "/lost_scan": lambda: made_up.scan("nowhere"), "/picture": made_up.picture}
 TOLERANCE = 0.1  # m, of a click: some pixels
 
@@ -74,6 +75,8 @@ class RvizPage(unittest.TestCase):
             "Particles": "parts[0].geometry.instanceCount === 40 * 3",
             "Estimate": "parts.length === 4", "Footprint": "parts[0].geometry.instanceCount === 4",
             "Cloud": "parts[0].geometry.attributes.position.count >= 10000",
+            "Odometry": "parts.length === 2 && parts[0].children[0].count === 1",
+            "Marker": "parts[0].children[0].count === 1 && d.namespaces.join() === 'one'",
             "Sonar": "parts[0].children[0].count === 1",
             "TF": "parts.at(-1).children.map((one) => one.name).join() === "
                   "'base_link,laser,map,odom'",
@@ -113,6 +116,12 @@ class RvizPage(unittest.TestCase):
             })(document.querySelector('#rviz-fixed'))""")
         self.wait("Map", "parts[0].position.x === -3")
 
+    def test_3_a_map_is_updated(self):
+        updates = rospy.Publisher("/map_updates", type(made_up.update()), queue_size=1, latch=True)
+        updates.publish(made_up.update())
+        self.wait("Map", "parts[0].children[0].material.uniforms.cells.value.image"
+                         ".data[20 * 80 + 10] === 50")
+
     def test_3_displays_are_added_and_removed(self):
         self.page.evaluate("document.querySelector('#rviz-kind').value = 'rviz/Axes';"
                            "document.querySelector('#rviz-add').click()")
@@ -144,6 +153,7 @@ class RvizPage(unittest.TestCase):
         self.assertLess(abs(rospy.Time.now() - goal.header.stamp).to_sec(), 20.0)
         self.assertLess(math.hypot(goal.pose.position.x, goal.pose.position.y), TOLERANCE)
         self.assertAlmostEqual(goal.pose.orientation.z, math.sqrt(0.5), places=1)
+        self.wait("Goal", "parts.length === 2")  # the page's own goal comes back
         self.drag("initial_pose", 100, 0)
         pose = wait_until(lambda: self.heard.get("/initialpose"), "a pose").pose
         self.assertAlmostEqual(pose.pose.orientation.z, 0.0, places=1)

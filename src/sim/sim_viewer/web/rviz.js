@@ -10,7 +10,6 @@ import * as THREE from "./vendor/three.module.min.js";
 export const title = "RViz";
 
 const OVERVIEW = new THREE.Sphere(new THREE.Vector3(0, 0, 0), 4); // m
-const MOST_PITCH = 1.57; // rad
 
 let session = null; // of this page, whichever tab is shown
 let open = null;
@@ -77,12 +76,9 @@ class Tab {
   /** The camera as a .rviz file has it. */
   _look({ class: kind, focus, distance, pitch, yaw, scale, x, y }) {
     if (kind === "rviz/TopDownOrtho" && scale) {
-      const height = this._box.clientHeight / scale;
-      this._viewport.orbit([x ?? 0, y ?? 0, 0], height / this._viewport.opening, -Math.PI / 2,
-        MOST_PITCH);
-    } else if (distance) {
-      this._viewport.orbit(focus, distance, yaw ?? 0, Math.min(pitch ?? 0.7, MOST_PITCH));
-    } else this._viewport.lookAt(OVERVIEW);
+      this._viewport.lookDown(x ?? 0, y ?? 0, this._box.clientHeight / scale);
+    } else if (distance) this._viewport.orbit(focus, distance, yaw ?? 0, pitch ?? 0.7);
+    else this._viewport.lookAt(OVERVIEW);
   }
 }
 

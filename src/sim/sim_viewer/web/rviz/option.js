@@ -35,5 +35,5 @@ INPUTS.frame = INPUTS.text;
 /** A line with an option's name and its input; `set(value)` for each change. */
 export function optionLine(option, value, set) {
   return element("label", { class: "option", "data-option": option.name },
-    element("span", { text: option.name }), INPUTS[option.kind](option, value, set));
+    element("span", { text: option.name.replace(/\/Value$/, "") }), INPUTS[option.kind](option, value, set));
 }

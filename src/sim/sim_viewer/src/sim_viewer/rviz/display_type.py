@@ -1,5 +1,6 @@
 """What a kind of display is: its name, messages, options and how it is drawn. Without ROS."""
 
+import abc
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -48,7 +49,7 @@ class View(Protocol):
         """Of the ROS parameter server; None where there is none."""
 
 
-class Drawer:
+class Drawer(abc.ABC):
     """One display's state. Called in one thread at a time."""
 
     statuses: Statuses
@@ -63,15 +64,15 @@ class Drawer:
         """Other options from now on."""
         self.options, self.changed = options, True
 
-    def take(self, message: Any, pose: Pose | None, now: float) -> None:
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:  # noqa: B027 (TF has none)
         """A message; `pose` is its frame's at its stamp, if the type waits for that.
 
         Problem where it cannot be shown.
         """
 
+    @abc.abstractmethod
     def draw(self, view: View) -> list[Part] | None:
         """All there is to see, or None where that has not changed. Problem where there is none."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

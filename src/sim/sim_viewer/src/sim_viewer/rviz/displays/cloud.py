@@ -17,7 +17,7 @@ COLOURS = ("rgb", "rgba")
 
 def cloud_points(message: Any, options: dict[str, Any],
                  most: int) -> tuple[list[Part], Statuses]:
-    """As many as the page takes, evenly from the whole cloud."""
+    """As many as the page takes, evenly from the whole cloud. Problem for sizes that do not fit."""
     table = records(message)
     chosen = table[evenly(len(table), most)]
     positions = np.stack([chosen[axis].astype(np.float32) for axis in "xyz"], axis=1)

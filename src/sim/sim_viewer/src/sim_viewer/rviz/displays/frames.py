@@ -12,7 +12,7 @@ SHAFT, HEAD = 0.01, 0.02  # m: diameters of arrows, at scale 1
 HEAD_LENGTH = 0.08  # m
 ARROW = (255, 150, 178, 255)
 TEXT = (255, 255, 255, 255)
-TEXT_HEIGHT = 0.1  # m
+TEXT_HEIGHT, TEXT_ABOVE = 0.1, 0.27  # m: so that the axes do not cross it
 
 
 class Frames(Drawer):
@@ -42,9 +42,10 @@ class Frames(Drawer):
         if options["Show Arrows"] and pairs:
             parts += _links(np.array(pairs), scale)
         if options["Show Names"]:
+            above = np.array([0.0, 0.0, TEXT_ABOVE * scale])
             parts.append(Part("texts", fields={"texts": [
-                {"text": frame, "position": row[:3].tolist(), "height": TEXT_HEIGHT * scale,
-                 "colour": TEXT} for frame, row in placed.items()]}))
+                {"text": frame, "position": (row[:3] + above).tolist(), "colour": TEXT,
+                 "height": TEXT_HEIGHT * scale} for frame, row in placed.items()]}))
         return parts
 
 

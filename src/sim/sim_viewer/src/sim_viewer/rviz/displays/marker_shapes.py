@@ -27,7 +27,7 @@ def marker_parts(marker: Any, most: int) -> list[Part]:
 
 
 def scale_of(marker: Any) -> np.ndarray:
-    """(3,) m."""
+    """(3,) m; Problem for what are no numbers."""
     try:
         return finite([marker.scale.x, marker.scale.y, marker.scale.z])
     except Problem:

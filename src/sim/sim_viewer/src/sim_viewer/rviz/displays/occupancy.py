@@ -34,6 +34,7 @@ class Map(Drawer):
         self._part: Part | None = None
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        """A map or an update; Problem where sizes do not fit."""
         if hasattr(message, "info"):
             self._cells = None  # a map that cannot be shown takes the last one away
             self._cells, self._place = cells_of(message), pose_of(message.info.origin)
@@ -49,6 +50,7 @@ class Map(Drawer):
         self._part = None
 
     def draw(self, view: View) -> list[Part]:
+        """One part; NoTransform where the map's frame has no place."""
         if self._cells is None:
             self.statuses = {"Map": (WARNING, "No map received")}
             return []

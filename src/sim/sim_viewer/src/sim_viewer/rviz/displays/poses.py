@@ -41,7 +41,7 @@ def drawn(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
 
 
 def array(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
-    """All poses of a PoseArray, such as amcl's particles."""
+    """All poses of a PoseArray, such as amcl's particles. Problem for what is no pose."""
     there = len(message.poses)
     rows = pose_rows(list(message.poses))[evenly(there, max(most // 10, 1))]
     return drawn(rows, options), {} if len(rows) == there else {
@@ -49,13 +49,13 @@ def array(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part],
 
 
 def stamped(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
-    """A PoseStamped."""
+    """A PoseStamped; Problem for what is no pose."""
     return drawn(pose_rows([message.pose]), options), {}
 
 
 def with_covariance(message: Any, options: dict[str, Any],
                     most: int) -> tuple[list[Part], Statuses]:
-    """A PoseWithCovarianceStamped, such as amcl_pose."""
+    """A PoseWithCovarianceStamped, such as amcl_pose; Problem for what is no pose."""
     rows = pose_rows([message.pose.pose])
     return drawn(rows, options) + ellipsoid(rows[0], message.pose.covariance, options), {}
 
@@ -69,6 +69,7 @@ class Trail(Drawer):
         self._newest: tuple[Pose, np.ndarray, Any] | None = None
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        """Problem for what is no pose."""
         own = pose_rows([message.pose.pose])
         row = moved(own, pose)
         if len(self._rows) and not self._far(self._rows[-1], row[0]):
@@ -83,6 +84,7 @@ class Trail(Drawer):
                 or 2 * math.acos(half) > self.options["Angle Tolerance"])
 
     def draw(self, view: View) -> list[Part] | None:
+        """The whole trail; Problem for a covariance that is none."""
         if not self.changed or self._newest is None:
             return None
         self.changed = False

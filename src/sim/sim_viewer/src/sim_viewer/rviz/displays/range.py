@@ -12,7 +12,10 @@ from sim_viewer.rviz.options import Option
 
 
 def cone(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
-    """From the sensor to what it has seen; nothing where that is outside of its limits."""
+    """From the sensor to what it has seen; nothing where that is outside of its limits.
+
+    Problem for an angle that is no number.
+    """
     angle = finite([message.field_of_view])[0]
     reach = float(message.range)
     if not message.min_range <= reach <= message.max_range or not np.isfinite(reach):
