@@ -13,6 +13,7 @@ from background import wait_until
 from chromium import Browser
 from geometry_msgs.msg import PointStamped, PoseStamped, PoseWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
+from tool_link import ToolLink
 
 TOPICS = {"/tf_static": lambda: TFMessage(made_up.transforms()), "/map": made_up.grid,
           "/scan": made_up.scan, "/plan": made_up.path, "/particlecloud": made_up.particles,
@@ -38,10 +39,10 @@ class RvizPage(unittest.TestCase):
                             ("/initialpose", PoseWithCovarianceStamped)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.heard.update(
                 {topic: message}))
-        url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
+        cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
-        cls.page = cls.browser.open(url + "#rviz")
+        cls.page = cls.browser.open(cls.url + "#rviz")
         cls.page.wait_for("!!window.rviz")
 
     def tearDown(self):
@@ -173,6 +174,12 @@ class RvizPage(unittest.TestCase):
             "/^1\\.[0-9]+ m$/.test(document.querySelector('#rviz-said').textContent)")
         self.drag("focus")
         self.page.wait_for("document.querySelector('#rviz-tool-move').ariaPressed === 'true'")
+
+    def test_6_a_robot_without_a_simulator_is_in_the_tab_3d(self):
+        link = ToolLink(self.url)
+        self.addCleanup(link.close)
+        poses = link.watch("poses")
+        poses.until(lambda event: event.get("names") == ["box::base_link"], "the robot's link")
 
 
 if __name__ == "__main__":

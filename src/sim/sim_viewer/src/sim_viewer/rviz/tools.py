@@ -82,7 +82,7 @@ class Publishers:
         return self._publishers[key]
 
     def publish(self, tool: str, topic: str, frame: str, place: tuple[float, ...]) -> int:
-        """How many listen; `place` is x, y, z in m and yaw in rad, in the frame. Refused as `open`."""
+        """How many listen; `place` is x, y, z in m and yaw in rad. Refused as by `open`."""
         publisher = self.open(tool, topic)
         header = Header(stamp=rospy.Time.from_sec(self._clock.now()), frame_id=frame)
         publisher.publish(TOOLS[tool][1](header, *place))
