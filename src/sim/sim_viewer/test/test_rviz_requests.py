@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import time
 
 import pytest
 import rospy
@@ -86,6 +87,29 @@ def test_tools_are_refused_what_is_no_topic_and_places_that_are_far_off(context)
             publishers.open(tool, topic)
     with pytest.raises(Refused, match="farther than"):
         context.loop.run_until_complete(rviz_publish(context, "goal", "/goal", "map", 1e9, 0.0))
+
+
+class SlowPublisher:
+    """One whose first listener connects after some looks."""
+
+    def __init__(self, name, kind, queue_size):
+        self.looks, self.sent = 0, []
+
+    def get_num_connections(self):
+        self.looks += 1
+        return int(self.looks > 3)
+
+    def publish(self, message):
+        self.sent.append((message, self.looks))
+
+
+def test_a_click_right_after_the_tool_was_taken_waits_for_who_listens(context, monkeypatch):
+    publishers = context.node.shared(Publishers)
+    key = "point", "/clicked_point"
+    publishers._publishers[key] = SlowPublisher(*key, 1), time.monotonic() + 1.0  # being opened
+    assert publishers.publish(*key, "map", (1.0, 2.0, 0.0, 0.0)) == 1
+    ((message, looks),) = publishers._publishers[key][0].sent
+    assert looks > 3 and message.header.frame_id == "map"
 
 
 # --- frames

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
@@ -62,7 +63,9 @@ class Publishers:
 
     def __init__(self, node: Node):
         self._clock: SharedClock = node.shared(SharedClock)
-        self._publishers: dict[tuple[str, str], rospy.Publisher] = {}
+        self._lock = threading.Lock()
+        # Each with the time in s until which listeners may still be connecting.
+        self._publishers: dict[tuple[str, str], tuple[rospy.Publisher, float]] = {}
         self._closing = contextlib.ExitStack()
 
     def open(self, tool: str, topic: str) -> rospy.Publisher:
@@ -71,15 +74,17 @@ class Publishers:
             raise Refused(f"there is no tool {tool!r:.40}; there are {', '.join(TOOLS)}")
         if len(topic) > 256 or not rosgraph.names.is_legal_name(topic) or topic.startswith("~"):
             raise Refused(f"{topic[:40]!r} is no name of a topic; /goal is one")
-        if not self._publishers:
-            self._closing.enter_context(self._clock.held())
         key = tool, rospy.resolve_name(topic)
-        if key not in self._publishers:
-            made = self._publishers[key] = rospy.Publisher(key[1], TOOLS[tool][0], queue_size=1)
-            end = time.monotonic() + CONNECTING
-            while not made.get_num_connections() and time.monotonic() < end:
-                time.sleep(0.02)
-        return self._publishers[key]
+        with self._lock:
+            if not self._publishers:
+                self._closing.enter_context(self._clock.held())
+            if key not in self._publishers:
+                made = rospy.Publisher(key[1], TOOLS[tool][0], queue_size=1)
+                self._publishers[key] = made, time.monotonic() + CONNECTING
+        publisher, until = self._publishers[key]
+        while not publisher.get_num_connections() and time.monotonic() < until:
+            time.sleep(0.02)
+        return publisher
 
     def publish(self, tool: str, topic: str, frame: str, place: tuple[float, ...]) -> int:
         """How many listen; `place` is x, y, z in m and yaw in rad. Refused as by `open`."""
