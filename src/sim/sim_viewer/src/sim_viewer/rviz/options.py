@@ -5,13 +5,15 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 LONGEST_TEXT = 1000
-KINDS = ("color", "number", "integer", "switch", "choice", "text", "frame", "namespaces")
 FIXED_FRAME = "<Fixed Frame>"
 
 
 @dataclass(frozen=True)
 class Option:
-    """One option; numbers lie between `low` and `high`, colours are rviz's `255; 0; 0`."""
+    """One option; numbers lie between `low` and `high`, colours are rviz's `255; 0; 0`.
+
+    `kind`: color, number, integer, switch, choice, text, frame or namespaces.
+    """
 
     name: str
     kind: str
