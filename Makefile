@@ -69,9 +69,9 @@ mark: ## let submissions drive in a sandbox, and mark them SUBMISSIONS=DIR [COUR
 drive: ## drive the racecar with the WASD keys, in a window or in this terminal
 	@scripts/drive.sh
 
-viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [PORT=8080] [ADDRESS=0.0.0.0]
+viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [RVIZ=FILE] [PORT=8080] [ADDRESS=0.0.0.0]
 	@scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
-	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)")
+	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)") $(if $(RVIZ),"rviz:=$(RVIZ)")
 
 test: ## run every check and test [JOBS=3], or those of what has changed, in 90 s [FAST=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)") $(if $(filter-out 0 no false,$(FAST)),--fast)

@@ -1,11 +1,19 @@
 #!/usr/bin/env bash
 # The line course, and a page in the browser that shows it; the page's address is printed.
 #
-#   scripts/viewer.sh [control:=true] [port:=8080] [address:=0.0.0.0] ...   as viewer.launch has them
+#   scripts/viewer.sh [control:=true] [rviz:=FILE] [port:=8080] [address:=0.0.0.0] ...   as viewer.launch has them
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
+arguments=()
+for word in "$@"; do
+  if [[ $word == rviz:=?* ]]; then
+    word=rviz:=$(realpath -m -- "${word#rviz:=}")  # the node stands in another folder
+    rosrun sim_viewer rviz_page --check -d "${word#rviz:=}" || exit 2
+  fi
+  arguments+=("$word")
+done
 choose_master
 mkdir -p "$root/out"
 roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
@@ -23,6 +31,6 @@ until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; d
   sleep 0.2
 done
 # Beside this shell, which otherwise would answer a container's SIGTERM only when the page has ended.
-roslaunch sim_viewer viewer.launch "$@" &
+roslaunch sim_viewer viewer.launch "${arguments[@]}" &
 page=$!
 wait "$page"

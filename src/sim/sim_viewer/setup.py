@@ -4,6 +4,6 @@ from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
 setup(**generate_distutils_setup(
-    packages=["sim_viewer", "sim_viewer.tools"],
+    packages=["sim_viewer", "sim_viewer.rviz", "sim_viewer.rviz.displays", "sim_viewer.tools"],
     package_dir={"": "src"},
 ))

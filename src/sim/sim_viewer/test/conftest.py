@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import sys
+from pathlib import Path
 
 import aiohttp
 import pytest
@@ -11,6 +13,8 @@ from sim_viewer import registry
 from sim_viewer.context import Node
 from sim_viewer.options import Options
 from sim_viewer.server import Server
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 LIMIT = 40.0  # s that a story may take
 

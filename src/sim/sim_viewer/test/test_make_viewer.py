@@ -129,6 +129,13 @@ def test_a_container_ends_it_with_a_signal_to_the_script_alone(somebody_elses_ma
             pass
 
 
+def test_a_file_that_cannot_be_shown_is_told_of_before_the_course_starts(tmp_path):
+    done = subprocess.run(["make", "viewer", f"RVIZ={tmp_path}/none.rviz"], cwd=ROOT, text=True,
+                          capture_output=True, timeout=LIMIT)
+    said = f"rviz_page: {tmp_path}/none.rviz: No such file or directory; give a .rviz file"
+    assert done.returncode == 2 and said in done.stderr.splitlines()
+
+
 def master_chosen(**given: str) -> tuple[list[str], str]:
     """URI, ROS_HOSTNAME and ROS_IP that the verbs would use, and what they say about it."""
     cleared = {name: value for name, value in os.environ.items()

@@ -9,7 +9,8 @@ from sim_viewer import restart
 from sim_viewer.context import Node
 from sim_viewer.options import TOKEN, Options, read_options
 
-OPTIONS = Options(port=8081, control=True, token="0123", hosts=("a", "b"), bags="/data/run 1")
+OPTIONS = Options(port=8081, control=True, token="0123", hosts=("a", "b"), bags="/data/run 1",
+                  rviz="/a b.rviz")
 
 
 def test_parameters_come_back_as_they_were(monkeypatch):
@@ -21,7 +22,7 @@ def test_parameters_come_back_as_they_were(monkeypatch):
     given = dict(word.split(":=", 1) for word in words if word.startswith("_") and ":=" in word)
     read = {name[1:]: yaml.safe_load(value) for name, value in given.items()}  # as rospy reads them
     assert read == {"port": 8082, "address": "127.0.0.1", "control": True,
-                    "hosts": "a,b", "bags": "/data/run 1", "open": False}
+                    "hosts": "a,b", "bags": "/data/run 1", "open": False, "rviz": "/a b.rviz"}
     monkeypatch.setattr(os, "environ", environment)
     monkeypatch.setattr("rospy.get_param", lambda name, *default: read.get(name[1:], *default))
     assert environment[TOKEN] == "0123" and read_options().token == "0123"
@@ -38,4 +39,4 @@ def test_the_master_does_not_learn_the_token(monkeypatch, capsys):
 
     asyncio.run(announce())
     assert said == {"~url": "http://127.0.0.1:8081/"}
-    assert "viewer: http://127.0.0.1:8081/?token=0123\n" in capsys.readouterr().out
+    assert "viewer: http://127.0.0.1:8081/?token=0123#rviz\n" in capsys.readouterr().out

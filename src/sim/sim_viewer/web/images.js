@@ -12,11 +12,12 @@ const CHOSEN = "images"; // the topics shown, stored by the browser
 
 let open = null;
 
-/** One topic's picture, drawn as it comes. */
-class Picture {
-  constructor(topic, link) {
+/** One topic's picture, drawn as it comes; `onState(error)` for each, with why there is none. */
+export class Picture {
+  constructor(topic, link, onState = () => {}) {
     this.topic = topic;
     this._link = link;
+    this._onState = onState;
     this._image = element("img", { alt: topic });
     this._rate = element("span", { class: "muted" });
     this._note = element("p", { class: "error", hidden: true });
@@ -52,6 +53,7 @@ class Picture {
       return;
     }
     this._note.hidden = true;
+    this._onState("");
     this._times.push(performance.now());
     const url = URL.createObjectURL(new Blob([data], { type: "image/jpeg" }));
     this._image.onload = () => {
@@ -65,6 +67,7 @@ class Picture {
   _say(reason) {
     this._note.hidden = false;
     this._note.textContent = reason;
+    this._onState(reason);
   }
 }
 

@@ -2,6 +2,7 @@
 
 export const TABS = {
   scene: "./scene.js",
+  rviz: "./rviz.js",
   cameras: "./images.js",
   drive: "./drive.js",
   graph: "./tools/graph.js",

@@ -6,6 +6,8 @@ uint32 corners of triangles (m, 3). GET /texture/N is an image that browsers can
 """
 
 import itertools
+import threading
+from collections.abc import Hashable
 from pathlib import Path
 
 import cv2
@@ -21,30 +23,44 @@ SHOWN_AS_IS = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp")  # files that b
 
 
 class Meshes:
-    """What the present scene needs; shapes stay as long as a scene has them."""
+    """What the present scenes need; shapes stay as long as one of them has them. Thread safe."""
 
     def __init__(self, node: Node):
         self._node = node
+        self._lock = threading.Lock()
+        self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by who shows them
         self._shapes: dict[tuple[Visual, ...], LinkShape] = {}
         self._numbers: dict[MeshPart, int] = {}
         self._parts: dict[int, MeshPart] = {}
         self._textures: dict[int, str] = {}
         self._next = itertools.count(1)
 
-    def shapes(self, links: list[tuple[Visual, ...]]) -> list[LinkShape]:
-        """What links with these visuals look like; those of earlier scenes are forgotten.
+    def shapes(self, links: list[tuple[Visual, ...]], owner: Hashable = None) -> list[LinkShape]:
+        """What links with these visuals look like; those that this owner had before and nobody
+        else has are forgotten.
 
-        Reads files, so it may take a while; one call at a time.
+        Reads files, so it may take a while.
         """
-        self._shapes = {visuals: self._shapes.get(visuals) or link_shape(visuals)
-                        for visuals in links}
+        with self._lock:
+            self._wanted[owner] = set(links)
+            wanted = dict.fromkeys(itertools.chain(links, *self._wanted.values()))
+            self._shapes = {visuals: self._shapes.get(visuals) or link_shape(visuals)
+                            for visuals in wanted}
+            self._count()
+            return [self._shapes[visuals] for visuals in links]
+
+    def forget(self, owner: Hashable) -> None:
+        """It shows nothing any more."""
+        self.shapes([], owner)
+        del self._wanted[owner]
+
+    def _count(self) -> None:
         parts = [part for shape in self._shapes.values() for part in shape.parts]
         self._numbers = {part: self._numbers.get(part) or next(self._next) for part in parts}
         self._parts = {number: part for part, number in self._numbers.items()}
         known = {path: number for number, path in self._textures.items()}
         paths = {part.material.texture for part in parts if part.uv is not None} - {None}
         self._textures = {known.get(path) or next(self._next): path for path in sorted(paths)}
-        return [self._shapes[visuals] for visuals in links]
 
     def mesh_number(self, part: MeshPart) -> int:
         """By which the page asks for a part of a present shape."""

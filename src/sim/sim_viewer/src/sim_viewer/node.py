@@ -14,31 +14,36 @@ from sim_viewer.context import Node
 from sim_viewer.meshes import Meshes
 from sim_viewer.options import OptionError, read_options
 from sim_viewer.restart import restart, wait_for_other_master
+from sim_viewer.rviz.config import ConfigError, read_config
 from sim_viewer.server import NoPort, Server, further_urls, page_url
 
 
-def main() -> None:
-    """Until Ctrl-C, or until ROS ends the node."""
+def main(name: str = "sim_viewer", rviz: str = "") -> None:
+    """Until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file."""
     try:
         # The loop takes the signals; roslaunch and Ctrl-C end this node with SIGINT.
-        rospy.init_node("sim_viewer", disable_signals=True)
+        rospy.init_node(name, disable_signals=True)
         registry.load_all()
-        asyncio.run(_serve())
-    except (OptionError, NoPort) as error:
+        asyncio.run(_serve(rviz))
+    except (OptionError, ConfigError, NoPort) as error:
         rospy.signal_shutdown(str(error))
-        sys.exit(f"sim_viewer: {error}")
+        sys.exit(f"{name}: {error}")
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         pass  # before the loop took the signals
     rospy.signal_shutdown("the page has ended")
 
 
-async def _serve() -> None:
+async def _serve(rviz: str) -> None:
     loop = asyncio.get_running_loop()
     end = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, end.set)
     rospy.on_shutdown(lambda: loop.is_closed() or loop.call_soon_threadsafe(end.set))
     options = read_options()
+    if rviz:
+        options = replace(options, rviz=rviz)
+    if options.rviz:
+        read_config(options.rviz)
     node = Node(options, loop)
     meshes: Meshes = node.shared(Meshes)
     server = Server(node, {"/mesh/{number:[0-9]{1,9}}": meshes.serve_mesh,
@@ -60,12 +65,13 @@ async def _serve() -> None:
 
 async def _announce(node: Node, port: int) -> None:
     """Say where the page is."""
+    tab = "#rviz" if node.options.rviz else ""
     if port != node.options.port:
         print(f"viewer: port {node.options.port} is taken, so it is {port}")
-    url = page_url(node.options, port)
+    url = page_url(node.options, port) + tab
     print(f"viewer: {url}", flush=True)
     for further in further_urls(node.options, port, get_local_addresses()):
-        print(f"viewer, from other machines: {further}", flush=True)
+        print(f"viewer, from other machines: {further}{tab}", flush=True)
     # For who did not see the line; without the token, since everybody may ask a master.
     public = page_url(replace(node.options, token=""), port)
     await node.run_in_thread(rospy.set_param, "~url", public)

@@ -26,6 +26,7 @@ class Options:
     hosts: tuple[str, ...] = ()  # further names by which browsers reach this machine
     bags: str = ""  # folder of what is recorded; empty: ~/bags
     open: bool = False
+    rviz: str = ""  # a .rviz file, whose displays the tab RViz shows
 
     @property
     def loopback(self) -> bool:
@@ -52,6 +53,7 @@ def read_options() -> Options:
                     if name.strip()),
         bags=str(rospy.get_param("~bags", "")).strip(),
         open=_read("open", bool, Options.open),
+        rviz=str(rospy.get_param("~rviz", "")).strip(),
     )
     if options.port not in PORTS:
         raise OptionError(f"port is {options.port}; give one from 1 to 65535, such as port:=8080")

@@ -1,5 +1,6 @@
 """A scene as the page's 3D view wants it: links, each with numbered meshes and plain numbers."""
 
+from collections.abc import Hashable
 from typing import Any
 
 from bullet_sim.description import LightDescription, Material
@@ -11,10 +12,10 @@ from sim_viewer.meshes import Meshes
 NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": [], "links": []}
 
 
-def page_scene(content: SceneContent, meshes: Meshes) -> dict[str, Any]:
+def page_scene(content: SceneContent, meshes: Meshes, owner: Hashable = None) -> dict[str, Any]:
     """JSON data; may take a while, since files are read. Links go by `model::link`, and by their
-    own name where they belong to no model."""
-    shapes = meshes.shapes([visuals for _, visuals in content.links.values()])
+    own name where they belong to no model. `owner`: who shows it."""
+    shapes = meshes.shapes([visuals for _, visuals in content.links.values()], owner)
     textures = meshes.texture_numbers()
     sizes = sorted({shape.plane_size for shape in shapes} - {0.0})
     links = []

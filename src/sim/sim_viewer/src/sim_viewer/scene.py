@@ -18,6 +18,7 @@ from sim_viewer.registry import Refused, watchable
 from sim_viewer.robot_source import RobotSource
 from sim_viewer.simulator_source import SimulatorSource
 from sim_viewer.tools.master import MasterView
+from sim_viewer.transforms import Transforms
 
 RATE_HZ = 20.0  # of poses, at most
 SMALLEST_MOTION = 1e-5  # m, and of quaternions: less is not sent; a robot at rest moves less
@@ -34,7 +35,7 @@ class SceneBroadcast:
         self._node = node
         self._meshes: Meshes = node.shared(Meshes)
         self._simulator = SimulatorSource(node.shared(MasterView))
-        self._robot = RobotSource()
+        self._robot = RobotSource(node.shared(Transforms))
         self._shown: Source | None = None
         self._watchers: dict[Send, str] = {}
         self._scene: dict[str, Any] = NOTHING

@@ -2,6 +2,7 @@
 
 import { OrbitControls } from "../vendor/OrbitControls.js";
 import * as THREE from "../vendor/three.module.min.js";
+import { skyDome } from "./sky.js";
 
 const NEAR = 0.02; // m
 const FAR = 400; // m
@@ -10,33 +11,15 @@ const SLOW_MS = 100; // between pictures where the processor draws them, at leas
 const SLOWEST_MS = 2000;
 const COARSE = 0.5; // pixels of such a picture for one of the page
 const BREATH = 2; // times a picture's own time, left to fingers, mice and other programs
-const HORIZON = [0.8, 0.86, 0.92]; // as the simulator's cameras have them
-const ZENITH = [0.3, 0.5, 0.8];
 const BEHIND = new THREE.Vector3(-1.6, -1.2, 1.1); // from where a model is looked at, in its sizes
+
+const NARROW = 6; // degrees
+const STEEPEST = 1.57; // rad
+const CLOSEST = 200; // how much nearer than it stands the camera still draws things
+const FLOOR = new THREE.Plane(new THREE.Vector3(0, 0, 1));
 
 THREE.ColorManagement.enabled = false;
 THREE.Object3D.DEFAULT_UP.set(0, 0, 1);
-
-function skyDome() {
-  const material = new THREE.ShaderMaterial({
-    side: THREE.BackSide, depthTest: false, depthWrite: false,
-    vertexShader: `varying vec3 ray;
-      void main() {
-        ray = position;
-        gl_Position = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
-      }`,
-    fragmentShader: `varying vec3 ray;
-      void main() {
-        float height = sqrt(max(normalize(ray).z, 0.0));
-        gl_FragColor = vec4(mix(vec3(${HORIZON}), vec3(${ZENITH}), height), 1.0);
-      }`,
-  });
-  const dome = new THREE.Mesh(new THREE.SphereGeometry(1, 32, 16), material);
-  dome.frustumCulled = false;
-  dome.renderOrder = -1;
-  dome.visible = false;
-  return dome;
-}
 
 function drawnByProcessor() {
   const gl = document.createElement("canvas").getContext("webgl2");
@@ -48,6 +31,7 @@ function drawnByProcessor() {
 
 export class Viewport {
   constructor(parent, root) {
+    this.root = root;
     const slow = drawnByProcessor();
     this._renderer = new THREE.WebGLRenderer({ antialias: !slow });
     this._renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -72,6 +56,57 @@ export class Viewport {
     this._fit(parent);
     this._waiting = false;
     this._last = 0;
+    this._whenDrawn = [];
+    this._rays = new THREE.Raycaster();
+  }
+
+  get canvas() {
+    return this._renderer.domElement;
+  }
+
+  /** Resolves when the next picture is drawn. */
+  drawn() {
+    this.draw();
+    return new Promise((resolve) => this._whenDrawn.push(resolve));
+  }
+
+  /** Whether dragging moves the camera. */
+  set movable(wanted) {
+    this._controls.enabled = wanted;
+  }
+
+  /** Where the ray through an event's pixel meets something solid, or else the floor; or null. */
+  pick(event, solid = true) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    this._camera.updateMatrixWorld(); // it may have moved since the last picture
+    this._rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - left) / width - 1,
+      1 - 2 * (event.clientY - top) / height), this._camera);
+    const [hit] = solid ? this._rays.intersectObject(this.root) : [];
+    return hit?.point ?? this._rays.ray.intersectPlane(FLOOR, new THREE.Vector3());
+  }
+
+  /** Look at a place in m from `distance` m, by yaw and pitch in rad as rviz's Orbit has them. */
+  orbit(place, distance, yaw, pitch) {
+    this._camera.near = Math.max(NEAR, distance / CLOSEST);
+    this._camera.updateProjectionMatrix();
+    const flat = distance * Math.cos(Math.min(pitch, STEEPEST));
+    this._controls.target.set(...place);
+    this._camera.position.set(place[0] + flat * Math.cos(yaw), place[1] + flat * Math.sin(yaw),
+      place[2] + distance * Math.sin(pitch));
+    this._controls.update();
+    this.draw();
+  }
+
+  /** Look straight down from so far that heights hardly count, as rviz's TopDownOrtho. */
+  lookDown(x, y, height) {
+    this._camera.fov = NARROW;
+    this.orbit([x, y, 0], height / 2 / Math.tan(NARROW * Math.PI / 360), -Math.PI / 2, STEEPEST);
+  }
+
+  /** This place in m becomes the one that is looked at, or takes the camera along from `last`. */
+  focus(place, last = this._controls.target.toArray()) {
+    this.shift(new THREE.Vector3(...place).sub(new THREE.Vector3(...last)));
+    this.draw();
   }
 
   /** Soon; however often it is called, one picture. */
@@ -132,6 +167,7 @@ export class Viewport {
     if (this._closed) return;
     this._last = performance.now();
     this._renderer.render(this._scene, this._camera);
+    this._whenDrawn.splice(0).forEach((resolve) => resolve());
     if (this._pause) this._breathe(this._last);
   }
 

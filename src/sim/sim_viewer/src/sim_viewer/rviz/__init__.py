@@ -1,0 +1,1 @@
+"""What rviz shows, for the page: displays, their configuration, and tools that publish."""

@@ -1,0 +1,135 @@
+"""What a kind of display is: its name, messages, options and how it is drawn. Without ROS."""
+
+import abc
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from bullet_sim.description import Visual
+from bullet_sim.pose import Pose
+from sim_viewer.rviz.drawing import Part
+from sim_viewer.rviz.options import Option
+
+OK, WARNING, ERROR = "ok", "warning", "error"
+Statuses = dict[str, tuple[str, str]]  # name -> level and text, as rviz lists them below a display
+
+
+class Problem(ValueError):
+    """A message that cannot be shown; the text says why, as rviz words it."""
+
+
+class NoTransform(Problem):
+    """There is no transform from a frame to the fixed frame, or not at that time."""
+
+
+class View(Protocol):
+    """What a display may ask while it draws."""
+
+    now: float  # s, in the time that stamps are in
+    wall: float  # s of a clock that never jumps
+    most_points: int  # that the page can take at once
+    fixed_frame: str
+
+    def pose(self, frame: str, stamp: float = 0.0) -> Pose:
+        """Of a frame in the fixed frame at a time in s, 0: the newest. Raises NoTransform."""
+
+    def links(self, visuals: dict[str, tuple[Visual, ...]]) -> dict[str, Any]:
+        """Fields of a part of the kind `links`, with meshes that the page can load."""
+
+    def robot(self, text: str) -> dict[str, tuple[Visual, ...]]:
+        """What each link of a URDF looks like. FormatError of what is none."""
+
+    def resolve(self, uri: str) -> str:
+        """The file that `package://...` or `file://...` is. Problem where there is none."""
+
+    def frames(self) -> dict[str, str]:
+        """All frames of tf and their parents; a root's is empty."""
+
+    def parameter(self, name: str) -> Any:
+        """Of the ROS parameter server; None where there is none."""
+
+
+class Drawer(abc.ABC):
+    """One display's state. Called in one thread at a time."""
+
+    statuses: Statuses
+    namespaces: list[str] = []  # of markers
+
+    def __init__(self, options: dict[str, Any]):
+        self.options = options
+        self.statuses = {}
+        self.changed = False  # since the last drawing
+
+    def restyle(self, options: dict[str, Any]) -> None:
+        """Other options from now on."""
+        self.options, self.changed = options, True
+
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:  # noqa: B027 (TF has none)
+        """A message; `pose` is its frame's at its stamp, if the type waits for that.
+
+        Problem where it cannot be shown.
+        """
+
+    @abc.abstractmethod
+    def draw(self, view: View) -> list[Part] | None:
+        """All there is to see, or None where that has not changed. Problem where there is none."""
+
+
+@dataclass(frozen=True)
+class DisplayType:
+    """`rviz/...` and what belongs to it."""
+
+    name: str
+    make: Callable[[dict[str, Any]], Drawer]
+    options: tuple[Option, ...] = ()
+    messages: tuple[str, ...] = ()  # types that its topic may have; none: it has no topic
+    topic: str = ""  # where it looks at first
+    topic_key: str = "Topic"  # in a .rviz file
+    at_stamp: bool = True  # whether a message waits for its frame's pose at its stamp
+    every: bool = False  # whether each message counts, not only the newest
+    update_topic: str = ""  # what is behind the topic's name for changes of it, and
+    update: str = ""  # their type
+    period: float = 0.0  # s between two looks without a message; 0: none needed
+
+    def as_json(self) -> dict[str, Any]:
+        """For the page."""
+        return {"class": self.name, "messages": self.messages, "topic": self.topic,
+                "options": [option.as_json() for option in self.options]}
+
+
+class Simple(Drawer):
+    """Draws messages one by one by a function of message, options and most points."""
+
+    def __init__(self, options: dict[str, Any], draw: Callable[..., list[Part]]):
+        super().__init__(options)
+        self._draw = draw
+        self._kept: list[tuple[float, Pose, Any]] = []  # received at, frame's pose, message
+
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        self._kept.append((now, pose, message))
+        self.changed = True
+
+    def draw(self, view: View) -> list[Part] | None:
+        keep = int(self.options.get("Buffer Length", 1))
+        decay = self.options.get("Decay Time", 0.0)
+        if decay:
+            fresh = [one for one in self._kept if view.now - decay < one[0] <= view.now]
+        else:
+            fresh = self._kept[-keep:]
+        if not self.changed and len(fresh) == len(self._kept):
+            return None
+        self._kept, self.changed = fresh, False
+        parts = []
+        for _, pose, message in fresh:
+            drawn, statuses = self._draw(message, self.options, view.most_points // len(fresh))
+            self.statuses = statuses
+            for part in drawn:
+                part.pose = pose * part.pose
+            parts += drawn
+        return parts
+
+
+def simple(draw: Callable[..., tuple[list[Part], Statuses]]) -> Callable[[dict], Simple]:
+    """For DisplayType.make: `draw(message, options, most_points)` gives parts in the message's
+    frame, and statuses."""
+    return lambda options: Simple(options, draw)

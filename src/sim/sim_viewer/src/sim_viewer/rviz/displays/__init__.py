@@ -1,0 +1,1 @@
+"""One module a display: messages in, parts of a drawing out. None of them imports ROS."""

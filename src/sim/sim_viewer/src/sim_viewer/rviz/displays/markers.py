@@ -1,0 +1,145 @@
+"""rviz/Marker and rviz/MarkerArray: added, changed, deleted, and gone after their lifetime."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from bullet_sim.description import Material, Mesh, Visual
+from bullet_sim.pose import IDENTITY, Pose
+from sim_viewer.rviz.display_type import ERROR, DisplayType, Drawer, Problem, View
+from sim_viewer.rviz.displays.marker_shapes import MESH, colour_of, marker_parts, scale_of
+from sim_viewer.rviz.drawing import Part
+from sim_viewer.rviz.geometry import moved, pose_of
+from sim_viewer.rviz.options import Option
+
+DELETE, DELETE_ALL = 2, 3
+MOST_MARKERS = 20_000
+MOST_STATUSES = 20
+MOST_NAMESPACES = 100
+Key = tuple[str, int]  # namespace and id
+
+
+@dataclass
+class Shown:
+    """One marker; `place` is its frame in the fixed frame, once that is known."""
+
+    marker: Any
+    ends: float  # s; infinite without a lifetime
+    pose: Pose = IDENTITY
+    parts: list[Part] = field(default_factory=list)
+    visuals: tuple[Visual, ...] = ()  # of a mesh
+    place: Pose | None = None
+    problem: str = ""  # why there is nothing to be drawn
+    lost: str = ""  # why its frame has no place
+
+    def build(self, view: View, most_points: int) -> None:
+        """Work out what it looks like."""
+        try:
+            self.pose = pose_of(self.marker.pose)
+            if self.marker.type == MESH:
+                scale = tuple(map(float, scale_of(self.marker)))
+                path = view.resolve(self.marker.mesh_resource)
+                self.visuals = (Visual("mesh", Mesh(path, scale), material=_material(self.marker)),)
+            else:
+                self.parts = marker_parts(self.marker, most_points)
+        except Problem as problem:
+            self.problem = str(problem)
+
+    def put(self, view: View) -> bool:
+        """Find its frame, where that is due; whether it has moved."""
+        locked = self.marker.frame_locked
+        if self.place is not None and not locked:
+            return False
+        header, before = self.marker.header, self.place
+        try:
+            self.place = view.pose(header.frame_id, 0.0 if locked else header.stamp.to_sec())
+            self.lost = ""
+        except Problem as problem:
+            self.lost = str(problem)
+        return self.place != before
+
+
+class Markers(Drawer):
+    """All markers of one topic."""
+
+    def __init__(self, options: dict[str, Any]):
+        super().__init__(options)
+        self._shown: dict[Key, Shown] = {}
+        self._new: set[Key] = set()
+
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        for marker in message.markers if hasattr(message, "markers") else [message]:
+            self._take(marker, now)
+        self.changed = True
+
+    def _take(self, marker: Any, now: float) -> None:
+        key = (marker.ns, marker.id)
+        if marker.action == DELETE_ALL:
+            self._shown.clear()
+        elif marker.action == DELETE:
+            self._shown.pop(key, None)
+        elif key in self._shown or len(self._shown) < MOST_MARKERS:
+            if marker.ns not in self.namespaces:
+                self.namespaces = [*self.namespaces, marker.ns][:MOST_NAMESPACES]
+            life = marker.lifetime.to_sec()
+            self._shown[key] = Shown(marker, now + life if life > 0 else np.inf)
+            self._new.add(key)
+
+    def draw(self, view: View) -> list[Part] | None:
+        for key in [key for key, one in self._shown.items() if one.ends <= view.now]:
+            del self._shown[key]
+            self.changed = True
+        new, self._new = self._new & set(self._shown), set()
+        for key in new:
+            self._shown[key].build(view, view.most_points // len(new))
+        moved = [one.put(view) for one in self._shown.values()]
+        wrong = [(key, one) for key, one in self._shown.items() if one.problem or one.lost]
+        self.statuses = {f"{ns}/{number}": (ERROR, one.problem or one.lost)
+                         for (ns, number), one in wrong[:MOST_STATUSES]}
+        if not self.changed and not any(moved):
+            return None
+        self.changed = False
+        hidden = {name for name, wanted in self.options["Namespaces"].items() if not wanted}
+        return _parts({key: one for key, one in self._shown.items()
+                       if one.place is not None and key[0] not in hidden}, view)
+
+
+def _parts(seen: dict[Key, Shown], view: View) -> list[Part]:
+    """All shapes of a kind in one part; meshes in one as well."""
+    merged: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    parts, visuals, rows = [], {}, []
+    for (ns, number), one in seen.items():
+        pose = one.place * one.pose
+        for part in one.parts:
+            if part.kind == "shapes":
+                merged.setdefault(part.fields["shape"], []).append(
+                    (moved(part.arrays["rows"], pose), part.arrays["colour"]))
+            else:
+                parts.append(Part(part.kind, part.arrays, part.fields, pose))
+        if one.visuals:
+            visuals[f"{ns}/{number}"] = one.visuals
+            rows.append([*pose.position, *pose.orientation])
+    for shape, found in merged.items():
+        table = np.concatenate([rows_of for rows_of, _ in found]).astype(np.float32)
+        colours = np.concatenate([colours for _, colours in found])
+        parts.append(Part("shapes", {"rows": table, "colour": colours}, {"shape": shape}))
+    if visuals:
+        parts.append(Part("links", {"rows": np.array(rows, np.float32)}, view.links(visuals)))
+    return parts
+
+
+def _material(marker: Any) -> Material | None:
+    """The marker's colour, but where the mesh's own are asked for."""
+    colour = tuple(colour_of(marker.color) / 255)
+    if marker.mesh_use_embedded_materials and not any(colour):
+        return None
+    return Material(ambient=colour, diffuse=colour)
+
+
+OPTIONS = (Option("Namespaces", "namespaces", {}),)
+MESSAGES = ("visualization_msgs/Marker", "visualization_msgs/MarkerArray")
+MARKER = DisplayType("rviz/Marker", Markers, OPTIONS, MESSAGES, "/visualization_marker",
+                     "Marker Topic", at_stamp=False, every=True, period=0.1)
+ARRAY = DisplayType("rviz/MarkerArray", Markers, OPTIONS, MESSAGES, "/visualization_marker_array",
+                    "Marker Topic", at_stamp=False, every=True, period=0.1)

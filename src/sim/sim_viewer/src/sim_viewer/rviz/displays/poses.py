@@ -1,0 +1,116 @@
+"""rviz/PoseArray, Pose, PoseWithCovariance and Odometry: arrows or axes, and how sure they are."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from bullet_sim.pose import Pose
+from sim_viewer.rviz.colours import rgba
+from sim_viewer.rviz.display_type import OK, DisplayType, Drawer, Statuses, View, simple
+from sim_viewer.rviz.displays.covariance import OPTIONS as COVARIANCE
+from sim_viewer.rviz.displays.covariance import ellipsoid
+from sim_viewer.rviz.displays.point_style import evenly
+from sim_viewer.rviz.drawing import Part
+from sim_viewer.rviz.geometry import arrows, axes, lines, moved, pose_rows, turned
+from sim_viewer.rviz.options import Option
+
+FLAT, SOLID, AXES, ARROW = "Arrow (Flat)", "Arrow (3D)", "Axes", "Arrow"
+# A flat arrow of length 1: its shaft, and the two halves of its head.
+FLAT_ARROW = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 0), (0.75, 0.2, 0), (1, 0, 0), (0.75, -0.2, 0)])
+
+
+def shape_options(color: str, length: float, radius: float, head: float,
+                  head_radius: float) -> tuple[Option, ...]:
+    """What rviz lists below an arrow or a cross, with its defaults in m."""
+    return (Option("Color", "color", color), Option("Alpha", "number", 1.0, high=1),
+            Option("Shaft Length", "number", length), Option("Shaft Radius", "number", radius),
+            Option("Head Length", "number", head), Option("Head Radius", "number", head_radius))
+
+
+def drawn(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
+    """Poses (n, 7) as the option `Shape` says."""
+    if options["Shape"] == AXES:
+        return axes(rows, options["Axes Length"], options["Axes Radius"], options["Alpha"])
+    if options["Shape"] == FLAT:
+        corners = np.repeat(rows, len(FLAT_ARROW), axis=0)
+        strokes = np.tile(FLAT_ARROW * options["Arrow Length"], (len(rows), 1))
+        return [lines(corners[:, :3] + turned(corners[:, 3:], strokes), rgba(options), 0.0)]
+    return arrows(rows, (options["Shaft Length"], 2 * options["Shaft Radius"]),
+                  (options["Head Length"], 2 * options["Head Radius"]), rgba(options))
+
+
+def array(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+    """All poses of a PoseArray, such as amcl's particles. Problem for what is no pose."""
+    there = len(message.poses)
+    rows = pose_rows(list(message.poses))[evenly(there, max(most // 10, 1))]
+    return drawn(rows, options), {} if len(rows) == there else {
+        "Poses": (OK, f"showing {len(rows)} of {there} poses")}
+
+
+def stamped(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+    """A PoseStamped; Problem for what is no pose."""
+    return drawn(pose_rows([message.pose]), options), {}
+
+
+def with_covariance(message: Any, options: dict[str, Any],
+                    most: int) -> tuple[list[Part], Statuses]:
+    """A PoseWithCovarianceStamped, such as amcl_pose; Problem for what is no pose."""
+    rows = pose_rows([message.pose.pose])
+    return drawn(rows, options) + ellipsoid(rows[0], message.pose.covariance, options), {}
+
+
+class Trail(Drawer):
+    """The last poses of an Odometry, at least the tolerances apart."""
+
+    def __init__(self, options: dict[str, Any]):
+        super().__init__(options)
+        self._rows = np.empty((0, 7))
+        self._newest: tuple[Pose, np.ndarray, Any] | None = None
+
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        """Problem for what is no pose."""
+        own = pose_rows([message.pose.pose])
+        row = moved(own, pose)
+        if len(self._rows) and not self._far(self._rows[-1], row[0]):
+            return
+        keep = self.options["Keep"]
+        self._rows = np.concatenate([self._rows, row])[-keep if keep else 0:]
+        self._newest, self.changed = (pose, own[0], message.pose.covariance), True
+
+    def _far(self, last: np.ndarray, row: np.ndarray) -> bool:
+        half = min(1.0, abs(float(np.dot(last[3:], row[3:]))))
+        return (np.linalg.norm(last[:3] - row[:3]) > self.options["Position Tolerance"]
+                or 2 * math.acos(half) > self.options["Angle Tolerance"])
+
+    def draw(self, view: View) -> list[Part] | None:
+        """The whole trail; Problem for a covariance that is none."""
+        if not self.changed or self._newest is None:
+            return None
+        self.changed = False
+        frame, row, covariance = self._newest
+        around = ellipsoid(row, covariance, self.options)
+        for part in around:
+            part.pose = frame
+        return drawn(self._rows, self.options) + around
+
+
+CROSS = (Option("Axes Length", "number", 1.0), Option("Axes Radius", "number", 0.1))
+SHAPE = Option("Shape", "choice", ARROW, (ARROW, AXES))
+BIG = shape_options("255; 25; 0", 1.0, 0.05, 0.3, 0.1)
+ARRAY = DisplayType(
+    "rviz/PoseArray", simple(array), messages=("geometry_msgs/PoseArray",),
+    topic="/particlecloud", options=(
+        Option("Shape", "choice", FLAT, (FLAT, SOLID, AXES)), Option("Arrow Length", "number", 0.3),
+        *shape_options("255; 25; 0", 0.23, 0.01, 0.07, 0.03),
+        Option("Axes Length", "number", 0.3), Option("Axes Radius", "number", 0.01)))
+STAMPED = DisplayType("rviz/Pose", simple(stamped), messages=("geometry_msgs/PoseStamped",),
+                      topic="/move_base/current_goal", options=(SHAPE, *BIG, *CROSS))
+WITH_COVARIANCE = DisplayType(
+    "rviz/PoseWithCovariance", simple(with_covariance),
+    messages=("geometry_msgs/PoseWithCovarianceStamped",), topic="/amcl_pose",
+    options=(SHAPE, *BIG, *CROSS, *COVARIANCE))
+ODOMETRY = DisplayType(
+    "rviz/Odometry", Trail, messages=("nav_msgs/Odometry",), topic="/odom", options=(
+        Option("Position Tolerance", "number", 0.1), Option("Angle Tolerance", "number", 0.1),
+        Option("Keep", "integer", 100, high=10_000), SHAPE, *BIG, *CROSS, *COVARIANCE))
