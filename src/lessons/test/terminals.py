@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import codecs
 import fcntl
 import os
 import pty
 import re
-import select
 import signal
 import socket
 import subprocess
 import sys
 import termios
+import threading
 import time
 from pathlib import Path
 
 LIMIT = 40.0  # s, for whatever is waited for
+POLL = 0.05  # s
 IMPATIENCE = 4.0  # s until Ctrl-C is typed again
 # A terminal's shell stays when a command has ended, and with it what the command has left behind:
 # without it Linux hangs up on that. `rosbag record` ends before its recorder has closed the bag.
@@ -55,31 +57,28 @@ class Terminal:
             [sys.executable, "-ISc", SHELL, command], cwd=folder, env=environment, stdin=screen,
             stdout=screen, stderr=screen, start_new_session=True, preexec_fn=_take_terminal)
         os.close(screen)
+        # Reads all the time, as a terminal does: a command blocks once 4 kB wait to be read.
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
 
     def type(self, keys: str) -> None:
         os.write(self._keyboard, keys.encode())
 
-    def _read(self, wait: float) -> bool:
-        """Adds what came within `wait` s; False once the other end is closed."""
+    def _read(self) -> None:
+        """Adds what the command writes, until the other end is closed."""
+        decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
         try:
-            if select.select([self._keyboard], [], [], wait)[0]:
-                text = os.read(self._keyboard, 65536)
-                self.shown += COLOUR.sub("", text.decode(errors="replace"))
-                return bool(text)
-        except OSError:
-            return False
-        return True
-
-    def _read_for(self, seconds: float) -> None:
-        end = time.monotonic() + seconds
-        while time.monotonic() < end and self._read(0.1):
+            while text := os.read(self._keyboard, 65536):
+                self.shown += COLOUR.sub("", decoder.decode(text))
+        except OSError:  # Linux says so when the last process of the terminal has ended
             pass
 
     def wait_until_shown(self, pattern: str, limit: float = LIMIT) -> str | None:
         """What is wrong, or None once the pattern has been shown."""
-        end, is_open = time.monotonic() + limit, True
-        while not re.search(pattern, self.shown) and is_open and time.monotonic() < end:
-            is_open = self._read(0.1)
+        end = time.monotonic() + limit
+        while (not re.search(pattern, self.shown) and self._reader.is_alive()
+               and time.monotonic() < end):
+            self._reader.join(POLL)
         if re.search(pattern, self.shown):
             return None
         return f"`{self.command}` never showed /{pattern}/, but:\n{self.shown[-3000:]}"
@@ -88,7 +87,7 @@ class Terminal:
         """What is wrong, or None once it has ended with this exit code."""
         end = time.monotonic() + limit
         while self._process.poll() is None and time.monotonic() < end:
-            self._read(0.1)
+            time.sleep(POLL)
         if self._process.poll() == code:
             return None
         return f"`{self.command}` ended with {self._process.poll()}:\n{self.shown[-3000:]}"
@@ -105,7 +104,7 @@ class Terminal:
     def close(self, limit: float = 20.0) -> None:
         """Ctrl-C, and what does not mind it is killed; nothing of its session is left."""
         # Nobody is quicker; a signal that meets rospy in the midst of a log line blocks it.
-        self._read_for(0.4)
+        time.sleep(0.4)
         end = time.monotonic() + limit
         typed_at = float("-inf")
         while self._lives() and time.monotonic() < end:
@@ -113,8 +112,9 @@ class Terminal:
             if time.monotonic() - typed_at >= IMPATIENCE and self._process.poll() is None:
                 self.type("\x03")
                 typed_at = time.monotonic()
-            self._read(0.1)
+            time.sleep(POLL)
         if self._lives():
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
+        self._reader.join(IMPATIENCE)
         os.close(self._keyboard)

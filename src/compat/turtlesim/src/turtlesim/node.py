@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import threading
 import time
 
 import numpy as np
@@ -28,7 +27,6 @@ class TurtlesimNode:
     def __init__(self, screen) -> None:
         rospy.loginfo("Starting turtlesim with node name %s", rospy.get_name())
         self._screen, self._inbox = screen, Inbox()
-        self._ticking, self._stopped = threading.RLock(), False
         declare_background()
         self._pond = Pond(random.Random(), read_background())
         self._turtles: dict[str, TurtleInterface] = {}
@@ -42,31 +40,17 @@ class TurtlesimNode:
 
     def run(self) -> None:
         """Until ROS or the screen is closed. A late tick is not made up for, as in upstream."""
-        rospy.on_shutdown(self._stop)
         tick, due = 0, time.monotonic()
-        while not (rospy.is_shutdown() or self._screen.closed) and self._tick(tick):
+        while not rospy.is_shutdown() and not self._screen.closed:
+            self._inbox.work()
+            self._step()
+            if tick % FRAME_TICKS == 0 and self._screen.wanted:
+                self._screen.show(self._pond.picture())
             tick += 1
             due = max(due + TICK, time.monotonic() - TICK)
             time.sleep(max(0.0, due - time.monotonic()))
         self._inbox.close()
         rospy.signal_shutdown("the window was closed")
-
-    def _tick(self, tick: int) -> bool:
-        """False once the node is told to end."""
-        with self._ticking:
-            if self._stopped:
-                return False
-            self._inbox.work()
-            self._step()
-            if tick % FRAME_TICKS == 0 and self._screen.wanted:
-                self._screen.show(self._pond.picture())
-            return True
-
-    def _stop(self) -> None:
-        """After the tick under way. rospy closes topics under a lock that a log line waits for, and
-        logs meanwhile: with a turtle at the wall `rosnode kill` would sometimes block for good."""
-        with self._ticking:
-            self._stopped = True
 
     def _step(self) -> None:
         for x, y in self._pond.step(time.monotonic()):

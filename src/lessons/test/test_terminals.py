@@ -1,0 +1,39 @@
+"""The terminals in which the tests type."""
+
+import importlib.util
+import os
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.processes
+_spec = importlib.util.spec_from_file_location(
+    "terminals", Path(__file__).resolve().with_name("terminals.py"))
+terminals = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(terminals)
+
+
+def test_a_terminal_is_read_while_nobody_waits_for_it(tmp_path):
+    """As a real one: otherwise a command blocks as soon as the kernel's buffer is full."""
+    writes = "for i in $(seq 20000); do echo a line of some length; done; echo > done; echo end"
+    terminal = terminals.Terminal(writes, tmp_path, dict(os.environ))
+    other = terminals.Terminal(
+        "while [ ! -e done ]; do sleep 0.05; done; echo seen", tmp_path, dict(os.environ)
+    )
+    try:
+        assert other.wait_until_shown("seen", limit=20.0) is None
+        assert terminal.wait_until_shown("end", limit=20.0) is None
+        assert terminal.shown.count("a line") == 20000
+    finally:
+        terminal.close()
+        other.close()
+
+
+def test_letters_of_several_bytes_stay_whole(tmp_path):
+    terminal = terminals.Terminal(
+        "printf '\\344'; sleep 0.3; printf '\\275\\240\\n'", tmp_path, dict(os.environ)
+    )
+    try:
+        assert terminal.wait_until_shown("你", limit=10.0) is None
+    finally:
+        terminal.close()
