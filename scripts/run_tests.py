@@ -1,9 +1,9 @@
 """Runs ruff, pytest and every rostest file, and ends with one line: N passed, M failed.
 
-What needs no processes is one pytest run. Beside it, a few at a time, runs what starts processes
-and mostly waits for them: rostest files, and the pytest files marked `processes`. Each of these
-gets a session of its own, a free port for its master and a time limit. What it leaves running is
-killed and counts as a failure.
+What starts processes and mostly waits for them runs a few files at a time: rostest files, and the
+pytest files marked `processes`. Each of these gets a session of its own, a free port for its master
+and a time limit. What it leaves running is killed and counts as a failure. What needs no processes
+is two pytest runs beside them, at low priority: they take the processors while the others wait.
 Files that say `runs alone` measure time: they come last, one after the other.
 A few failed files that start processes run once more, alone, those of pytest only what failed of
 them: a busy machine starves them. They are called unsteady then; a hang or a process left running
@@ -20,7 +20,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
@@ -38,11 +38,11 @@ MOST_SECOND = 6  # more failed files than this are no accident
 
 
 def run_beside(files: list[Path], jobs: int, limit: float,
-               whole: Callable[[], list[Result]] | None = None) -> list[Result]:
-    """Files that start processes, so many at a time; `whole`, a run of its own, is one of them."""
+               beside: Sequence[Callable[[], list[Result]]] = ()) -> list[Result]:
+    """Files that start processes, so many at a time, and beside them runs of other kinds."""
     results: list[Result] = []
-    with ThreadPoolExecutor(jobs) as pool:
-        waiting = [pool.submit(whole)] if whole else []
+    with ThreadPoolExecutor(jobs) as pool, ThreadPoolExecutor(len(beside) or 1) as others:
+        waiting = [others.submit(run) for run in beside]
         waiting += [pool.submit(run_file, file, limit) for file in files]
         for done in as_completed(waiting):
             if processes.stopping:
@@ -108,9 +108,13 @@ def run_whole(args: argparse.Namespace, slow: list[Path]) -> list[Result]:
     """All there is; `slow` are the pytest files that start processes."""
     rostests = files_that_say(re.compile(""), "*.test")
     alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
-    results = run_beside(
-        [path for path in [*slow, *rostests] if path not in alone], args.jobs, args.limit,
-        partial(run_pytest, args.pytest_limit, [f"--ignore={path}" for path in slow]))
+    apart = [f"--ignore={path}" for path in slow]
+    halves = {"pytest of the simulator": ["src/sim"],
+              "pytest of the rest": ["src", "test", "--ignore=src/sim"]}
+    beside = [partial(run_pytest, args.pytest_limit, [*words, *apart], name, low_priority=True)
+              for name, words in halves.items()]
+    results = run_beside([path for path in [*slow, *rostests] if path not in alone], args.jobs,
+                         args.limit, beside)
     return results + run_beside(alone, 1, args.limit)
 
 

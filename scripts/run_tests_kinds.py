@@ -49,14 +49,16 @@ class Progress:
                 print(f"  {line}", flush=True)
 
 
-def run_pytest(limit: float, words: list[str]) -> list[Result]:
+def run_pytest(limit: float, words: list[str], name: str = "pytest",
+               low_priority: bool = False) -> list[Result]:
     """The files that pytest finds by these words, in one process: a result for each, and one for
-    itself."""
-    cases, log = OUT / "pytest.xml", OUT / "pytest.log"
-    whole = Result("pytest")
+    itself, of this name."""
+    file = OUT / name.replace(" ", "_")
+    cases, log = file.with_suffix(".xml"), file.with_suffix(".log")
+    whole = Result(name)
     cases.unlink(missing_ok=True)  # of the group before
     began = time.monotonic()
-    code, left = run_marked([*pytest_command(cases), *words], log, limit, Progress())
+    code, left = run_marked([*pytest_command(cases), *words], log, limit, Progress(), low_priority)
     whole.seconds = time.monotonic() - began
     files = pytest_cases(cases)
     failed = any(result.failures for result in files.values())

@@ -1,5 +1,6 @@
 """The runner of the tests: what runs a second time, and what it then counts."""
 
+import os
 import sys
 import xml.etree.ElementTree as ET
 from datetime import date
@@ -152,3 +153,17 @@ def test_fast_takes_changed_tests_early_and_no_file_with_processes(runner):
     assert len(set(files)) == len(files) and not apart & set(files)
     unchanged = fast.choose([], apart)
     assert unchanged == [always, *groups[2:]]
+
+
+def test_low_priority_is_of_the_command_alone(runner, tmp_path):
+    """As root and as an ordinary user, whether or not Linux groups by session."""
+    says = ("import os, time; time.sleep(0.5); print(os.nice(0)); "
+            "group = '/proc/self/autogroup'; print(os.path.exists(group) and open(group).read())")
+    command = [sys.executable, "-c", says]
+    wanted = runner.processes.LOW_PRIORITY
+    for low in (True, True, False):
+        code, _ = runner.processes.run_marked(
+            command, tmp_path / "log", 20.0, runner.processes.unseen, low)
+        nice, group = (tmp_path / "log").read_text().splitlines()[:2]
+        assert code == 0 and int(nice) == min(19, os.nice(0) + (wanted if low else 0))
+        assert "nice" not in group or int(group.split()[-1]) == (wanted if low else 0)
