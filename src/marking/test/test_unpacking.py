@@ -57,6 +57,13 @@ def test_a_link_in_a_folder_is_refused(tmp_path):
         prepare(submission, tmp_path / "out", PATTERNS)
 
 
+def test_a_file_that_is_too_large_is_not_read_for_the_digest(tmp_path, monkeypatch):
+    monkeypatch.setattr("hashlib.file_digest", lambda *_: pytest.fail("it was read"))
+    with (tmp_path / "a.zip").open("wb") as file:
+        file.truncate(2**36)  # takes no room on the disk
+    assert digest(tmp_path / "a.zip")
+
+
 def test_a_changed_submission_has_another_digest(tmp_path):
     folder = tmp_path / "ann"
     folder.mkdir()

@@ -17,6 +17,8 @@ def main() -> int:
     options = parser.parse_args()
     if options.seed < 0:
         parser.error(f"SEED must be 0 or more, not {options.seed}")
+    if options.seed and options.out == HALL:
+        parser.error(f"{HALL} is hall 0; give another file: --out my_hall.world")
     try:
         options.out.write_text(world(options.seed), encoding="utf-8")
     except OSError as error:

@@ -11,7 +11,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 from marking.text import file_name
-from marking.unpacking import UnpackError, archive_stem, is_archive, unpack
+from marking.unpacking import MOST_BYTES, UnpackError, archive_stem, is_archive, unpack
 from run_session.failure import RunError
 
 NO_PROGRAMS = ("__init__.py", "setup.py", "conftest.py", "test_*.py", "*_test.py")
@@ -47,7 +47,8 @@ def find_submissions(folder: Path) -> list[Submission]:
 
 
 def digest(source: Path) -> str:
-    """SHA-256 over the names and bytes of a submission's files; links count by where they lead."""
+    """SHA-256 over the names and bytes of a submission's files; links count by where they lead,
+    files that are too large to be unpacked by their size."""
     sums = hashlib.sha256()
     paths = [] if source.is_symlink() else sorted(source.rglob("*"))
     for path in [source, *paths]:
@@ -55,6 +56,8 @@ def digest(source: Path) -> str:
         with contextlib.suppress(OSError):  # what cannot be read is said when it is unpacked
             if path.is_symlink():
                 sums.update(os.fsencode(os.readlink(path)))
+            elif path.is_file() and (size := path.stat().st_size) > MOST_BYTES:
+                sums.update(str(size).encode())
             elif path.is_file():
                 with path.open("rb") as file:
                     sums.update(hashlib.file_digest(file, "sha256").digest())
