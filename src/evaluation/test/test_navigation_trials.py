@@ -3,16 +3,13 @@
 import importlib
 import json
 from dataclasses import asdict, replace
-from types import SimpleNamespace
 
 import cv2
-import numpy as np
 import pytest
 
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.judge import Judge
 from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.trial import YardTrial
@@ -127,16 +124,15 @@ def trials(tmp_path, monkeypatch):
     def run(drives, *options: str) -> int:
         given = iter(drives)
 
-        def drive(*_arguments):
+        def drive(_rig, _task, judge):
             found = next(given)
             if isinstance(found, BaseException):
                 raise found
-            judge = Judge(np.empty((0, 2)), 0.0)
             judge.path = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
-            return SimpleNamespace(judge=judge, drive=found)
+            return found
 
         for name, fake in (("Rig", lambda *_, **__: None), ("prepare", lambda *_: None),
-                           ("drive", drive), ("score", lambda _task, record: record.drive)):
+                           ("drive", drive)):
             monkeypatch.setattr(trial_module, name, fake)
         return run_trial(YardTrial(), [*options, "--out", str(tmp_path)])
 

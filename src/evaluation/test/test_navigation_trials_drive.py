@@ -12,7 +12,7 @@ from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.processes import Family
 from trial_worlds.crossing import draw_crossing
-from trial_worlds.yard import draw_yard
+from trial_worlds.yard import RADIUS, draw_yard
 
 NOBODY = np.empty((0, 2))
 
@@ -89,8 +89,8 @@ class FakeRig:
 def drive(rig, task):
     """The result, and where it went."""
     driving.prepare(rig, task)
-    driven = driving.drive(rig, task)
-    return driving.score(task, driven), driven.judge.path
+    judge = Judge(task.cylinders, RADIUS)
+    return driving.drive(rig, task, judge), judge.path
 
 
 def test_a_drive_into_an_obstacle_is_a_contact():

@@ -15,19 +15,20 @@ from xml.etree.ElementTree import Element
 import cv2
 import numpy as np
 
+from bullet_sim.formats import Resources
 from trial_worlds.errors import WorldError
 
 MODEL = "model://"
 
 
-def write_lit_world(world: Path, models: Path, sun: Path, factor: float, folder: Path) -> Path:
+def write_lit_world(world: Path, models: Path, factor: float, folder: Path) -> Path:
     """Write FOLDER/<the world's name> with its light times `factor`; returns that file.
 
     `models` is where the world's own models are: copies of them with brighter textures go to
-    FOLDER/models if the factor is above 1. `sun` is the folder of the model that lights the world.
-    Raises WorldError for a file that is no world.
+    FOLDER/models if the factor is above 1. Raises WorldError for a file that is no world.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    sun = Resources.from_environment().resolve(f"{MODEL}sun")
     try:
         tree = ElementTree.parse(world)
         light = ElementTree.parse(sun / "model.sdf").getroot().find("light")

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import xmlrpc.client
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,7 +18,6 @@ from run_session.launch import Launched
 from run_session.simulator import WAFFLE, models, unpause
 
 START_LIMIT = 120.0  # s, wall
-LOOK_PERIOD = 0.05  # s, wall
 LIMIT = 120.0  # s, simulated
 TOPICS = ("/scan", "/cmd_vel")
 REACHED, CONTACT, LATE = "reached", "contact", "late"
@@ -39,16 +36,27 @@ class Drive:
     unanswered: int  # scans
     path: list[list[float]] = field(repr=False)  # x, y
 
+    @property
+    def passed(self) -> bool:
+        """Did it arrive without a contact?"""
+        return self.outcome == REACHED
+
+    @property
+    def line(self) -> str:
+        """On one line."""
+        return (f"{self.name}: {self.outcome} after {self.time:.1f} s and {self.distance:.1f} m,"
+                f" nearest {self.nearest:.2f} m")
+
 
 def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log: Path) -> None:
     """Start all, wait until everybody is connected, and let time begin."""
-    os.environ["ROS_MASTER_URI"] = launched.master_uri
     launched.start_roscore()
     launched.start("roslaunch", [
         "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
         f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])
-    wait(launched, lambda: WAFFLE in models(), f"model {WAFFLE}")
-    wait(launched, lambda: _connected(launched.master_uri), f"who reads /scan ({avoider})")
+    launched.wait_for(f"model {WAFFLE}", lambda: WAFFLE in models(), START_LIMIT)
+    launched.wait_for(f"who reads /scan ({avoider})", lambda: _connected(launched.master_uri),
+                      START_LIMIT)
     unpause()
 
 
@@ -57,8 +65,8 @@ def watch(launched: Launched, state_log: Path) -> list[dict]:
     states: list[dict] = []
     with state_log.open(encoding="utf-8") as file:
         while not (states and outcome(states[-1])):
-            wait(launched, lambda: (line := file.readline()) and _take(states, line),
-                 "the next state")
+            launched.wait_for("the next state", lambda: (line := file.readline())
+                              and _take(states, line), START_LIMIT)
     return states
 
 
@@ -79,11 +87,6 @@ def scored(name: str, seed: int, states: list[dict]) -> Drive:
     distance = float(np.hypot(*np.diff(path, axis=0).T).sum())
     return Drive(name, seed, outcome(states[-1]), round(states[-1]["time"], 2), round(distance, 3),
                  round(float(nearest), 3), states[-1]["unanswered"], path.round(4).tolist())
-
-
-def wait(launched: Launched, condition: Callable[[], object], what: str) -> None:
-    """Returns once the condition is true; RunError if a process dies, or after START_LIMIT."""
-    launched.wait_for(lambda: what, condition, lambda _: None, START_LIMIT, LOOK_PERIOD)
 
 
 def _connected(master_uri: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +16,7 @@ from evaluation.avoid.drive import CONTACT, REACHED, Drive
 from evaluation.picture import write_tiles
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import table
+from evaluation.trial.table import cell, mean, table
 from run_session.resources import find_package
 from run_session.session import Session
 
@@ -37,6 +37,7 @@ class AvoidTrial(ReportedTrial):
     does = "Drive by laser through halls with columns."
     good = "all goals reached without a contact"
     writes = "report.json, report.html, paths.png and worlds"
+    result = Drive
 
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 20, "halls", variable="SEEDS", least=1)
@@ -71,28 +72,14 @@ class AvoidTrial(ReportedTrial):
     def score(self, record: list[dict]) -> Drive:
         return drive.scored(self._case.name, self._case.seed, record)
 
-    def passed(self, results: Sequence[Drive]) -> bool:
-        return all(each.outcome == REACHED for each in results)
-
-    def line(self, result: Drive) -> str:
-        return (f"{result.name}: {result.outcome} after {result.time:.1f} s and"
-                f" {result.distance:.1f} m, nearest {result.nearest:.2f} m")
-
     def table(self, results: Sequence[Drive]) -> str:
         count = Counter(each.outcome for each in results)
-        there = [each for each in results if each.outcome == REACHED]
-        mean = f"{sum(each.time for each in there) / len(there):.1f}" if there else "-"
+        times = [each.time for each in results if each.passed]
         return table([
             ("halls", "reached", "contact", "mean time, s", "slowest, s", "nearest, m"),
-            (str(len(results)), str(count[REACHED]), str(count[CONTACT]), mean,
+            (str(len(results)), str(count[REACHED]), str(count[CONTACT]), cell(mean(times)),
              f"{max(each.time for each in results):.1f}",
              f"{min(each.nearest for each in results):.2f}")])
-
-    def values(self, results: Sequence[Drive]) -> dict:
-        return {"drives": [asdict(each) for each in results]}
-
-    def from_values(self, values: dict) -> list[Drive]:
-        return [Drive(**each) for each in values["drives"]]
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_tiles(out / "paths.png", results, _draw, TILE, columns=2)
@@ -106,4 +93,4 @@ def _draw(axes: object, result: Drive) -> tuple[str, bool]:
     axes.plot(*zip(*result.path, strict=True), color="#1b6ca8")
     axes.set(xlim=(-1, hall.LENGTH - 1), ylim=(-hall.WIDTH / 2, hall.WIDTH / 2), aspect="equal")
     axes.axvline(hall.FINISH, color="#c0392b", linewidth=1)
-    return f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.outcome == REACHED
+    return f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.passed

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import at_moments
 from trial_worlds.feelers import Gap
 
@@ -69,9 +70,13 @@ class Records:
         else:
             self.contacts.append(Contact(gap.own, now, now, gap.place))
 
-    def pairs(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Believed and true poses (N, 3) of the same moments, from a moment (s) on."""
-        return self.moments(since)[1:]
+    def errors(self, since: float, map_in_world: np.ndarray = np.zeros(3)
+               ) -> tuple[np.ndarray, np.ndarray]:
+        """Times (N,), s, and (N, 2), m and rad between believed and true pose then."""
+        times, believed, true = self.moments(since)
+        there = compose(map_in_world, believed)
+        return times, np.stack((np.linalg.norm(there[:, :2] - true[:, :2], axis=1),
+                                np.abs(wrap_angle(there[:, 2] - true[:, 2]))), axis=1)
 
     def moments(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times (N,), s, believed and true poses (N, 3) then, from a moment on.

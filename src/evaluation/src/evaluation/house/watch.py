@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from dataclasses import dataclass
 
@@ -46,8 +45,7 @@ class Watch:
     /clock, and does not mind when a restarted simulator's time begins again.
     """
 
-    def __init__(self, master_uri: str):
-        os.environ["ROS_MASTER_URI"] = master_uri
+    def __init__(self) -> None:
         rospy.init_node("navigate", anonymous=True, disable_signals=True, disable_rosout=True)
         self.records = Records()
         self.feelers: Feelers | None = None  # what it touches is not noted without

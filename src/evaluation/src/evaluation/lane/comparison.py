@@ -9,9 +9,9 @@ from pathlib import Path
 from lane_keeping.world.timing import ms_a_frame
 
 from evaluation.lane.chart import write_chart
-from evaluation.lane.results import LaneDrive, lap_table, to_json
-from evaluation.lane.trial import LaneCase, LaneDrives, check_methods, known_methods, lane_case
-from evaluation.trial.command_line import Parser
+from evaluation.lane.results import LaneDrive, lap_table
+from evaluation.lane.trial import LaneCase, LaneDrives, known_methods, lane_case
+from evaluation.trial.command_line import Parser, one_of
 from run_session.failure import RunError
 
 
@@ -29,7 +29,8 @@ class LaneComparison(LaneDrives):
 
     def check(self, options: argparse.Namespace) -> None:
         options.methods = tuple(dict.fromkeys(options.methods or known_methods()))
-        check_methods(options.methods)
+        for method in options.methods:
+            one_of("method", "METHOD", known_methods(), method)
         if not options.seeds:
             raise RunError("--seeds 0: nothing to drive")
         self._methods, self._times = options.methods, {}
@@ -47,7 +48,7 @@ class LaneComparison(LaneDrives):
         return "\n".join([lap_table(results, self._ms_a_frame()), *failed])
 
     def values(self, results: Sequence[LaneDrive]) -> dict:
-        return to_json(results, ms_a_frame=self._ms_a_frame())
+        return super().values(results, ms_a_frame=self._ms_a_frame())
 
     def pictures(self, results: Sequence[LaneDrive], out: Path) -> list[str]:
         write_chart(results, self._ms_a_frame(), out / "lanes.png")

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
-from evaluation.laps import lap_drive
 from evaluation.laps.disturbance import Disturbance
 from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, seen, summary
 from evaluation.trial.table import cell, table, table_of
@@ -31,6 +30,17 @@ class LaneDrive(LapDrive):
         return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
 
     @property
+    def line(self) -> str:
+        """On one line, and another for each encounter that was not passed."""
+        failed = [each for each in self.encounters if not each.passed]
+        count = len(self.encounters)
+        met = f", {count - len(failed)} of {count} encounters passed" if self.people else ""
+        drove = (f"{self.method} seed {self.seed}: {self.outcome}, "
+                 f"{self.laps_closed} of {self.laps_wanted} laps, {self.mean_speed:.2f} m/s, "
+                 f"RMS {self.rms_lateral * 100:.1f} cm{met} (light x{self.disturbance.light:.2f})")
+        return "\n  not passed: ".join([drove, *map(str, failed)])
+
+    @property
     def kept_clear(self) -> bool:
         """Was nobody touched, over the whole drive? Without a distance nobody knows."""
         return self.nearest_person is not None and self.nearest_person >= TOUCHED
@@ -41,18 +51,6 @@ def from_report(report: dict, method: str, seed: int, disturbance: Disturbance,
     """A drive from course_run's report.json."""
     return LaneDrive(**seen(report, seed, disturbance), method=method, people=people,
                      laps_wanted=report["laps_wanted"], laps_closed=report["laps_closed"])
-
-
-def line_of(drive: LaneDrive) -> str:
-    """One drive on one line."""
-    light = f"light x{drive.disturbance.light:.2f}"
-    met = ""
-    if drive.people:
-        good = sum(each.passed for each in drive.encounters)
-        met = f", {good} of {len(drive.encounters)} encounters passed"
-    return (f"{drive.method} seed {drive.seed}: {drive.outcome}, "
-            f"{drive.laps_closed} of {drive.laps_wanted} laps, {drive.mean_speed:.2f} m/s, "
-            f"RMS {drive.rms_lateral * 100:.1f} cm{met} ({light})")
 
 
 def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None = None) -> str:
@@ -87,14 +85,3 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
         ["all of it", f"{sum(each.passed for each in met)} of {len(met)}", ""],
     ]
     return table(rows)
-
-
-def to_json(drives: Sequence[LaneDrive], **more: object) -> dict:
-    """All there is, with the limits it is held against."""
-    return lap_drive.to_json(LaneDrive, "drives", drives, **more)
-
-
-def from_json(values: dict) -> list[LaneDrive]:
-    """The drives that `to_json` was given; KeyError or TypeError."""
-    return [lap_drive.from_json(LaneDrive, each, encounters=tuple(
-        Encounter(**met) for met in each["encounters"])) for each in values["drives"]]

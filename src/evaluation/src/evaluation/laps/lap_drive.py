@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, fields
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import ClassVar
 
 from evaluation.laps.disturbance import Disturbance
 from evaluation.trial.table import cell, mean
@@ -77,15 +77,3 @@ FIGURES = {
     "worst": lambda found: cell(found["max_rms_lateral"], 100),
     "max cm": lambda found: cell(found["max_lateral"], 100),
 }  # of tables of summaries
-
-
-def to_json(kind: type[LapDrive], name: str, drives: Sequence[LapDrive], **more: object) -> dict:
-    """All there is, below a name, with the limits it is held against."""
-    return {"most_rms_lateral_m": kind.most_rms, "least_mean_speed_mps": kind.least_speed, **more,
-            name: [{**asdict(drive), "within_limits": drive.within_limits} for drive in drives]}
-
-
-def from_json(kind: type[LapDrive], each: dict, **more: Any) -> LapDrive:
-    """One drive as `to_json` wrote it; `more` takes the place of values."""
-    values = {field.name: each[field.name] for field in fields(kind)}
-    return kind(**{**values, "disturbance": Disturbance(**each["disturbance"]), **more})

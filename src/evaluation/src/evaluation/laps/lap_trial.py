@@ -2,34 +2,47 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from racecar_description.track.closed_line import load_track
 
-from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
+from evaluation.laps.lap_drive import LapDrive
 from evaluation.trial.protocol import Case, ReportedTrial
+from run_session.resources import find_package
 from run_session.session import Session
+from trial_worlds.light import write_lit_world
 
+MODEL_PATH = "GAZEBO_MODEL_PATH"
 # s, wall: the machine may be busy, and must not change a drive
 STARTUP_LIMIT, LAP_LIMIT, ANSWER_LIMIT = 240.0, 1800.0, 20.0
 
 
 @dataclass(frozen=True)
+class Venue:
+    """One track and what belongs to it."""
+
+    world: Path
+    track: Path  # YAML of its centre line
+    models: Path  # folder of the world's own models
+
+
+@dataclass(frozen=True)
 class Outing:
-    """One drive of course_run."""
+    """One drive of course_run, as fast as it goes, in a world of its own light."""
 
     what: str  # for messages
     course: str
     follower: str
-    track: Path
-    world: Path
-    models: Path  # of the world
-    lit: Path     # folder for the world in its own light
-    out: Path     # folder for results
+    venue: Venue
+    lit: Path  # folder for the world in its own light
+    out: Path  # folder for results
     disturbance: Disturbance
     longest: float  # s, simulated, a lap
     laps: int = 1
@@ -38,16 +51,22 @@ class Outing:
 
     def arguments(self, seed: int, world: Path) -> list[str]:
         """Those of course_run, but for where results go."""
-        start, noise = self.disturbance.start(load_track(self.track)), self.disturbance.camera_noise
-        return ["--course", self.course, "--track", str(self.track), "--follower", self.follower,
-                "--laps", str(self.laps), "--fast", "--no-video", "--seed", str(seed),
-                "--duration", f"{self.longest * self.laps:g}",
+        x, y, yaw = self.disturbance.start(load_track(self.venue.track))
+        named = (f"world_name:={world}", f"x_pos:={x:.6f}", f"y_pos:={y:.6f}", f"yaw:={yaw:.6f}",
+                 f"camera_noise:={self.disturbance.camera_noise:.6f}",
+                 f"lockstep_timeout:={ANSWER_LIMIT:g}", *self.launch)
+        return ["--course", self.course, "--track", str(self.venue.track),
+                "--follower", self.follower, "--laps", str(self.laps), "--fast", "--no-video",
+                "--seed", str(seed), "--duration", f"{self.longest * self.laps:g}",
                 "--startup-timeout", f"{STARTUP_LIMIT:g}", *self.options,
-                *lit_drive.launch_arguments(world, start, noise, ANSWER_LIMIT, *self.launch)]
+                *(word for argument in named for word in ("--launch-arg", argument))]
 
 
 class LapTrial(ReportedTrial):
     """Sets up and runs; what a drive is worth is for the trial to say."""
+
+    result: type[LapDrive]
+    derived = ("within_limits",)
 
     @abstractmethod
     def outing(self, out: Path, case: Any) -> Outing:
@@ -55,12 +74,21 @@ class LapTrial(ReportedTrial):
 
     def setup(self, session: Session, case: Case) -> None:
         self._case, outing = case, self.outing(session.out, case)
-        self._outing = outing
-        world = lit_drive.write_world(
-            outing.world, outing.models, outing.disturbance.light, outing.lit)
-        self._drive = lit_drive.start(session, outing.arguments(case.seed, world), outing.out,
-                                      [outing.lit / "models", outing.models])
+        self._outing, models = outing, outing.venue.models
+        world = write_lit_world(outing.venue.world, models, outing.disturbance.light, outing.lit)
+        script = find_package("evaluation") / "scripts" / "course_run.py"
+        folders = filter(None, (outing.lit / "models", models, os.environ.get(MODEL_PATH)))
+        self._drive = session.start_drive(
+            [sys.executable, "-P", str(script), *outing.arguments(case.seed, world),
+             "--out", str(outing.out)],
+            outing.out, {**os.environ, MODEL_PATH: ":".join(map(str, folders))})
 
     def run(self) -> dict:
         """course_run's report."""
         return self._drive.report(LAP_LIMIT * self._outing.laps, self._outing.what)
+
+    def values(self, results: Sequence[LapDrive], **more: object) -> dict:
+        """All there is, with the limits it is held against."""
+        return {"most_rms_lateral_m": self.result.most_rms,
+                "least_mean_speed_mps": self.result.least_speed, **more,
+                **super().values(results)}

@@ -130,44 +130,21 @@ def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
     return {kind: [each for each in trials if each.set == kind] for kind in LEAST_SHARES}
 
 
-@dataclass(frozen=True)
-class Search:
-    """What was seen of a robot that had to be found; s, simulated."""
-
-    set: str
-    number: int
-    start: tuple[float, float, float]  # in the world; m, rad
-    began: float
-    times: np.ndarray  # (N,)
-    errors: np.ndarray  # (N, 2), m and rad
-    touched: int
+def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
+    """Of a drive of so many s, simulated, and m; errors are (N, 2), m and rad."""
+    mean, largest = errors.mean(axis=0), errors.max(axis=0)
+    return Tracking(seconds, driven, float(mean[0]), float(np.degrees(mean[1])),
+                    float(largest[0]), float(np.degrees(largest[1])))
 
 
-@dataclass(frozen=True)
-class Tracked:
-    """What was seen of a long drive."""
-
-    seconds: float  # simulated
-    driven: float  # m
-    errors: np.ndarray  # (N, 2), m and rad
-
-
-def score(record: Search | Tracked | Load) -> Result:
-    """The result of a record."""
-    if isinstance(record, Load):
-        return record
-    if isinstance(record, Tracked):
-        mean, largest = record.errors.mean(axis=0), record.errors.max(axis=0)
-        return Tracking(record.seconds, record.driven, float(mean[0]), float(np.degrees(mean[1])),
-                        float(largest[0]), float(np.degrees(largest[1])))
-    times, errors = record.times, record.errors
+def searched(kind: str, number: int, start: tuple[float, float, float], began: float,
+             times: np.ndarray, errors: np.ndarray, touched: int) -> Trial:
+    """Of a robot that had to be found; times (N,), s, simulated; errors (N, 2), m and rad."""
     since = right_since(times, errors)
     held = since is not None and times[-1] - since >= HOLD
     off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
-    return Trial(record.set, record.number, record.start,
-                 round(since - record.began, 2) if held else None, off,
-                 turned if turned is None else round(float(np.degrees(turned)), 3),
-                 record.touched)
+    return Trial(kind, number, start, round(since - began, 2) if held else None, off,
+                 turned if turned is None else round(float(np.degrees(turned)), 3), touched)
 
 
 def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:

@@ -43,7 +43,7 @@ class Rig:
                  map_file: str, progress: Progress):
         self._launched, self._ground, self._progress = launched, ground, progress
         launched.start_roscore()
-        self.watch = Watch(launched.master_uri)
+        self.watch = Watch()
         launched.start("localisation", [
             "roslaunch", "evaluation", "localisation.launch", f"map_file:={map_file}",
             f"world_name:={options.house.world_path}", f"model:={options.house.model}",
@@ -62,7 +62,6 @@ class Rig:
         """s, simulated."""
         return self.watch.records.now
 
-    @property
     def may_go_on(self) -> bool:
         """Whether the robot, going straight on, stays on the map: it ends where the house does."""
         truth = self.watch.records.truth
@@ -142,8 +141,7 @@ class Rig:
         return sum(process.cpu for process in processes() if process.name == "amcl")
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
-        return self._launched.wait_for(lambda: what, condition, self._progress.status, START_LIMIT,
-                                       LOOK_PERIOD)
+        return self._launched.wait_for(what, condition, START_LIMIT, self._progress.status)
 
 
 def _answers(question: Callable[[], object]) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
 
 from evaluation.house.house_file import load_house
 from evaluation.house.progress import Progress
@@ -18,7 +17,6 @@ from evaluation.localisation.results import (
     Tracking,
     Trial,
     passed,
-    score,
     summary_table,
 )
 from evaluation.localisation.rig import Rig
@@ -88,19 +86,13 @@ class LocalisationTrial(protocol.ReportedTrial):
         to_be_found = case.kind in (FINDING, KIDNAPS)
         self._rig.use_odometry(by_wheels=to_be_found or self._options.wheel_odometry)
 
-    def run(self) -> Any:
+    def run(self) -> Result:
         """What the case's kind sees."""
         return RUNS[self._case.kind](
             self._rig, self._ground, self._options.seed, self._case.amount)
 
-    def score(self, record: Any) -> Result:
-        return score(record)
-
     def passed(self, results: Sequence[Result]) -> bool:
         return passed(results)
-
-    def line(self, result: Result) -> str:
-        return result.line
 
     def table(self, results: Sequence[Result]) -> str:
         return summary_table(results)
@@ -115,12 +107,9 @@ class LocalisationTrial(protocol.ReportedTrial):
         }  # fmt: skip
 
     def from_values(self, values: dict) -> list[Result]:
-        found: list[Result] = [
-            Trial(**{name: each[name] for name in Trial.__dataclass_fields__})
-            for each in values["trials"]]
-        found += [kind(**values[name]) for name, kind in (("tracking", Tracking), ("load", Load))
-                  if values[name]]
-        return found
+        found = [protocol.from_json(Trial, each) for each in values["trials"]]
+        return found + [kind(**values[kind.name]) for kind in (Tracking, Load)
+                        if values[kind.name]]
 
     def _bring_up(self, session: Session) -> Rig:
         try:

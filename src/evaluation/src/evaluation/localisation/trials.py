@@ -6,20 +6,20 @@ import time
 
 import numpy as np
 
-from evaluation.house.records import Records
 from evaluation.localisation.results import (
     FINDING,
     HOLD,
     KIDNAPS,
     LIMITS,
     Load,
-    Search,
-    Tracked,
+    Tracking,
+    Trial,
     right_since,
+    searched,
+    tracking,
 )
 from evaluation.localisation.rig import Rig
-from evaluation.localisation.wander import Wander
-from nav_algorithms.poses import wrap_angle
+from evaluation.localisation.wander import wandering
 from run_session.failure import RunError
 from trial_worlds.ground import Ground
 
@@ -31,14 +31,7 @@ MOST_DRAWS = 1000
 PARTICLES = 2000
 
 
-def errors_since(records: Records, since: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (N,), s, and errors (N, 2), m and rad; the map lies as the world does."""
-    times, believed, true = records.moments(since)
-    off = believed - true
-    return times, np.stack((np.hypot(off[:, 0], off[:, 1]), np.abs(wrap_angle(off[:, 2]))), axis=1)
-
-
-def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
+def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     """A robot somewhere in the house that knows nothing of where."""
     random = np.random.default_rng([seed, number, 0])
     place = _draw_place(ground, random)
@@ -47,36 +40,30 @@ def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
     return _search(rig, FINDING, number, place, random)
 
 
-def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
+def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     """A robot that knows where it is, and is carried elsewhere while it drives."""
     random = np.random.default_rng([seed, number, 1])
     _begin_known(rig, ground, random)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
-    finally:
-        wander.stop()
     place = _draw_place(ground, random, rig.watch.records.true_pose)
     rig.put(place)
     return _search(rig, KIDNAPS, number, place, random)
 
 
-def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracked:
+def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
     """A long drive; the pose it is told is off a little, and the first seconds do not count."""
     random = np.random.default_rng([seed, 0, 2])
     _begin_known(rig, ground, random)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, "tracking", "finding itself")
         since, before = rig.now, rig.watch.records.length
         _watch_for(rig, seconds, "tracking", "driving")
-    finally:
-        wander.stop()
     records = rig.watch.records
-    _, errors = errors_since(records, since)
+    _, errors = records.errors(since)
     if not len(errors):
         raise RunError("amcl said no pose while it should have tracked the robot")
-    return Tracked(seconds, records.length - before, errors)
+    return tracking(seconds, records.length - before, errors)
 
 
 def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
@@ -84,15 +71,12 @@ def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
     rig.set_pace(1.0)
     _begin_known(rig, ground, np.random.default_rng([seed, 0, 3]))
     rig.set_particles(PARTICLES)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, "load", "driving off")
         began, used, wall = rig.now, rig.cpu(), time.monotonic()
         _watch_for(rig, seconds, "load", "driving")
         simulated, used = rig.now - began, rig.cpu() - used
         wall = time.monotonic() - wall
-    finally:
-        wander.stop()
     return Load(PARTICLES, simulated, wall, 100.0 * used / simulated)
 
 
@@ -103,27 +87,24 @@ def _begin_known(rig: Rig, ground: Ground, random: np.random.Generator) -> None:
 
 
 def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
-            random: np.random.Generator) -> Search:
+            random: np.random.Generator) -> Trial:
     """Drives until it has been right for long enough, or can no more be in time."""
     began = looked = rig.now
-    wander = Wander(int(random.integers(1 << 31)), lambda: rig.may_go_on)
     since, what, part = None, "searching", f"{kind} {number}"
-    try:
+    with wandering(int(random.integers(1 << 31)), rig.may_go_on):
         while rig.now - began < LIMITS[kind] + HOLD:
             rig.look(part, what)
             if rig.now - looked < PERIOD:
                 continue
             looked = rig.now
-            times, errors = errors_since(rig.watch.records, began)
+            times, errors = rig.watch.records.errors(began)
             since = right_since(times, errors)
             what = "searching" if since is None else "right"
             if since is not None and times[-1] - since >= HOLD:
                 break
-    finally:
-        wander.stop()
-    times, errors = errors_since(rig.watch.records, began)
-    return Search(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
-                  len(rig.watch.records.contacts))
+    times, errors = rig.watch.records.errors(began)
+    return searched(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
+                    len(rig.watch.records.contacts))
 
 
 def _watch_for(rig: Rig, seconds: float, part: str, what: str) -> None:

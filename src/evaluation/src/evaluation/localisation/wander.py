@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import rospy
@@ -39,28 +40,24 @@ class Steering:
         return SPEED, float(self._random.normal(0.0, WEAVE))
 
 
-class Wander:
-    """A command for each scan, from the first one on until it is told to stop.
+@contextlib.contextmanager
+def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
+    """A command for each scan meanwhile; `may_go_on` says whether straight ahead it may go."""
+    steering, commands = Steering(seed), rospy.Publisher("/cmd_vel", Twist, queue_size=1)
 
-    `may_go_on` says whether straight ahead is still where it may go.
-    """
-
-    def __init__(self, seed: int, may_go_on: Callable[[], bool]):
-        self._steering, self._may_go_on = Steering(seed), may_go_on
-        self._commands = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
-        self._scans = rospy.Subscriber("/scan", LaserScan, self._take, queue_size=1)
-
-    def stop(self) -> None:
-        """Stands from now on."""
-        self._scans.unregister()
-        self._commands.publish(Twist())
-
-    def _take(self, message: LaserScan) -> None:
+    def take(message: LaserScan) -> None:
         ranges = np.array(message.ranges)
         ranges[~(ranges >= message.range_min)] = message.range_max
         bearings = message.angle_min + message.angle_increment * np.arange(len(ranges))
         command = Twist()
-        command.linear.x, command.angular.z = self._steering.choose(
+        command.linear.x, command.angular.z = steering.choose(
             np.minimum(ranges, message.range_max), (bearings + np.pi) % (2 * np.pi) - np.pi,
-            self._may_go_on())
-        self._commands.publish(command)
+            may_go_on())
+        commands.publish(command)
+
+    scans = rospy.Subscriber("/scan", LaserScan, take, queue_size=1)
+    try:
+        yield
+    finally:
+        scans.unregister()
+        commands.publish(Twist())

@@ -75,16 +75,15 @@ class NavigationRun(LiveDrive):
 
     def bring_up(self, launched: Launched) -> None:
         """Who looks on; each part brings up its own nodes."""
-        self._watch = Watch(launched.master_uri)
+        self._watch = Watch()
         self._watch.start()
         if self.options.video:
             self.film = Film(self.out / "run.mp4", self._ground, self._watch, self.result)
             self.film.start()
-        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
 
     def watch(self, launched: Launched) -> Outcome:
         """Both parts, or the second on a map that is there."""
-        everybody = self.options, self._ground, self._watch, launched, self.progress
+        everybody = self, self._ground, self._watch, launched
         map_file = self.options.map
         if map_file is None:
             self._tell("mapping: slam_gmapping, move_base to way-points")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import rospy
 
-from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.driver import Driver
 from evaluation.navigation.new_map import keep_map, place_for_map
@@ -19,14 +17,13 @@ from evaluation.navigation.score import (
     Pace,
     Result,
     localisation,
-    pose_errors,
     score_mapping,
     seen_of,
 )
+from evaluation.trial.live import LiveDrive
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose, invert, relative, wrap_angle
 from run_session.cpu import CpuMeter
-from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.processes import Child
 from trial_worlds.ground import Ground
@@ -48,13 +45,11 @@ class Part:
 
     name = ""
 
-    def __init__(self, options: argparse.Namespace, ground: Ground, watch: Watch,
-                 launched: Launched, progress: Progress):
-        self._options, self._ground, self._watch = options, ground, watch
-        self._launched, self._progress = launched, progress
+    def __init__(self, run: LiveDrive, ground: Ground, watch: Watch, launched: Launched):
+        self._run, self._ground, self._watch, self._launched = run, ground, watch, launched
+        self._options, self._progress = run.options, run.progress
         self._children: list[Child] = []
-        self._moved_at = self._began = time.monotonic()
-        self._moved_to = self._begin_time = 0.0  # s, simulated
+        self._began, self._begin_time = time.monotonic(), 0.0  # s: wall, simulated
         self._driver: Driver | None = None
         self._cpu: CpuMeter | None = None
 
@@ -63,21 +58,20 @@ class Part:
         self._watch.begin()
         house, options = self._options.house, self._options
         x, y, yaw = house.start
-        self._run("simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
+        self._start_one("simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
                   f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
                   f"real_time_factor:={options.real_time_factor:g}")
         self._wait_for("the robot in the simulator", lambda: self._watch.records.truth)
         self._watch.feelers = self._ground.feelers(rospy.get_param("/robot_description"))
         for number, command in enumerate(commands, start=1):
-            self._run(f"navigation-{number}", *command, f"model:={house.model}")
+            self._start_one(f"navigation-{number}", *command, f"model:={house.model}")
 
-    def _run(self, name: str, *command: str) -> None:
+    def _start_one(self, name: str, *command: str) -> None:
         self._children.append(self._launched.start(f"{self.name}-{name}", list(command)))
 
     def _wait_for(self, what: str, condition: Callable[[], object]) -> None:
-        self._launched.wait_for(
-            lambda: what, condition, lambda text: self._progress.status(f"{self.name}: {text}"),
-            self._options.startup_timeout, LOOK_PERIOD)
+        self._launched.wait_for(what, condition, self._options.startup_timeout,
+                                lambda text: self._progress.status(f"{self.name}: {text}"))
 
     def _connect(self, map_in_world: np.ndarray) -> Driver:
         self._driver = Driver(self._watch, self._ground, self._look, map_in_world,
@@ -101,14 +95,8 @@ class Part:
     def _look(self, what: str) -> None:
         """Waits a little, checks that all goes on, shows how things stand."""
         time.sleep(LOOK_PERIOD)
-        records, now = self._watch.records, time.monotonic()
-        self._launched.check(records.now)
-        if records.now > self._moved_to or not self._moved_to:
-            self._moved_at, self._moved_to = now, records.now
-        still = now - self._moved_at
-        if still > self._options.stuck_timeout:
-            raise RunError(f"simulated time has stood still at {records.now:.1f} s for "
-                           f"{still:.0f} s: the simulator is paused or hangs")
+        records = self._watch.records
+        self._run.check_time(self._launched, records.now)
         self._progress.show(self.name, what, records)
 
     def end(self) -> None:
@@ -184,10 +172,9 @@ class NavigationPart(Part):
         finally:
             records = watch.records
             result.paths[self.name] = np.array(records.truth).reshape(-1, 4)[:, 1:3]
-            errors = pose_errors(records, result.map_in_world, since)
-            result.navigation = Navigation(ways, records.contacts, seen_of(records),
-                                           records.length, localisation(told, errors),
-                                           self._pace())
+            _, errors = records.errors(since, result.map_in_world)
+            result.navigation = Navigation(**seen_of(records), ways=ways, pace=self._pace(),
+                                           localisation=localisation(told, errors))
 
     def _tell_pose(self, driver: Driver) -> tuple[float, float]:
         """Tells a pose that is off as the seed says; returns how far, m and rad."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
@@ -42,6 +43,8 @@ class LiveDrive(ABC):
         self.options, self.out = options, options.out
         self.progress = progress or StatusLine()
         self.film: FilmFile | None = None
+        self._time: float | None = None  # s, simulated, when it was last checked
+        self._since = 0.0  # s, wall: it has been so late since then
 
     # --- what is asked for
 
@@ -87,6 +90,16 @@ class LiveDrive(ABC):
     def end(self) -> None:
         """Count what is still to be counted, while all still runs; then look no more."""
 
+    def check_time(self, launched: Launched, now: float) -> None:
+        """RunError if a program died, or if simulated time, s, has stood still for too long."""
+        launched.check(now)
+        if now != self._time:
+            self._time, self._since = now, time.monotonic()
+        still = time.monotonic() - self._since
+        if still > self.options.stuck_timeout:
+            raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                           " the simulator is paused or hangs")
+
     # --- what was found
 
     @property
@@ -125,6 +138,7 @@ def run_live(drive: LiveDrive) -> int:
         try:
             drive.progress.status("starting roscore")
             launched.start_roscore()
+            drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
             drive.bring_up(launched)
             outcome = drive.watch(launched)
         except (KeyboardInterrupt, RunError) as ended:

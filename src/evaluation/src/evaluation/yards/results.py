@@ -50,8 +50,18 @@ class Drive:
 
     @property
     def name(self) -> str:
-        """As its files are called."""
+        """Of its case, and as its files are called."""
         return f"{self.set}-{self.seed}-{self.repeat}"
+
+    @property
+    def line(self) -> str:
+        """On one line."""
+        why = f" ({self.why})" if self.why else ""
+        air = self.to_obstacles if self.to_person is None else self.to_person
+        recovered = f", {len(self.recoveries)} recoveries" if self.recoveries else ""
+        return (f"{self.name}: {self.outcome}{why}, {self.time:.1f} s (straight"
+                f" {self.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
+                f" real time x{self.real_time_factor:.2f}")
 
 
 COLUMNS = {
@@ -102,13 +112,3 @@ def passed(drives: Sequence[Drive]) -> bool:
         sum(reached) >= LEAST_SHARE * len(reached)
         for reached in ([d.reached for d in counted if d.set == name]
                         for name in (YARDS, CROSSINGS)))
-
-
-def drive_line(drive: Drive) -> str:
-    """One drive on one line."""
-    why = f" ({drive.why})" if drive.why else ""
-    air = drive.to_obstacles if drive.to_person is None else drive.to_person
-    recovered = f", {len(drive.recoveries)} recoveries" if drive.recoveries else ""
-    return (f"{drive.name}: {drive.outcome}{why}, {drive.time:.1f} s (straight"
-            f" {drive.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
-            f" real time x{drive.real_time_factor:.2f}")
