@@ -13,10 +13,8 @@ from evaluation.localisation.results import (
     Load,
     Tracking,
     Trial,
-    passed,
     right_since,
     searched,
-    summary_table,
 )
 from evaluation.localisation.trial import LocalisationTrial
 from evaluation.localisation.wander import SPEED, Steering
@@ -74,7 +72,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     ([LOAD], True),
 ])  # fmt: skip
 def test_limits(results, passes):
-    assert passed(results) is passes
+    assert LocalisationTrial().passed(results) is passes
 
 
 def test_a_robot_without_any_pose_is_told_in_words():
@@ -117,7 +115,7 @@ def test_found_is_who_was_right_for_long_enough():
 
 
 def test_the_table_holds_each_figure_against_its_limit():
-    rows = summary_table(without(1, FINDING)).splitlines()
+    rows = LocalisationTrial().table(without(1, FINDING)).splitlines()
     assert [row.split("  ")[0] for row in rows[1:]] == [
         "finding, within 60 s", "kidnaps, within 120 s", "tracking, 300 s",
         "amcl with 2000 particles"]

@@ -10,7 +10,7 @@ import pytest
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize
+from evaluation.yards.results import CROSSINGS, YARDS, Drive, summarize
 from evaluation.yards.sheet import write_sheets
 from evaluation.yards.trial import YardTrial
 from run_session.failure import RunError
@@ -76,7 +76,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     ],
 )
 def test_limits(drives, good):
-    assert passed(drives) is good
+    assert YardTrial().passed(drives) is good
 
 
 def test_scores_are_the_challenge_s():

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import dropwhile, pairwise
 
+import numpy as np
 from turtlebot3_gazebo.making.courses import WAY_2020
 from turtlebot3_gazebo.making.lanes import rounded
 
@@ -55,14 +56,10 @@ def off_lane(x: float, y: float) -> float:
     """m from the lane's middle; 0 in the car park and in the tunnel."""
     if in_car_park(x, y) or in_tunnel(x, y):
         return 0.0
-    return min(_to_piece((x, y), *ends) for ends in pairwise(WAY))
-
-
-def _to_piece(place: tuple, begin: tuple, end: tuple) -> float:
-    dx, dy = end[0] - begin[0], end[1] - begin[1]
-    share = ((place[0] - begin[0]) * dx + (place[1] - begin[1]) * dy) / (dx * dx + dy * dy)
-    share = min(1.0, max(0.0, share))
-    return math.dist(place, (begin[0] + share * dx, begin[1] + share * dy))
+    place, begins, pieces = np.array((x, y)), np.array(WAY[:-1]), np.diff(WAY, axis=0)
+    shares = ((place - begins) * pieces).sum(axis=1) / (pieces**2).sum(axis=1)
+    nearest = begins + shares.clip(0.0, 1.0)[:, None] * pieces
+    return float(np.linalg.norm(place - nearest, axis=1).min())
 
 
 def in_car_park(x: float, y: float) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import at_moments
+from run_session.status_line import StatusLine
 from trial_worlds.feelers import Gap
 
 TOUCHES = 0.005  # m; what is nearer counts as touched: poses are seen 25 times a second
@@ -59,6 +60,12 @@ class Records:
     def longest_unseen(self) -> float:
         """s, simulated, between two looks at the true pose, at most."""
         return max(np.diff([row[0] for row in self.truth]), default=0.0)
+
+    def show(self, progress: StatusLine, part: str, what: str) -> None:
+        """The progress line of a part of the run, if one is due."""
+        progress.update(self.now, lambda: (
+            f"{part} {self.now:.1f} s | {what} | {self.length:.1f} m driven"
+            f" | touched {len(self.contacts)} | real time x{progress.factor:.2f}"), part)
 
     def note_gap(self, gap: Gap, now: float) -> None:
         """So near is the robot to something at this moment, s."""

@@ -7,16 +7,17 @@ from pathlib import Path
 
 from evaluation.lane.results import LaneDrive
 from evaluation.picture import chart
+from evaluation.trial.table import grouped
 
 COLOUR, FAILED, LIMIT = "#1b6ca8", "#c0392b", "#7a8b99"
 
 
 def write_chart(drives: Sequence[LaneDrive], times: Mapping[str, float], path: Path) -> None:
     """Three panels, a row for each method; a lap that was not closed is a red cross."""
-    methods = list(dict.fromkeys(drive.method for drive in drives))
+    methods = grouped(drives, lambda drive: drive.method)
     with chart(path, 1, 3, sharey=True) as ((rms, speed, time),):
-        for number, method in enumerate(methods):
-            for drive in (each for each in drives if each.method == method):
+        for number, (method, found) in enumerate(methods.items()):
+            for drive in found:
                 marker, colour = ("o", COLOUR) if drive.closed else ("x", FAILED)
                 rms.plot(drive.rms_lateral * 100, number, marker, color=colour)
                 speed.plot(drive.mean_speed, number, marker, color=colour)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
 from evaluation.laps.disturbance import Disturbance
 from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, seen, summary
-from evaluation.trial.table import cell, table, table_of
+from evaluation.trial.table import cell, grouped, table, table_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,9 +59,9 @@ def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None =
                "within limits": COUNTS["within limits"], **FIGURES}
     if ms_a_frame:
         columns["ms a frame"] = lambda found: cell(ms_a_frame.get(found["method"]))
-    methods = dict.fromkeys(drive.method for drive in drives)
-    return table_of(columns, [{"method": method, **summary(
-        [drive for drive in drives if drive.method == method])} for method in methods])
+    methods = grouped(drives, lambda drive: drive.method)
+    return table_of(columns, [{"method": method, **summary(found)}
+                              for method, found in methods.items()])
 
 
 def encounter_table(drives: Sequence[LaneDrive]) -> str:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-
-from evaluation.trial.table import table
 
 FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
 RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees, at most, of a pose that counts as right
@@ -21,7 +18,6 @@ LIMITS_IN_REPORT = {
     "right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
     "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG], "cpu": MOST_CPU,
 }  # fmt: skip
-Row = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ class Tracking:
         return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
 
     @property
-    def row(self) -> Row:
+    def row(self) -> tuple[str, str, str, str]:
         """Of the table."""
         return (f"tracking, {self.time:.0f} s", f"{self.off * 100:.1f} cm, {self.off_deg:.1f}°",
                 f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
@@ -109,25 +105,13 @@ class Load:
         return f"load: {self.percent:.0f} % of a core"
 
     @property
-    def row(self) -> Row:
+    def row(self) -> tuple[str, str, str, str]:
         """Of the table."""
         return (f"amcl with {self.particles} particles", f"{self.percent:.0f} % of a core",
                 f"{MOST_CPU:.0f} %", f"real time x{self.simulated / self.wall:.2f}")
 
 
 Result = Trial | Tracking | Load
-
-
-def passed(results: Sequence[Result]) -> bool:
-    """Is all that was tried within the limits?"""
-    shares = [sum(each.right for each in found) >= LEAST_SHARES[kind] * len(found)
-              for kind, found in _sets(results).items()]
-    return all(shares) and all(each.passed for each in results if not isinstance(each, Trial))
-
-
-def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
-    trials = [each for each in results if isinstance(each, Trial)]
-    return {kind: [each for each in trials if each.set == kind] for kind in LEAST_SHARES}
 
 
 def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
@@ -154,16 +138,3 @@ def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))
     first = wrong[-1] + 1 if len(wrong) else 0
     return float(times[first]) if first < len(times) else None
-
-
-def summary_table(results: Sequence[Result]) -> str:
-    """A row for each thing that was tried, with its limit."""
-    rows = [("", "found", "wanted", "")]
-    for kind, trials in _sets(results).items():
-        if trials:
-            took = [trial.took for trial in trials if trial.right]
-            median = f"in {np.median(took):.1f} s (median)" if took else ""
-            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s", f"{len(took)} of {len(trials)}",
-                         f"{LEAST_SHARES[kind]:.0%}", median))
-    rows += [each.row for each in results if not isinstance(each, Trial)]
-    return table(rows, left=range(4))

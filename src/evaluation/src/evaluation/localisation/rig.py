@@ -19,12 +19,12 @@ from gazebo_msgs.srv import (
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from evaluation.house.progress import Progress
 from evaluation.house.watch import ROBOT, Watch, told_pose
 from run_session import simulator
 from run_session.cpu import processes
 from run_session.failure import RunError
 from run_session.launch import Launched
+from run_session.status_line import StatusLine
 from trial_worlds.ground import Ground
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
@@ -40,7 +40,7 @@ class Rig:
     """Made once a run; all of its calls may raise RunError."""
 
     def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
-                 map_file: str, progress: Progress):
+                 map_file: str, progress: StatusLine):
         self._launched, self._ground, self._progress = launched, ground, progress
         launched.start_roscore()
         self.watch = Watch()
@@ -117,7 +117,7 @@ class Rig:
             if time.monotonic() - began > STILL_LIMIT:
                 raise RunError(f"no news of the robot for {STILL_LIMIT:.0f} s: the simulator hangs",
                                self._launched.tail())
-        self._progress.show(part, what, self.watch.records)
+        self.watch.records.show(self._progress, part, what)
 
     def set_pace(self, factor: float) -> None:
         """So many simulated seconds a second."""

@@ -6,23 +6,25 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from evaluation.house.house_file import load_house
-from evaluation.house.progress import Progress
 from evaluation.localisation.results import (
     FINDING,
     KIDNAPS,
+    LEAST_SHARES,
+    LIMITS,
     LIMITS_IN_REPORT,
     Load,
     Result,
     Tracking,
     Trial,
-    passed,
-    summary_table,
 )
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
 from evaluation.trial import protocol
 from evaluation.trial.command_line import Parser
+from evaluation.trial.table import grouped, table
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from run_session.failure import RunError
@@ -92,15 +94,25 @@ class LocalisationTrial(protocol.ReportedTrial):
             self._rig, self._ground, self._options.seed, self._case.amount)
 
     def passed(self, results: Sequence[Result]) -> bool:
-        return passed(results)
+        """Is all that was tried within the limits?"""
+        shares = [sum(each.right for each in found) >= LEAST_SHARES[kind] * len(found)
+                  for kind, found in _sets(results).items()]
+        return all(shares) and all(each.passed for each in _others(results))
 
     def table(self, results: Sequence[Result]) -> str:
-        return summary_table(results)
+        """A row for each thing that was tried, with its limit."""
+        rows = [("", "found", "wanted", "")]
+        for kind, trials in _sets(results).items():
+            took = [trial.took for trial in trials if trial.right]
+            median = f"in {np.median(took):.1f} s (median)" if took else ""
+            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s", f"{len(took)} of {len(trials)}",
+                         f"{LEAST_SHARES[kind]:.0%}", median))
+        return table([*rows, *(each.row for each in _others(results))], left=range(4))
 
     def values(self, results: Sequence[Result]) -> dict:
-        others = {each.name: asdict(each) for each in results if not isinstance(each, Trial)}
+        others = {each.name: asdict(each) for each in _others(results)}
         return {
-            "passed": passed(results), "limits": LIMITS_IN_REPORT,
+            "passed": self.passed(results), "limits": LIMITS_IN_REPORT,
             "trials": [{**asdict(each), "right": each.right} for each in results
                        if isinstance(each, Trial)],
             "tracking": others.get("tracking"), "load": others.get("load"),
@@ -117,7 +129,15 @@ class LocalisationTrial(protocol.ReportedTrial):
         except (OSError, MapFileError) as error:
             raise RunError(
                 f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
-        progress = session.progress = Progress()
-        rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file), progress)
+        rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file),
+                  session.progress)
         session.at_end(rig.watch.stop)
         return rig
+
+
+def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
+    return grouped((each for each in results if isinstance(each, Trial)), lambda each: each.set)
+
+
+def _others(results: Sequence[Result]) -> list[Tracking | Load]:
+    return [each for each in results if not isinstance(each, Trial)]

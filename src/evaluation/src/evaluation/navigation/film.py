@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from pathlib import Path
 
@@ -25,7 +26,7 @@ from trial_worlds.ground import Ground
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint
 PERIOD = 1.0  # s, simulated, between two pictures: the film runs at ten times the speed
-LOOK_PERIOD = 0.1  # s, wall
+LOOK_PERIOD, VIEW_TIME = 0.1, 1.0  # s, wall; the latter for the camera's picture
 PLAN_PX = 760
 SCAN, PLANNED, DRIVEN = "#ff5050", "#fae65a", lap_colour(0)
 
@@ -42,7 +43,6 @@ class Film(FilmFile):
         high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
         self._floor = Plan(low - 0.2, high + 0.2, PLAN_PX)
         self._view: Image | None = None
-        self._eye: rospy.Subscriber | None = None
         self._records: Records | None = None
         self._number = -1
         self._thread = threading.Thread(target=self._film, daemon=True, name="film")
@@ -58,16 +58,6 @@ class Film(FilmFile):
             self._thread.join()
         return super().close()
 
-    def _look(self) -> None:
-        """Ask for one picture: while somebody subscribes, the camera draws thirty a second."""
-        if self._eye is None:
-            self._eye = rospy.Subscriber(CAMERA, Image, self._take, queue_size=1, buff_size=2**20)
-
-    def _take(self, message: Image) -> None:
-        self._view, eye, self._eye = message, self._eye, None
-        if eye is not None:
-            eye.unregister()
-
     def _film(self) -> None:
         while not self._ended.wait(LOOK_PERIOD):
             records = self._watch.records
@@ -76,8 +66,10 @@ class Film(FilmFile):
             number = int(records.now / PERIOD)
             if records.truth and number > self._number:
                 self._number = number
+                # One picture: while somebody subscribes, the camera draws thirty a second.
+                with contextlib.suppress(rospy.ROSException):
+                    self._view = rospy.wait_for_message(CAMERA, Image, VIEW_TIME)
                 self._add(self._page(records))
-                self._look()
 
     def _page(self, records: Records) -> np.ndarray:
         view = self._view and fit(CvBridge().imgmsg_to_cv2(self._view, "bgr8"))

@@ -10,7 +10,6 @@ import cv2
 import numpy as np
 
 from evaluation.house.house_file import load_house
-from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
 from evaluation.navigation.film import Film
 from evaluation.navigation.new_map import read_map_frame
@@ -60,7 +59,7 @@ class NavigationRun(LiveDrive):
         return options
 
     def __init__(self, options: argparse.Namespace):
-        super().__init__(options, Progress())
+        super().__init__(options)
         self.result = Result()
         self._ground = options.house.ground()
         self._check_way_points()

@@ -97,7 +97,7 @@ class Part:
         time.sleep(LOOK_PERIOD)
         records = self._watch.records
         self._run.check_time(self._launched, records.now)
-        self._progress.show(self.name, what, records)
+        records.show(self._progress, self.name, what)
 
     def end(self) -> None:
         """Ends this part's programs, those that were started last first."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, summary
+from evaluation.trial.table import grouped
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,9 +47,7 @@ def summarize(laps: Sequence[Lap]) -> list[dict]:
 
     `worst_seed`: of a lap that was not closed, else of the farthest beside the line in the mean.
     """
-    groups: dict[tuple[str, str], list[Lap]] = {}
-    for lap in laps:
-        groups.setdefault((lap.follower, lap.set), []).append(lap)
+    groups = grouped(laps, lambda lap: (lap.follower, lap.set))
     return [{**summary(group), "follower": follower, "set": name, "worst_seed": max(
         group, key=lambda lap: (not lap.closed, lap.rms_lateral)).seed}
         for (follower, name), group in groups.items()]

@@ -16,7 +16,7 @@ from evaluation.race_trials.results import COLUMNS, Lap, summarize
 from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
-from evaluation.trial.table import table_of
+from evaluation.trial.table import grouped, table_of
 from run_session.failure import RunError
 
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps
@@ -93,6 +93,6 @@ class RaceTrial(LapTrial):
 
     def pictures(self, results: Sequence[Lap], out: Path) -> list[str]:
         write_chart(results, out / "trials.png")
-        sheets = [write_path_sheet([lap for lap in results if lap.follower == follower], out)
-                  for follower in dict.fromkeys(lap.follower for lap in results)]
+        sheets = [write_path_sheet(laps, out)
+                  for laps in grouped(results, lambda lap: lap.follower).values()]
         return ["trials.png", *(sheet.name for sheet in sheets)]

@@ -1,16 +1,15 @@
-"""Where laps are driven: the racetrack, and random tracks that make_track makes."""
+"""Where laps are driven: the racetrack, and random tracks."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
-from evaluation.laps.lap_trial import Venue
-from run_session.failure import RunError
-from run_session.resources import find_package
+from racecar_description.track.from_numbers import from_seed
+from racecar_description.track.model_files import write_course
+from racecar_description.track.wishes import Wishes
 
-LIMIT = 120.0  # s, wall, for making one track
+from evaluation.laps.lap_trial import Venue
+from run_session.resources import find_package
 
 
 def racetrack() -> Venue:
@@ -19,16 +18,10 @@ def racetrack() -> Venue:
 
 
 def random_track(seed: int, out: Path) -> Venue:
-    """The seed's track, made anew below `out`."""
-    name = f"random_{seed}"
-    script = find_package("racecar_description") / "scripts" / "make_track"
-    command = [sys.executable, "-P", str(script), "--random", str(seed), "--name", name]
-    done = subprocess.run(
-        [*command, "--out", str(out)], capture_output=True, text=True, timeout=LIMIT, check=False
-    )
-    if done.returncode:
-        raise RunError(f"no track of seed {seed}", done.stderr.strip())
-    return _venue(name, out)
+    """The seed's track, as make_track makes it, made anew below `out`."""
+    course, _ = from_seed(seed, Wishes(f"random_{seed}"))
+    write_course(course, out)
+    return _venue(course.name, out)
 
 
 def _venue(name: str, root: Path) -> Venue:

@@ -14,8 +14,3 @@ COURSE = Course(
     camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
     odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0,
 )  # fmt: skip
-
-
-def annotated_topic(tracker: str) -> str:
-    """Where the tracker shows what it sees."""
-    return f"/{tracker.removesuffix('.py')}/annotated"

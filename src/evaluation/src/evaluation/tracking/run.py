@@ -12,7 +12,7 @@ from ai_robot_tracking.scenes.start import draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
-from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, TRACKERS, annotated_topic
+from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, TRACKERS
 from evaluation.tracking.film import TrackFilm
 from evaluation.tracking.picture import write_picture
 from evaluation.tracking.report import lines, summarize
@@ -69,8 +69,8 @@ class TrackRun(CarDrive):
         self.driver = options.tracker
         if options.video:
             period = FAST_FILM_PERIOD / 2 if options.fast else FILM_PERIOD
-            self.film = TrackFilm(options.out / "run.mp4", annotated_topic(options.tracker),
-                                  self.scene, self.drive, period)
+            seen = f"/{options.tracker.removesuffix('.py')}/annotated"
+            self.film = TrackFilm(options.out / "run.mp4", seen, self.scene, self.drive, period)
 
     def launch_words(self) -> Sequence[str]:
         options, start = self.options, self.start
@@ -80,10 +80,6 @@ class TrackRun(CarDrive):
         return (PACKAGE, LAUNCH, "gui:=false", f"world_name:={world}",
                 f"tracker:={options.tracker}", f"x_pos:={start.x:.6f}", f"y_pos:={start.y:.6f}",
                 f"yaw:={start.yaw:.6f}", f"seed:={options.seed}", *self.fast_arguments(), *patient)
-
-    @property
-    def is_over(self) -> bool:
-        return self.drive.over
 
     def outcome(self) -> Outcome:
         return self.drive.outcome, ""

@@ -22,7 +22,7 @@ class CarDrive(LiveDrive):
     """Options are those of LiveDrive and `fast`; `drive` scores and keeps the samples."""
 
     def __init__(self, options: argparse.Namespace, course: Course, drive: LapScorer):
-        """`drive` has `samples` and takes one more by `add`."""
+        """`drive` has `samples`, takes one more by `add`, and says when it is `over`."""
         super().__init__(options)
         self.course, self.drive = course, drive
         self.fingerprints: Fingerprints | None = None
@@ -34,11 +34,6 @@ class CarDrive(LiveDrive):
     @abstractmethod
     def launch_words(self) -> Sequence[str]:
         """Package, launch file, its arguments."""
-
-    @property
-    @abstractmethod
-    def is_over(self) -> bool:
-        """Whether more samples do not count."""
 
     @abstractmethod
     def outcome(self) -> Outcome:
@@ -65,7 +60,7 @@ class CarDrive(LiveDrive):
 
     def watch(self, launched: Launched) -> Outcome:
         """Follow the car until the drive is over."""
-        while not self.is_over:
+        while not self.drive.over:
             self._take_samples()
             now = self.drive.samples[-1].time
             self.progress.update(now, self.line)
@@ -78,7 +73,7 @@ class CarDrive(LiveDrive):
         samples: list[Sample] = self.drive.samples
         for arrived, seen in arrivals:
             sample = Sample(*seen)
-            if samples and self.is_over:
+            if samples and self.drive.over:
                 break
             if not samples:
                 self._first_at = self._last_at = arrived

@@ -39,9 +39,9 @@ class LiveDrive(ABC):
     logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
     driver = ""  # the script that drives, for messages
 
-    def __init__(self, options: argparse.Namespace, progress: StatusLine | None = None):
+    def __init__(self, options: argparse.Namespace):
         self.options, self.out = options, options.out
-        self.progress = progress or StatusLine()
+        self.progress = StatusLine()
         self.film: FilmFile | None = None
         self._time: float | None = None  # s, simulated, when it was last checked
         self._since = 0.0  # s, wall: it has been so late since then

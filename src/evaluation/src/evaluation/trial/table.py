@@ -23,6 +23,14 @@ def table_of(columns: Mapping[str, Callable[[Any], str]], found: Iterable[Any],
                  left)
 
 
+def grouped(found: Iterable[Any], key: Callable[[Any], Any]) -> dict[Any, list[Any]]:
+    """By key, in the order in which keys first appear."""
+    groups: dict[Any, list[Any]] = {}
+    for each in found:
+        groups.setdefault(key(each), []).append(each)
+    return groups
+
+
 def cell(value: float | None, factor: float = 1, digits: int = 1) -> str:
     """A figure times `factor`, with so many decimals; a dash where there is none."""
     return "-" if value is None else f"{value * factor:.{digits}f}"

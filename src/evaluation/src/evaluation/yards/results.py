@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from evaluation.trial.table import cell, mean
+from evaluation.trial.table import cell, grouped, mean
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
@@ -80,8 +80,7 @@ COLUMNS = {
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
     """One for each set; means are of drives that reached the goal, None where none did."""
-    sets = dict.fromkeys(drive.set for drive in drives)
-    return [_summary(name, [drive for drive in drives if drive.set == name]) for name in sets]
+    return [_summary(*group) for group in grouped(drives, lambda drive: drive.set).items()]
 
 
 def _summary(name: str, drives: list[Drive]) -> dict:
@@ -102,13 +101,3 @@ def _summary(name: str, drives: list[Drive]) -> dict:
         "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
         "failed": [drive.name for drive in drives if not drive.reached],
     }  # fmt: skip
-
-
-def passed(drives: Sequence[Drive]) -> bool:
-    """Enough goals reached, and nobody touched by the robot; who stands still touches nobody."""
-    touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in drives)
-    counted = [drive for drive in drives if drive.outcome != WALKED_INTO]
-    return not touched and all(
-        sum(reached) >= LEAST_SHARE * len(reached)
-        for reached in ([d.reached for d in counted if d.set == name]
-                        for name in (YARDS, CROSSINGS)))

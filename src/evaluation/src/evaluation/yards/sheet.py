@@ -10,6 +10,7 @@ import numpy as np
 
 from evaluation.colours import CAR, FAINT, GOOD, lap_colour
 from evaluation.picture import write_tiles
+from evaluation.trial.table import grouped
 from evaluation.yards.results import CROSSINGS, YARDS, Drive
 from trial_worlds.crossing import APPROACH, PERSON_RADIUS, Crossing
 from trial_worlds.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
@@ -22,20 +23,17 @@ TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
 def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
     """Write them below `out`; returns their names."""
     written = []
+    sets = grouped(drives, lambda drive: drive.set)
     for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
-        groups: dict[int, list[Drive]] = {}
-        for drive in drives:
-            if drive.set == kind:
-                groups.setdefault(drive.seed, []).append(drive)
-
         def draw(axes: object, group: list[Drive], edges=edges, ground=ground) -> tuple[str, bool]:
             axes.set(xlim=edges[:2], ylim=edges[2:])
             ground(axes, group[0])
             return _draw_ways(axes, group, out)
 
-        if groups:
+        if kind in sets:
+            groups = list(grouped(sets[kind], lambda drive: drive.seed).values())
             height = TILE_WIDTH * (edges[3] - edges[2]) / (edges[1] - edges[0]) + CAPTION
-            write_tiles(out / f"{kind}.png", list(groups.values()), draw, (TILE_WIDTH, height))
+            write_tiles(out / f"{kind}.png", groups, draw, (TILE_WIDTH, height))
             written.append(f"{kind}.png")
     return written
 

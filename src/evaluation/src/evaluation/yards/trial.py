@@ -11,17 +11,18 @@ from pathlib import Path
 
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import table_of
+from evaluation.trial.table import grouped, table_of
 from evaluation.yards.chart import write_chart
 from evaluation.yards.drive import Task, crossing_task, drive, prepare, yard_task
 from evaluation.yards.judge import Judge
 from evaluation.yards.results import (
     COLUMNS,
+    CONTACT,
     CROSSINGS,
     LEAST_SHARE,
+    WALKED_INTO,
     YARDS,
     Drive,
-    passed,
     summarize,
 )
 from evaluation.yards.rig import Rig
@@ -106,7 +107,11 @@ class YardTrial(ReportedTrial):
         return drove
 
     def passed(self, results: Sequence[Drive]) -> bool:
-        return passed(results)
+        """Enough goals reached, and nobody touched by the robot; one that stands touches nobody."""
+        touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in results)
+        sets = grouped((d for d in results if d.outcome != WALKED_INTO), lambda d: d.set)
+        return not touched and all(sum(d.reached for d in found) >= LEAST_SHARE * len(found)
+                                   for found in sets.values())
 
     def table(self, results: Sequence[Drive]) -> str:
         return table_of(COLUMNS, summarize(results), left=())
@@ -114,7 +119,7 @@ class YardTrial(ReportedTrial):
     def values(self, results: Sequence[Drive]) -> dict:
         return {
             "least_share_of_yards": LEAST_SHARE,
-            "passed": passed(results),
+            "passed": self.passed(results),
             "summaries": summarize(results),
             **super().values(results),
         }
