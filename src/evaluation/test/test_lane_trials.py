@@ -10,7 +10,7 @@ from lane_keeping.world.scenery import load_crossings
 
 from evaluation.lane.comparison import LaneComparison
 from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
-from evaluation.lane.recording import CAR, Moment, Recording, line_of, read_recording
+from evaluation.lane.recording import CAR, Moment, last, line_of, read_recording
 from evaluation.lane.results import encounter_table, from_report, lap_table
 from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
 from evaluation.laps.disturbance import draw
@@ -27,10 +27,10 @@ def drive(car, person):
     """A recording of 10 s from functions of time: the car's x, and metres left of the lane."""
     times = np.arange(0, 10, 0.02)
     speeds = np.gradient([car(time) for time in times], times)
-    return Recording({
+    return {
         CAR: [Moment(t, car(t), 0.0, 0.0, v) for t, v in zip(times, speeds, strict=True)],
         "pedestrian_1": [Moment(t, FIRST.x, person(t), 0.0, 1.0) for t in times],
-    })
+    }
 
 
 def walks(time):
@@ -95,8 +95,8 @@ def test_a_recording_is_read_as_it_was_written(tmp_path):
     moments = [Moment(0.02 * i, 0.5 * i, -1.0, 0.25, 0.75) for i in range(3)]
     path.write_text("".join(line_of(CAR, each) for each in moments) + "car 0.06 1.")
     found = read_recording(path)
-    assert found.moments == {CAR: moments}
-    assert found.at(CAR, 0.03) == moments[1] and found.at(CAR, -1) is None
+    assert found == {CAR: moments}
+    assert last(moments, 0.03) == moments[1] and last(moments, -1) is None
     path.write_text("car one two\n")
     with pytest.raises(RunError, match="no recording"):
         read_recording(path)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from evaluation.house.records import Records
-from evaluation.localisation.results import (
+from evaluation.localisation.outcomes import (
     FINDING,
     KIDNAPS,
     Load,
@@ -17,7 +17,7 @@ from evaluation.localisation.results import (
     searched,
 )
 from evaluation.localisation.trial import LocalisationTrial
-from evaluation.localisation.wander import SPEED, Steering
+from evaluation.localisation.trials import SPEED, Steering
 from evaluation.trial.program import NOT_RUN
 from evaluation.trial.runner import run_trial
 from run_session.failure import RunError

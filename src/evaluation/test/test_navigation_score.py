@@ -13,7 +13,7 @@ from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
 from evaluation.navigation.main import NavigationRun
 from evaluation.navigation.new_map import keep_map, place_for_map, read_map_frame
-from evaluation.navigation.picture import CLEAR, map_picture
+from evaluation.navigation.pictures import CLEAR, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import (
     Navigation,

@@ -10,8 +10,8 @@ import pytest
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.results import CROSSINGS, YARDS, Drive, summarize
-from evaluation.yards.sheet import write_sheets
+from evaluation.yards.outcomes import CROSSINGS, YARDS, Drive, summarize
+from evaluation.yards.pictures import write_sheets
 from evaluation.yards.trial import YardTrial
 from run_session.failure import RunError
 from trial_worlds.crossing import draw_crossing
@@ -99,7 +99,7 @@ def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
 
 
 def test_pictures_are_drawn_of_what_there_is(tmp_path):
-    chart = importlib.import_module("evaluation.yards.chart")
+    chart = importlib.import_module("evaluation.yards.pictures")
     drives = [made(0), made(0, 1, outcome="contact"), made(3, outcome="late"), crossed(2)]
     (tmp_path / "drives").mkdir()
     for each in drives[:2]:

@@ -8,12 +8,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from turtlebot3_gazebo.making.lanes import beside
+from turtlebot3_gazebo.making.race_worlds import BARRIERS, OBSTACLES, WALLS
+
+from evaluation.autorace import judge
 from evaluation.autorace.judge import MISSIONS, Sample, Score, off_lane, score
 from evaluation.autorace.rig import Rig
-from evaluation.autorace.sheet import write_sheet
+from evaluation.colours import CAR, FAINT, LAPS, LINE, WHITE
+from evaluation.picture import DPI, legend, map_sheet
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import cell, mean, table
+from evaluation.trial.report import cell, mean, table
 from run_session.resources import find_package
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -157,3 +163,25 @@ class RaceTrial(ReportedTrial):
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_sheet(results, out / "autorace.png")
         return ["autorace.png"]
+
+
+def write_sheet(drives: Sequence, path: Path) -> None:
+    """A line for each drive; those that failed end in a cross."""
+    passed = sum(each.passed for each in drives)
+    figure, axes = map_sheet("AutoRace 2020", f"{passed} of {len(drives)} drives passed",
+                             (-2.1, -2.1), (2.1, 2.1))
+    for side, colour in ((1, LINE), (-1, WHITE)):
+        axes.plot(*np.array(beside(judge.WAY, side * judge.HALF_LANE)).T, color=colour, linewidth=3)
+    for (x, y), yaw, length in WALLS.values():
+        half = np.array((np.cos(yaw), np.sin(yaw))) * length / 2
+        axes.plot((x - half[0], x + half[0]), (y - half[1], y + half[1]), color=FAINT, linewidth=6)
+    axes.plot(*np.array(list(OBSTACLES.values())).T, "o", color=FAINT, markersize=20)
+    axes.plot(*np.array(BARRIERS).T, "s", color=CAR, markersize=8, label="barriers")
+    axes.plot(*np.array(list(judge.BAYS.values())).T, "P", color=WHITE, markersize=12, label="bays")
+    for number, drive in enumerate(drives):
+        points = np.array(drive.path)
+        axes.plot(*points.T, color=LAPS[number % len(LAPS)], linewidth=1.2)
+        if not drive.passed:
+            axes.plot(*points[-1], "x", color=CAR, markersize=14)
+    legend(axes)
+    figure.savefig(path, dpi=DPI)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
 from evaluation.laps.disturbance import Disturbance
-from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, seen, summary
-from evaluation.trial.table import cell, grouped, table, table_of
+from evaluation.laps.lap_trial import COUNTS, FIGURES, LapDrive, seen, summary
+from evaluation.trial.report import cell, grouped, table, table_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,15 +73,18 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
     stops = [each.stopped_before for each in met if each.stopped_before is not None]
     starts = [each.moved_after for each in met if each.moved_after is not None]
     stood = f"{min(stops):.2f} m before" if stops else "nowhere"
+
+    def kept(rule: str) -> str:
+        return f"{sum(getattr(each, rule) for each in met)} of {len(met)}"
+
+    touched = sum(each.touched for each in met)
     rows = [
         ["demanded", "kept", "worst"],
-        ["no contact", f"{sum(not each.touched for each in met)} of {len(met)}",
-         f"{nearest:.2f} m, over all drives"],
-        [f"{KEPT_OFF:g} m from person and zebra",
-         f"{sum(each.stood_off for each in met)} of {len(met)}",
+        ["no contact", f"{len(met) - touched} of {len(met)}", f"{nearest:.2f} m, over all drives"],
+        [f"{KEPT_OFF:g} m from person and zebra", kept("stood_off"),
          f"{min(each.nearest for each in met):.2f} m; stood {stood}"],
-        [f"moves on within {MOVES_ON:g} s", f"{sum(each.moved_on for each in met)} of {len(met)}",
+        [f"moves on within {MOVES_ON:g} s", kept("moved_on"),
          f"{max(starts):.2f} s" if starts else "-"],
-        ["all of it", f"{sum(each.passed for each in met)} of {len(met)}", ""],
+        ["all of it", kept("passed"), ""],
     ]
     return table(rows)

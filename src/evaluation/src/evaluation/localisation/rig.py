@@ -11,11 +11,7 @@ import numpy as np
 import rospy
 from dynamic_reconfigure.msg import Config, IntParameter
 from dynamic_reconfigure.srv import Reconfigure
-from gazebo_msgs.srv import (
-    GetPhysicsProperties,
-    SetPhysicsProperties,
-    SetPhysicsPropertiesRequest,
-)
+from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
@@ -49,7 +45,7 @@ class Rig:
             f"world_name:={options.house.world_path}", f"model:={options.house.model}",
             f"seed:={options.seed}", f"real_time_factor:={options.real_time_factor:g}"])
         self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
-        self._wait("the simulator", lambda: _answers(simulator.simulated_time))
+        self._wait("the simulator", simulator.models)
         self._start, self._by_wheels = options.house.start, None
         self.use_odometry(by_wheels=True)
         self.watch.start()
@@ -123,8 +119,7 @@ class Rig:
         """So many simulated seconds a second."""
         now = call_service("/gazebo/get_physics_properties", GetPhysicsProperties)
         call_service("/gazebo/set_physics_properties", SetPhysicsProperties,
-                   SetPhysicsPropertiesRequest(now.time_step, factor / now.time_step, now.gravity,
-                                               now.ode_config))
+                     now.time_step, factor / now.time_step, now.gravity, now.ode_config)
 
     def set_particles(self, count: int) -> None:
         """amcl has so many, never fewer."""
@@ -142,11 +137,3 @@ class Rig:
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
         return self._launched.wait_for(what, condition, START_LIMIT, self._progress.status)
-
-
-def _answers(question: Callable[[], object]) -> bool:
-    try:
-        question()
-    except RunError:
-        return False
-    return True

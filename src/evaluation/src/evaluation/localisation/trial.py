@@ -9,22 +9,13 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from evaluation.house.house_file import load_house
-from evaluation.localisation.results import (
-    FINDING,
-    KIDNAPS,
-    LEAST_SHARES,
-    LIMITS,
-    LIMITS_IN_REPORT,
-    Load,
-    Result,
-    Tracking,
-    Trial,
-)
+from evaluation.localisation import outcomes
+from evaluation.localisation.outcomes import FINDING, KIDNAPS, Load, Result, Tracking, Trial
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
 from evaluation.trial import protocol
 from evaluation.trial.command_line import Parser
-from evaluation.trial.table import grouped, table
+from evaluation.trial.report import grouped, table
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from run_session.failure import RunError
@@ -95,7 +86,7 @@ class LocalisationTrial(protocol.ReportedTrial):
 
     def passed(self, results: Sequence[Result]) -> bool:
         """Is all that was tried within the limits?"""
-        shares = [sum(each.right for each in found) >= LEAST_SHARES[kind] * len(found)
+        shares = [sum(each.right for each in found) >= outcomes.LEAST_SHARES[kind] * len(found)
                   for kind, found in _sets(results).items()]
         return all(shares) and all(each.passed for each in _others(results))
 
@@ -105,14 +96,15 @@ class LocalisationTrial(protocol.ReportedTrial):
         for kind, trials in _sets(results).items():
             took = [trial.took for trial in trials if trial.right]
             median = f"in {np.median(took):.1f} s (median)" if took else ""
-            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s", f"{len(took)} of {len(trials)}",
-                         f"{LEAST_SHARES[kind]:.0%}", median))
+            rows.append((f"{kind}, within {outcomes.LIMITS[kind]:.0f} s",
+                         f"{len(took)} of {len(trials)}",
+                         f"{outcomes.LEAST_SHARES[kind]:.0%}", median))
         return table([*rows, *(each.row for each in _others(results))], left=range(4))
 
     def values(self, results: Sequence[Result]) -> dict:
         others = {each.name: asdict(each) for each in _others(results)}
         return {
-            "passed": self.passed(results), "limits": LIMITS_IN_REPORT,
+            "passed": self.passed(results), "limits": outcomes.LIMITS_IN_REPORT,
             "trials": [{**asdict(each), "right": each.right} for each in results
                        if isinstance(each, Trial)],
             "tracking": others.get("tracking"), "load": others.get("load"),

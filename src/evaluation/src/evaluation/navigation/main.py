@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
@@ -11,10 +10,9 @@ import numpy as np
 
 from evaluation.house.house_file import load_house
 from evaluation.house.watch import Watch
-from evaluation.navigation.film import Film
 from evaluation.navigation.new_map import read_map_frame
 from evaluation.navigation.parts import MappingPart, NavigationPart
-from evaluation.navigation.picture import map_picture
+from evaluation.navigation.pictures import Film, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import Result
 from evaluation.trial.command_line import LARGEST_SEED, Parser
@@ -38,6 +36,7 @@ class NavigationRun(LiveDrive):
     vehicle = "robot"
     logs = "*simulator.log"
     writes = ("map.png", "run.mp4", "report.json", "map.pgm", "map.yaml", "map.json")
+    stay = writes[3:]
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
@@ -62,7 +61,10 @@ class NavigationRun(LiveDrive):
         super().__init__(options)
         self.result = Result()
         self._ground = options.house.ground()
-        self._check_way_points()
+        for point in options.house.way_points:
+            if not self._ground.has_room(np.array(point)):
+                raise RunError(f"way_points: the robot cannot get to {list(point)} without touching"
+                               " a wall: change the house file")
         self._goals = self._ground.draw_goals(options.goals, options.seed)
         if options.map:
             try:
@@ -107,9 +109,6 @@ class NavigationRun(LiveDrive):
     def faults(self, outcome: Outcome) -> list[str]:
         return self.result.faults
 
-    def owned_files(self) -> Sequence[str]:
-        return self.writes[:3]  # a map is replaced by the next that is whole
-
     def figures(self, outcome: Outcome, log: list[str]) -> dict:
         return summarize(self.options, outcome, self.result)
 
@@ -122,12 +121,6 @@ class NavigationRun(LiveDrive):
     def _tell(self, title: str) -> None:
         if self.film is not None:
             self.film.title = title
-
-    def _check_way_points(self) -> None:
-        for point in self.options.house.way_points:
-            if not self._ground.has_room(np.array(point)):
-                raise RunError(f"way_points: the robot cannot get to {list(point)} without touching"
-                               " a wall: change the house file")
 
 
 def _titles(options: argparse.Namespace, result: Result) -> tuple[str, str]:

@@ -10,16 +10,9 @@ import numpy as np
 import rospy
 
 from evaluation.house.watch import Watch
+from evaluation.navigation import score
 from evaluation.navigation.driver import Driver
 from evaluation.navigation.new_map import keep_map, place_for_map
-from evaluation.navigation.score import (
-    Navigation,
-    Pace,
-    Result,
-    localisation,
-    score_mapping,
-    seen_of,
-)
 from evaluation.trial.live import LiveDrive
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose, invert, relative, wrap_angle
@@ -58,9 +51,10 @@ class Part:
         self._watch.begin()
         house, options = self._options.house, self._options
         x, y, yaw = house.start
-        self._start_one("simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
-                  f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
-                  f"real_time_factor:={options.real_time_factor:g}")
+        self._start_one(
+            "simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
+            f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
+            f"real_time_factor:={options.real_time_factor:g}")
         self._wait_for("the robot in the simulator", lambda: self._watch.records.truth)
         self._watch.feelers = self._ground.feelers(rospy.get_param("/robot_description"))
         for number, command in enumerate(commands, start=1):
@@ -84,13 +78,13 @@ class Part:
         self._cpu = CpuMeter()
         self._began, self._begin_time = time.monotonic(), self._watch.records.now
 
-    def _pace(self) -> Pace:
+    def _pace(self) -> score.Pace:
         simulated = self._watch.records.now - self._begin_time
         wall = time.monotonic() - self._began
         used = self._cpu.look()  # percent of a core in wall time
         share = {name: round(percent * wall / max(simulated, 1e-9), 1)
                  for name, percent in sorted(used.items(), key=lambda item: -item[1])}
-        return Pace(simulated, wall, share)
+        return score.Pace(simulated, wall, share)
 
     def _look(self, what: str) -> None:
         """Waits a little, checks that all goes on, shows how things stand."""
@@ -112,7 +106,7 @@ class MappingPart(Part):
 
     name = "mapping"
 
-    def run(self, result: Result) -> None:
+    def run(self, result: score.Result) -> None:
         """Drives the round and saves the map; what was found stands in `result`, always."""
         self._start(SLAM, MOVE_BASE)
         watch, house = self._watch, self._options.house
@@ -133,8 +127,9 @@ class MappingPart(Part):
         finally:
             result.paths[self.name] = np.array(watch.records.truth).reshape(-1, 4)[:, 1:3]
         result.map = read_map(made)[0]
-        result.mapping = score_mapping(self._ground, result.map, watch.records, watch.scan.angles,
-                                       house.laser_reach, ways, self._pace())
+        result.mapping = score.score_mapping(
+            self._ground, result.map, watch.records, watch.beams, house.laser_reach, ways,
+            self._pace())
         result.map_in_world = result.mapping.trajectory.alignment
         keep_map(made, result.map_in_world)
 
@@ -154,7 +149,7 @@ class NavigationPart(Part):
 
     name = "goals"
 
-    def run(self, result: Result, map_file: str, goals: np.ndarray) -> None:
+    def run(self, result: score.Result, map_file: str, goals: np.ndarray) -> None:
         """Visits the goals (N, 3), in the world's frame; `result` keeps what was found, always."""
         self._start((*NAVIGATION, f"map_file:={map_file}"))
         watch = self._watch
@@ -173,8 +168,9 @@ class NavigationPart(Part):
             records = watch.records
             result.paths[self.name] = np.array(records.truth).reshape(-1, 4)[:, 1:3]
             _, errors = records.errors(since, result.map_in_world)
-            result.navigation = Navigation(**seen_of(records), ways=ways, pace=self._pace(),
-                                           localisation=localisation(told, errors))
+            result.navigation = score.Navigation(
+                **score.seen_of(records), ways=ways, pace=self._pace(),
+                localisation=score.localisation(told, errors))
 
     def _tell_pose(self, driver: Driver) -> tuple[float, float]:
         """Tells a pose that is off as the seed says; returns how far, m and rad."""

@@ -8,18 +8,10 @@ from dataclasses import asdict
 
 import numpy as np
 
+from evaluation.navigation import score
 from evaluation.navigation.driver import Way
-from evaluation.navigation.score import (
-    LEAST_AGREEMENT,
-    MOST_ATE,
-    MOST_OFF,
-    MOST_OFF_DEG,
-    Leg,
-    Mapping,
-    Navigation,
-    Result,
-)
-from evaluation.trial.table import table
+from evaluation.navigation.score import Leg, Mapping, Navigation, Result
+from evaluation.trial.report import table
 
 COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
 
@@ -35,8 +27,8 @@ def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Res
         "wanted_real_time_factor": options.real_time_factor,
         "goals_wanted": options.goals,
         "goals_reached": sum(way.reached for way in navigation.ways) if navigation else 0,
-        "limits": {"ate_m": MOST_ATE, "agreement": LEAST_AGREEMENT, "localisation_m": MOST_OFF,
-                   "localisation_deg": MOST_OFF_DEG, "contacts": 0},
+        "limits": {"ate_m": score.MOST_ATE, "agreement": score.LEAST_AGREEMENT, "contacts": 0,
+                   "localisation_m": score.MOST_OFF, "localisation_deg": score.MOST_OFF_DEG},
         "faults": result.faults,
         "map_in_world": [round(value, 4) for value in result.map_in_world.tolist()],
         "mapping": _mapping(mapping, speed) if mapping else None,

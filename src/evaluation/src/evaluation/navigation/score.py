@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -40,7 +39,7 @@ class Pace:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Leg(ABC):
+class Leg:
     """What was seen of one part of the run."""
 
     name: ClassVar[str]  # in words
@@ -53,15 +52,9 @@ class Leg(ABC):
     driven: float  # m
     pace: Pace
 
-    @property
-    @abstractmethod
-    def own_faults(self) -> list[str]:
-        """What is beyond the limits of this part alone, in words."""
-
-    @property
-    def faults(self) -> list[str]:
-        """What is beyond the limits, in words."""
-        found = self.own_faults
+    def common_faults(self) -> list[str]:
+        """What is beyond the limits of both parts, in words."""
+        found = []
         for number, way in enumerate(self.ways, start=1):
             name = f"{self.way} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
             off_deg = np.degrees(way.off_yaw)
@@ -94,7 +87,8 @@ class Mapping(Leg):
     known: float  # m^2, free
 
     @property
-    def own_faults(self) -> list[str]:
+    def faults(self) -> list[str]:
+        """What is beyond the limits, in words."""
         found = []
         if self.trajectory.ate_rmse > MOST_ATE:
             found.append(f"mapping: trajectory error {_cm(self.trajectory.ate_rmse)}, "
@@ -103,7 +97,7 @@ class Mapping(Leg):
                             ("seen walls on the map", self.agreement.walls_found)):
             if share < LEAST_AGREEMENT:
                 found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
-        return found
+        return found + self.common_faults()
 
 
 @dataclass(frozen=True)
@@ -125,12 +119,13 @@ class Navigation(Leg):
     localisation: Localisation
 
     @property
-    def own_faults(self) -> list[str]:
+    def faults(self) -> list[str]:
+        """What is beyond the limits, in words."""
         off, off_deg = self.localisation.mean[0], np.degrees(self.localisation.mean[1])
         if off <= MOST_OFF and off_deg <= MOST_OFF_DEG:
-            return []
+            return self.common_faults()
         return [f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
-                f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°"]
+                f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°", *self.common_faults()]
 
 
 @dataclass

@@ -10,7 +10,7 @@ import cv2
 
 from evaluation.picture import chart, write_tiles
 from evaluation.race_trials.results import Lap
-from evaluation.trial.table import grouped
+from evaluation.trial.report import grouped
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, summary
-from evaluation.trial.table import grouped
+from evaluation.laps.lap_trial import COUNTS, FIGURES, LapDrive, summary
+from evaluation.trial.report import grouped
 
 
 @dataclass(frozen=True, kw_only=True)

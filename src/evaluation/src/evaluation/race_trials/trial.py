@@ -8,16 +8,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from racecar_description.track.from_numbers import from_seed
+from racecar_description.track.model_files import write_course
+from racecar_description.track.wishes import Wishes
+
 from evaluation.laps.disturbance import RACE, draw
-from evaluation.laps.lap_drive import seen
-from evaluation.laps.lap_trial import LapTrial, Outing
+from evaluation.laps.lap_trial import LapTrial, Outing, Venue, seen
 from evaluation.race_trials.pictures import write_chart, write_path_sheet
 from evaluation.race_trials.results import COLUMNS, Lap, summarize
-from evaluation.race_trials.venue import racetrack, random_track
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
-from evaluation.trial.table import grouped, table_of
+from evaluation.trial.report import grouped, table_of
 from run_session.failure import RunError
+from run_session.resources import find_package
 
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
@@ -96,3 +99,20 @@ class RaceTrial(LapTrial):
         sheets = [write_path_sheet(laps, out)
                   for laps in grouped(results, lambda lap: lap.follower).values()]
         return ["trials.png", *(sheet.name for sheet in sheets)]
+
+
+def racetrack() -> Venue:
+    """The one in racecar_description."""
+    return _venue("racetrack", find_package("racecar_description"))
+
+
+def random_track(seed: int, out: Path) -> Venue:
+    """The seed's track, as make_track makes it, made anew below `out`."""
+    course, _ = from_seed(seed, Wishes(f"random_{seed}"))
+    write_course(course, out)
+    return _venue(course.name, out)
+
+
+def _venue(name: str, root: Path) -> Venue:
+    return Venue(root / "worlds" / f"{name}.world", root / "tracks" / f"{name}.yaml",
+                 root / "models")

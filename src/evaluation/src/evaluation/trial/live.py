@@ -35,6 +35,7 @@ class LiveDrive(ABC):
     ends: ClassVar[str]  # what the exit codes mean
     usual_out: ClassVar[str]  # where results go, for --help
     writes: ClassVar[Sequence[str]]  # files in `out`
+    stay: ClassVar[Sequence[str]] = ()  # those of a run before stay until the next are whole
     vehicle: ClassVar[str] = "car"
     logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
     driver = ""  # the script that drives, for messages
@@ -119,10 +120,6 @@ class LiveDrive(ABC):
     def faults(self, outcome: Outcome) -> list[str]:
         """What was not good, one line each; "" is one that the report says already."""
 
-    def owned_files(self) -> Sequence[str]:
-        """Files of `out` that a run before may have left, and that are not to be kept."""
-        return self.writes
-
 
 def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
     """Run the command line of such a drive; returns the exit code."""
@@ -187,7 +184,8 @@ def _make_room(drive: LiveDrive) -> None:
     earlier = drive.out / EARLIER
     try:
         drive.out.mkdir(parents=True, exist_ok=True)
-        for path in filter(Path.exists, map(drive.out.joinpath, drive.owned_files())):
+        owned = (drive.out / name for name in drive.writes if name not in drive.stay)
+        for path in filter(Path.exists, owned):
             earlier.mkdir(exist_ok=True)
             path.replace(earlier / path.name)
     except PermissionError:

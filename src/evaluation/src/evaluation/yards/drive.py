@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evaluation.yards import results
+from evaluation.trial.protocol import Case
+from evaluation.yards import outcomes
 from evaluation.yards.judge import WALKED_INTO, Judge
-from evaluation.yards.results import Drive
+from evaluation.yards.outcomes import Drive
 from evaluation.yards.rig import PERSON as PERSON_MODEL
 from evaluation.yards.rig import Rig
 from run_session.failure import RunError
@@ -18,7 +19,7 @@ from run_session.simulator import Place
 from trial_worlds import crossing
 from trial_worlds.crossing import APPROACH, ROBOT_SPEED, Crossing
 from trial_worlds.models import person_model, room_model, yard_model
-from trial_worlds.yard import Yard
+from trial_worlds.yard import draw_yard
 
 LOOK_PERIOD = 0.05  # s, wall
 SILENCE = 30.0      # s, wall
@@ -27,12 +28,19 @@ NEAR = 0.2          # m from a goal that is called reached, by the simulator's o
 ORIGIN = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
-class Task:
-    """What is to be driven; m, rad."""
+class YardCase(Case):
+    """One drive."""
 
     set: str
     seed: int
     repeat: int
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be driven; m, rad."""
+
+    case: YardCase
     models: dict[str, tuple[str, Place]]  # SDF and place, by name
     start: Place
     goal: Place
@@ -42,20 +50,18 @@ class Task:
     walk: Crossing | None = None
 
 
-def yard_task(yard: Yard, repeat: int) -> Task:
-    """Through a yard."""
-    drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
-             "path_length": yard.path_length, **asdict(yard.difficulty)}
-    return Task(results.YARDS, yard.seed, repeat, {"yard": (yard_model(yard), ORIGIN)},
-                yard.start(repeat), yard.goal, yard.path_length, yard.cylinders, drawn)
-
-
-def crossing_task(walk: Crossing) -> Task:
-    """Through a room that a person walks across."""
+def task_of(case: YardCase) -> Task:
+    """Through a yard, or through a room that a person walks across."""
+    if case.set == outcomes.YARDS:
+        yard = draw_yard(case.seed)
+        drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
+                 "path_length": yard.path_length, **asdict(yard.difficulty)}
+        return Task(case, {"yard": (yard_model(yard), ORIGIN)}, yard.start(case.repeat), yard.goal,
+                    yard.path_length, yard.cylinders, drawn)
+    walk, start, goal = crossing.draw_crossing(case.seed), crossing.START, crossing.GOAL
     models = {"room": (room_model(), ORIGIN), PERSON_MODEL: (person_model(), walk.begin)}
-    start, goal = crossing.START, crossing.GOAL
-    return Task(results.CROSSINGS, walk.seed, 0, models, start, goal,
-                math.dist(start[:2], goal[:2]), np.empty((0, 2)), asdict(walk), walk)
+    return Task(case, models, start, goal, math.dist(start[:2], goal[:2]), np.empty((0, 2)),
+                asdict(walk), walk)
 
 
 def prepare(rig: Rig, task: Task) -> None:
@@ -69,14 +75,14 @@ def drive(rig: Rig, task: Task, judge: Judge) -> Drive:
     """From start to goal, or as far as it comes; the judge has seen the way."""
     ended, pace = _watch(rig, judge, task)
     straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
-    if outcome == results.NOT_THERE:
+    if outcome == outcomes.NOT_THERE:
         ended = f"from {judge.off(task.goal):.2f} m away"
     return Drive(
-        set=task.set,
-        seed=task.seed,
-        repeat=task.repeat,
+        set=task.case.set,
+        seed=task.case.seed,
+        repeat=task.case.repeat,
         outcome=outcome,
-        why=None if ended == results.REACHED else ended,
+        why=None if ended == outcomes.REACHED else ended,
         time=round(judge.time, 2),
         distance=round(judge.distance, 3),
         straight_time=round(straight / ROBOT_SPEED, 2),
@@ -119,12 +125,12 @@ def _watch(rig: Rig, judge: Judge, task: Task) -> tuple[str, float]:
 
 def _outcome(judge: Judge, ended: str, goal: Place) -> str:
     if judge.contact == WALKED_INTO:
-        return results.WALKED_INTO
+        return outcomes.WALKED_INTO
     if judge.contact:
-        return results.CONTACT
-    if ended == results.REACHED:
-        return results.REACHED if judge.off(goal) <= NEAR else results.NOT_THERE
-    return results.LATE if judge.time > LIMIT else results.GIVEN_UP
+        return outcomes.CONTACT
+    if ended == outcomes.REACHED:
+        return outcomes.REACHED if judge.off(goal) <= NEAR else outcomes.NOT_THERE
+    return outcomes.LATE if judge.time > LIMIT else outcomes.GIVEN_UP
 
 
 def _known(air: float) -> float | None:

@@ -5,45 +5,25 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import grouped, table_of
-from evaluation.yards.chart import write_chart
-from evaluation.yards.drive import Task, crossing_task, drive, prepare, yard_task
+from evaluation.trial.protocol import ReportedTrial
+from evaluation.trial.report import grouped, table_of
+from evaluation.yards import outcomes
+from evaluation.yards.drive import YardCase, drive, prepare, task_of
 from evaluation.yards.judge import Judge
-from evaluation.yards.results import (
-    COLUMNS,
-    CONTACT,
-    CROSSINGS,
-    LEAST_SHARE,
-    WALKED_INTO,
-    YARDS,
-    Drive,
-    summarize,
-)
+from evaluation.yards.outcomes import CROSSINGS, YARDS, Drive
+from evaluation.yards.pictures import write_chart, write_sheets
 from evaluation.yards.rig import Rig
-from evaluation.yards.sheet import write_sheets
 from run_session.failure import RunError
 from run_session.resources import find_package
 from run_session.session import Session
-from trial_worlds.crossing import draw_crossing
 from trial_worlds.models import world, yard_model
 from trial_worlds.yard import RADIUS, draw_yard
 
 PARAMETERS = Path("config") / "yard.yaml"
-
-
-@dataclass(frozen=True)
-class YardCase(Case):
-    """One drive."""
-
-    set: str
-    seed: int
-    repeat: int
 
 
 class YardTrial(ReportedTrial):
@@ -89,7 +69,7 @@ class YardTrial(ReportedTrial):
     def setup(self, session: Session, case: YardCase) -> None:
         if self._rig is None:
             self._rig = self._make_rig(session.launched("robot"))
-        self._out, self._case, self._task = session.out, case, _task(case)
+        self._out, self._case, self._task = session.out, case, task_of(case)
         if case.set == YARDS:
             path = session.out / "worlds" / f"yard_{case.seed}.world"
             path.parent.mkdir(exist_ok=True)
@@ -108,28 +88,22 @@ class YardTrial(ReportedTrial):
 
     def passed(self, results: Sequence[Drive]) -> bool:
         """Enough goals reached, and nobody touched by the robot; one that stands touches nobody."""
-        touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in results)
-        sets = grouped((d for d in results if d.outcome != WALKED_INTO), lambda d: d.set)
-        return not touched and all(sum(d.reached for d in found) >= LEAST_SHARE * len(found)
-                                   for found in sets.values())
+        touched = any(d.set == CROSSINGS and d.outcome == outcomes.CONTACT for d in results)
+        sets = grouped((d for d in results if d.outcome != outcomes.WALKED_INTO), lambda d: d.set)
+        shares = [sum(d.reached for d in found) / len(found) for found in sets.values()]
+        return not touched and min(shares, default=1.0) >= outcomes.LEAST_SHARE
 
     def table(self, results: Sequence[Drive]) -> str:
-        return table_of(COLUMNS, summarize(results), left=())
+        return table_of(outcomes.COLUMNS, outcomes.summarize(results), left=())
 
     def values(self, results: Sequence[Drive]) -> dict:
         return {
-            "least_share_of_yards": LEAST_SHARE,
+            "least_share_of_yards": outcomes.LEAST_SHARE,
             "passed": self.passed(results),
-            "summaries": summarize(results),
+            "summaries": outcomes.summarize(results),
             **super().values(results),
         }
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_chart(results, out / "trials.png")
         return ["trials.png", *write_sheets(results, out)]
-
-
-def _task(case: YardCase) -> Task:
-    if case.set == YARDS:
-        return yard_task(draw_yard(case.seed), case.repeat)
-    return crossing_task(draw_crossing(case.seed))

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from evaluation.trial.table import cell, grouped, mean
+from evaluation.trial.report import cell, grouped, mean
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
