@@ -28,14 +28,13 @@ def write_lit_world(world: Path, models: Path, factor: float, folder: Path) -> P
     FOLDER/models if the factor is above 1. Raises WorldError for a file that is no world.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    sun = Resources.from_environment().resolve(f"{MODEL}sun")
     try:
         tree = ElementTree.parse(world)
-        light = ElementTree.parse(sun / "model.sdf").getroot().find("light")
+        sun = ElementTree.parse(Resources.from_environment().resolve(f"{MODEL}sun/model.sdf"))
     except (OSError, ElementTree.ParseError) as error:
         raise WorldError(
             f"{world}: no world in which the light could be changed: {error}") from error
-    scale_light(tree.getroot(), light, factor)
+    scale_light(tree.getroot(), sun.getroot().find("light"), factor)
     shutil.rmtree(folder / "models", ignore_errors=True)
     if factor > 1:
         for name in _included(tree.getroot()):

@@ -27,6 +27,7 @@ LIMIT = 100.0       # s, simulated, as in the benchmark
 NEAR = 0.2          # m from a goal that is called reached, by the simulator's own pose
 ORIGIN = (0.0, 0.0, 0.0)
 
+
 @dataclass(frozen=True)
 class YardCase(Case):
     """One drive."""
