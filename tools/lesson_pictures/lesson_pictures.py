@@ -72,7 +72,6 @@ def photograph_scene(family: Family, options: argparse.Namespace) -> None:
 def _start_master(family: Family, log: Path) -> Launched:
     launched = Launched(family, log.resolve(), "")
     launched.start_roscore()
-    os.environ["ROS_MASTER_URI"] = launched.master_uri
     rospy.init_node("lesson_pictures", disable_rosout=True, disable_signals=True)
     return launched
 

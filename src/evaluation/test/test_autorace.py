@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from evaluation.autorace.judge import WAY, Sample, score
-from evaluation.autorace.trial import RaceTrial, write_dimmed
+from evaluation.autorace.trial import RaceTrial
 from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "autorace.py"
@@ -88,13 +88,6 @@ def test_a_mistyped_mission_is_one_line():
         RaceTrial().parse(["--mission", "bars"])
     with pytest.raises(RunError, match=r"--seeds \(SEEDS=\) must be a whole number, 1 to"):
         RaceTrial().parse(["--seeds", "0"])
-
-
-def test_the_light_of_a_world_is_dimmed(tmp_path):
-    world = tmp_path / "a.world"
-    world.write_text("<sdf><world><light><diffuse>0.8 0.5 1 1</diffuse></light></world></sdf>")
-    write_dimmed(world, 0.5, tmp_path / "b.world")
-    assert "<diffuse>0.4 0.25 0.5 1</diffuse>" in (tmp_path / "b.world").read_text()
 
 
 @pytest.mark.processes

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.avoid import drive
+from evaluation.avoid import trial as drive
 from evaluation.avoid.trial import AvoidTrial
 from run_session.failure import RunError
 

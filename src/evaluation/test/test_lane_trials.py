@@ -10,14 +10,8 @@ from lane_keeping.world.scenery import load_crossings
 
 from evaluation.lane.comparison import LaneComparison
 from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
-from evaluation.lane.recording import CAR, Moment, Recording, line_of, read_recording
-from evaluation.lane.results import (
-    encounter_table,
-    from_json,
-    from_report,
-    lap_table,
-    to_json,
-)
+from evaluation.lane.recording import CAR, Moment, last, line_of, read_recording
+from evaluation.lane.results import encounter_table, from_report, lap_table
 from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
 from evaluation.laps.disturbance import draw
 from evaluation.trial.report import write_json
@@ -33,10 +27,10 @@ def drive(car, person):
     """A recording of 10 s from functions of time: the car's x, and metres left of the lane."""
     times = np.arange(0, 10, 0.02)
     speeds = np.gradient([car(time) for time in times], times)
-    return Recording({
+    return {
         CAR: [Moment(t, car(t), 0.0, 0.0, v) for t, v in zip(times, speeds, strict=True)],
         "pedestrian_1": [Moment(t, FIRST.x, person(t), 0.0, 1.0) for t in times],
-    })
+    }
 
 
 def walks(time):
@@ -101,8 +95,8 @@ def test_a_recording_is_read_as_it_was_written(tmp_path):
     moments = [Moment(0.02 * i, 0.5 * i, -1.0, 0.25, 0.75) for i in range(3)]
     path.write_text("".join(line_of(CAR, each) for each in moments) + "car 0.06 1.")
     found = read_recording(path)
-    assert found.moments == {CAR: moments}
-    assert found.at(CAR, 0.03) == moments[1] and found.at(CAR, -1) is None
+    assert found == {CAR: moments}
+    assert last(moments, 0.03) == moments[1] and last(moments, -1) is None
     path.write_text("car one two\n")
     with pytest.raises(RunError, match="no recording"):
         read_recording(path)
@@ -147,13 +141,13 @@ def test_a_report_is_gone_on_with(tmp_path):
     met = tuple(judge(drive(stops(0.4, 2.5), walks), CROSSINGS, 0.3))
     plain = from_report(REPORT, "skeleton", 1, draw(1, BOUNDS), people=True)
     one = type(plain)(**{**vars(plain), "nearest_person": 0.6, "encounters": met})
-    write_json(to_json([one]), tmp_path / "report.json")
-    assert from_json(json.loads((tmp_path / "report.json").read_text())) == [one]
+    trial = LaneTrial()
+    write_json(trial.values([one]), tmp_path / "report.json")
+    assert trial.from_values(json.loads((tmp_path / "report.json").read_text())) == [one]
     assert "1 of 1" in encounter_table([one])
     passing = tuple(replace(each, stopped_before=None, moved_after=None) for each in met)
     assert "stood nowhere" in encounter_table([replace(one, encounters=passing)])
     (tmp_path / "report.json").write_text("{}")
-    trial = LaneTrial()
     with pytest.raises(RunError, match="no report of lane_trials"):
         trial.earlier(trial.parse(["--out", str(tmp_path)]))
 
@@ -165,8 +159,8 @@ def test_who_was_touched_outside_of_encounters_counts_too(nearest, clear):
 
 
 def test_going_on_with_another_method_is_refused(tmp_path, capsys):
-    write_json(to_json([from_report(REPORT, "skeleton", 0, draw(0, BOUNDS), people=False)]),
-               tmp_path / "report.json")
+    drove = from_report(REPORT, "skeleton", 0, draw(0, BOUNDS), people=False)
+    write_json(LaneTrial().values([drove]), tmp_path / "report.json")
     arguments = ["--seeds", "1", "--crossings", "0", "--resume", "--out", str(tmp_path)]
     assert run_trial(LaneTrial(), arguments) == 2
     assert "report.json: is of METHOD=skeleton" in capsys.readouterr().err

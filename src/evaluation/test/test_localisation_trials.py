@@ -7,21 +7,17 @@ import numpy as np
 import pytest
 
 from evaluation.house.records import Records
-from evaluation.localisation.results import (
+from evaluation.localisation.outcomes import (
     FINDING,
     KIDNAPS,
     Load,
-    Search,
     Tracking,
     Trial,
-    passed,
     right_since,
-    score,
-    summary_table,
+    searched,
 )
 from evaluation.localisation.trial import LocalisationTrial
-from evaluation.localisation.trials import errors_since
-from evaluation.localisation.wander import SPEED, Steering
+from evaluation.localisation.trials import SPEED, Steering
 from evaluation.trial.program import NOT_RUN
 from evaluation.trial.runner import run_trial
 from run_session.failure import RunError
@@ -76,7 +72,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     ([LOAD], True),
 ])  # fmt: skip
 def test_limits(results, passes):
-    assert passed(results) is passes
+    assert LocalisationTrial().passed(results) is passes
 
 
 def test_a_robot_without_any_pose_is_told_in_words():
@@ -97,17 +93,17 @@ def test_errors_are_of_the_same_moments_and_not_where_the_truth_was_not_seen():
     records = Records()
     records.truth = [(0.1 * k, 0.02 * k, 0.0, 3.1) for k in range(11)] + [(3.0, 9.0, 0.0, 0.0)]
     records.believed = [(0.25, 0.05, 0.3, -3.1), (0.85, 0.17, 0.0, 3.1), (2.0, 5.0, 0.0, 0.0)]
-    times, errors = errors_since(records, 0.2)
+    times, errors = records.errors(0.2)
     assert times.tolist() == [0.25, 0.85]
     assert errors == pytest.approx(np.array([[0.3, 2 * np.pi - 6.2], [0.0, 0.0]]), abs=1e-9)
-    assert len(errors_since(records, 5.0)[0]) == len(errors_since(Records(), 0.0)[0]) == 0
+    assert len(records.errors(5.0)[0]) == len(Records().errors(0.0)[0]) == 0
 
 
 def search(off, until=21.0):
     """A robot that is off by so much (m) until 1 s and right from then until this time, s."""
     times = np.arange(0.0, until, 0.5)
     errors = np.column_stack((np.where(times < 1.0, off, 0.01), np.zeros(len(times))))
-    return score(Search(FINDING, 1, (0.0, 0.0, 0.0), 0.0, times, errors, 0))
+    return searched(FINDING, 1, (0.0, 0.0, 0.0), 0.0, times, errors, 0)
 
 
 def test_found_is_who_was_right_for_long_enough():
@@ -119,7 +115,7 @@ def test_found_is_who_was_right_for_long_enough():
 
 
 def test_the_table_holds_each_figure_against_its_limit():
-    rows = summary_table(without(1, FINDING)).splitlines()
+    rows = LocalisationTrial().table(without(1, FINDING)).splitlines()
     assert [row.split("  ")[0] for row in rows[1:]] == [
         "finding, within 60 s", "kidnaps, within 120 s", "tracking, 300 s",
         "amcl with 2000 particles"]

@@ -13,15 +13,13 @@ from evaluation.house.records import Records
 from evaluation.navigation.driver import Way
 from evaluation.navigation.main import NavigationRun
 from evaluation.navigation.new_map import keep_map, place_for_map, read_map_frame
-from evaluation.navigation.picture import CLEAR, map_picture
+from evaluation.navigation.pictures import CLEAR, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import (
     Navigation,
     Pace,
     Result,
-    Seen,
     localisation,
-    pose_errors,
     score_mapping,
     seen_of,
 )
@@ -35,6 +33,12 @@ from trial_worlds.ground import Ground
 PACE = Pace(100.0, 200.0, {"move_base": 40.0})
 SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's
 ANGLES = np.arange(360) * np.pi / 180
+
+
+def goals(ways, place, **seen) -> Navigation:
+    """The goals of a run in which nothing was touched."""
+    usual = dict(contacts=[], nearest=0.1, unseen=0.04, driven=4.2, pace=PACE)
+    return Navigation(ways=ways, localisation=place, **{**usual, **seen})
 
 
 def way(reached: bool = True, text: str = "Goal reached.") -> Way:
@@ -100,22 +104,22 @@ def test_poses_are_compared_at_the_same_moments():
     records = Records(truth=[(0.0, 0.0, 0.0, 0.0), (0.1, 1.0, 0.0, 0.2), (0.4, 1.0, 0.0, 3.0)],
                       believed=[(-1.0, 9.0, 9.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.05, 0.5, 0.1, 0.1),
                                 (0.3, 1.0, 0.0, 2.0), (2.0, 9.0, 9.0, 0.0)])
-    believed, true = records.pairs()  # 0.3 s without a look: it may have turned either way
+    _, believed, true = records.moments()  # 0.3 s without a look: it may have turned either way
     assert believed.tolist() == [[0.0, 0.0, 0.0], [0.5, 0.1, 0.1]]
     assert true[1] == pytest.approx([0.5, 0.0, 0.1])
-    assert len(records.pairs(since=0.06)[0]) == 0
+    assert len(records.moments(since=0.06)[0]) == 0
     assert records.length == 1.0 and records.now == 0.4
     assert records.longest_unseen == pytest.approx(0.3)
 
 
 def test_errors_of_localisation_are_taken_in_the_world():
     records = records_of(np.random.default_rng(0).normal(size=(10, 3)), np.array([0.03, 0.04, 0.1]))
-    errors = pose_errors(records, SHIFT, since=0.4)
+    errors = records.errors(0.4, SHIFT)[1]
     assert errors == pytest.approx(np.tile([0.05, 0.1], (6, 1)))
     found = localisation((0.2, 0.1), errors)
     for error in (found.mean, found.largest, found.found):
         assert error == pytest.approx((0.05, 0.1))
-    part = Navigation([way()], [], Seen(0.1, 0.04), 4.2, found, PACE)
+    part = goals([way()], found)
     assert part.faults == ["localisation: 5.0 cm and 5.7° off in the mean, more than 5.0 cm and 2°"]
     assert localisation(None, errors[:0]).mean == (np.inf, np.inf)  # nothing known is no success
 
@@ -154,8 +158,7 @@ def test_what_was_not_looked_at_is_not_called_right(ground):
     """On a machine that is too busy."""
     records = records_of(round_of(ground)[:6])
     records.truth = [(9 * number, *pose) for number, (_, *pose) in enumerate(records.truth)]
-    part = Navigation([way()], [], seen_of(records), 1.0, localisation(None, np.zeros((1, 2))),
-                      PACE)
+    part = goals([way()], localisation(None, np.zeros((1, 2))), **seen_of(records))
     assert [fault for fault in part.faults if "nobody looked for 9.0 s" in fault] == part.faults
     records.truth = [(99.0, 0.0, 0.0, 0.0)]
     with pytest.raises(RunError, match="too busy"):
@@ -165,7 +168,7 @@ def test_what_was_not_looked_at_is_not_called_right(ground):
 def test_a_goal_that_is_only_called_reached_is_a_fault():
     place = localisation(None, np.zeros((1, 2)))
     beside = Way((1.0, 2.0, 0.5), True, "Goal reached.", 20.0, 4.2, 3.0, 4.0, 0.03, 1.6)
-    assert Navigation([way(), beside], [], Seen(0.1, 0.04), 4.2, place, PACE).faults == [
+    assert goals([way(), beside], place).faults == [
         "goal 2 (1.00, 2.00) called reached, but 3.0 cm and 92° off"]
 
 
@@ -184,11 +187,10 @@ def test_a_map_brings_its_frame_along(tmp_path, ground):
 
 def test_report_table_and_picture_of_a_run(tmp_path, ground):
     records = records_of(round_of(ground))
-    errors = pose_errors(records, SHIFT, since=0.0)
+    errors = records.errors(0.0, SHIFT)[1]
     place = localisation((0.2, 0.1), errors)
     missed = way(False, "Failed to find a valid plan. Even after executing recovery behaviors.")
-    result = Result(ground.walls, np.zeros(3), None, Navigation(
-        [way(), missed], records.contacts, Seen(0.1, 0.04), 8.4, place, PACE))
+    result = Result(ground.walls, np.zeros(3), None, goals([way(), missed], place, driven=8.4))
     result.paths["goals"] = np.array(records.truth)[:, 1:3]
     options = NavigationRun.parse(["--goals", "2", "--seed", "7", "--out", str(tmp_path)])
     report = json.loads(json.dumps(summarize(options, ("not passed", "why"), result)))

@@ -3,18 +3,15 @@
 import importlib
 import json
 from dataclasses import asdict, replace
-from types import SimpleNamespace
 
 import cv2
-import numpy as np
 import pytest
 
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial
 from evaluation.yards import trial as trial_module
-from evaluation.yards.judge import Judge
-from evaluation.yards.results import CROSSINGS, YARDS, Drive, passed, summarize
-from evaluation.yards.sheet import write_sheets
+from evaluation.yards.outcomes import CROSSINGS, YARDS, Drive, summarize
+from evaluation.yards.pictures import write_sheets
 from evaluation.yards.trial import YardTrial
 from run_session.failure import RunError
 from trial_worlds.crossing import draw_crossing
@@ -79,7 +76,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     ],
 )
 def test_limits(drives, good):
-    assert passed(drives) is good
+    assert YardTrial().passed(drives) is good
 
 
 def test_scores_are_the_challenge_s():
@@ -102,7 +99,7 @@ def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
 
 
 def test_pictures_are_drawn_of_what_there_is(tmp_path):
-    chart = importlib.import_module("evaluation.yards.chart")
+    chart = importlib.import_module("evaluation.yards.pictures")
     drives = [made(0), made(0, 1, outcome="contact"), made(3, outcome="late"), crossed(2)]
     (tmp_path / "drives").mkdir()
     for each in drives[:2]:
@@ -127,16 +124,15 @@ def trials(tmp_path, monkeypatch):
     def run(drives, *options: str) -> int:
         given = iter(drives)
 
-        def drive(*_arguments):
+        def drive(_rig, _task, judge):
             found = next(given)
             if isinstance(found, BaseException):
                 raise found
-            judge = Judge(np.empty((0, 2)), 0.0)
             judge.path = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
-            return SimpleNamespace(judge=judge, drive=found)
+            return found
 
         for name, fake in (("Rig", lambda *_, **__: None), ("prepare", lambda *_: None),
-                           ("drive", drive), ("score", lambda _task, record: record.drive)):
+                           ("drive", drive)):
             monkeypatch.setattr(trial_module, name, fake)
         return run_trial(YardTrial(), [*options, "--out", str(tmp_path)])
 

@@ -7,13 +7,15 @@ import pytest
 
 from evaluation.yards import drive as driving
 from evaluation.yards.judge import OBSTACLE, PERSON, WALKED_INTO, Judge, Sample
+from evaluation.yards.outcomes import CROSSINGS, YARDS
 from evaluation.yards.rig import SLOW
 from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.processes import Family
 from trial_worlds.crossing import draw_crossing
-from trial_worlds.yard import draw_yard
+from trial_worlds.yard import RADIUS
 
+CROSSING = driving.YardCase("a person", CROSSINGS, 4, 0)
 NOBODY = np.empty((0, 2))
 
 
@@ -89,30 +91,30 @@ class FakeRig:
 def drive(rig, task):
     """The result, and where it went."""
     driving.prepare(rig, task)
-    driven = driving.drive(rig, task)
-    return driving.score(task, driven), driven.judge.path
+    judge = Judge(task.cylinders, RADIUS)
+    return driving.drive(rig, task, judge), judge.path
 
 
 def test_a_drive_into_an_obstacle_is_a_contact():
-    found, way = drive(FakeRig(), driving.yard_task(draw_yard(3), 0))
+    found, way = drive(FakeRig(), driving.task_of(driving.YardCase("a", YARDS, 3, 0)))
     assert (found.outcome, found.why) == ("contact", OBSTACLE) and len(way) > 3
 
 
 def test_the_person_sets_off_when_the_robot_has_come_so_far():
     rig, walk = FakeRig(limit=19.0, person=True), draw_crossing(4)
-    found, _ = drive(rig, driving.crossing_task(walk))
+    found, _ = drive(rig, driving.task_of(CROSSING))
     assert found.outcome == "reached" and found.straight_time == pytest.approx(5 / 0.26, abs=0.01)
     first, *_, last = rig.walks
     assert walk.trigger <= first < walk.trigger + 0.03 and last == 0.0
 
 
 def test_a_drive_that_takes_too_long_is_late():
-    found, _ = drive(FakeRig(person=True), driving.crossing_task(draw_crossing(4)))
+    found, _ = drive(FakeRig(person=True), driving.task_of(CROSSING))
     assert found.outcome == "late" and found.time == pytest.approx(driving.LIMIT, abs=0.2)
 
 
 def test_a_goal_that_was_called_reached_from_afar_was_not():
-    found, _ = drive(FakeRig(limit=15.0, person=True), driving.crossing_task(draw_crossing(4)))
+    found, _ = drive(FakeRig(limit=15.0, person=True), driving.task_of(CROSSING))
     assert found.outcome == "called reached" and found.why.startswith("from 1.")
 
 
@@ -120,7 +122,7 @@ def test_a_simulator_that_hangs_is_no_late_robot(monkeypatch):
     monkeypatch.setattr(driving, "SILENCE", 0.05)
     monkeypatch.setattr(FakeRig, "samples", lambda _self, wait: time.sleep(wait) or [])
     with pytest.raises(RunError, match="no news of the robot"):
-        drive(FakeRig(), driving.yard_task(draw_yard(0), 0))
+        drive(FakeRig(), driving.task_of(driving.YardCase("a", YARDS, 0, 0)))
 
 
 def test_what_roslaunch_says_of_the_nodes(tmp_path):

@@ -8,8 +8,8 @@ import pytest
 
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.protocol import Case, ReportedTrial
+from evaluation.trial.report import cell, table
 from evaluation.trial.runner import run_trial
-from evaluation.trial.table import cell, table
 from run_session.failure import RunError
 
 

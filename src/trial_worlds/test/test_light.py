@@ -28,8 +28,7 @@ RACETRACK = PACKAGE / "worlds" / "racetrack.world"
 
 
 def write_lit(folder: Path, factor: float) -> Path:
-    sun = Resources.from_environment().resolve("model://sun")
-    return write_lit_world(RACETRACK, PACKAGE / "models", sun, factor, folder)
+    return write_lit_world(RACETRACK, PACKAGE / "models", factor, folder)
 
 
 def test_a_dimmer_world_differs_in_nothing_but_its_light(tmp_path):
@@ -81,4 +80,4 @@ def test_the_camera_sees_the_light(tmp_path, renderer, factor):
 
 def test_a_file_that_is_no_world_is_named(tmp_path):
     with pytest.raises(WorldError, match=r"none\.world: no world in which the light"):
-        write_lit_world(tmp_path / "none.world", tmp_path, tmp_path, 1.0, tmp_path / "out")
+        write_lit_world(tmp_path / "none.world", tmp_path, 1.0, tmp_path / "out")

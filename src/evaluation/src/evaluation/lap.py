@@ -35,6 +35,7 @@ class Verdict(Enum):
     LEFT = "left the course"
     STALLED = "stalled"
     REVERSED = "drove the wrong way"
+    LATE = "time is up"
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ class LapScorer:
     track: Track
     wanted_laps: int = 1
     off_course: float = 0.25  # m beside the line: farther than this and the car has left the course
+    longest: float = math.inf  # s, simulated, of the whole drive
     verdict: Verdict = Verdict.DRIVING
     why: str = ""  # one line on a verdict that is not CLOSED
     laps: list[Lap] = field(default_factory=list)
@@ -89,6 +91,11 @@ class LapScorer:
     _farthest: float = 0.0
     _mark: tuple[float, float] = (0.0, 0.0)  # time and position of the last progress
     _moving: bool = False
+
+    @property
+    def over(self) -> bool:
+        """Whether more samples do not count."""
+        return self.verdict is not Verdict.DRIVING
 
     @property
     def driven_share(self) -> float:
@@ -173,6 +180,9 @@ class LapScorer:
             self._end(Verdict.STALLED, f"the car stalled {where}: {little}")
         elif len(self.laps) >= self.wanted_laps:
             self._end(Verdict.CLOSED, "")
+        elif sample.time - self.samples[0].time > self.longest:
+            share = f"lap {len(self.laps) + 1} was {self.driven_share:.0%} driven"
+            self._end(Verdict.LATE, f"{self.longest:g} simulated s are over: {share}")
 
     def _end(self, verdict: Verdict, why: str) -> None:
         self.verdict, self.why = verdict, why

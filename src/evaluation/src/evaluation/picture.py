@@ -11,18 +11,8 @@ import numpy as np
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile
 
-from evaluation.colours import (
-    CAR,
-    FAINT,
-    FLOOR,
-    GRID,
-    LAPS,
-    LINE,
-    PAPER,
-    TEXT,
-    WHITE,
-    lap_colour,
-)
+from evaluation import colours
+from evaluation.colours import LAPS, PAPER, TEXT, lap_colour
 from evaluation.lap import LapScorer
 from evaluation.plan import arrow, start_mark
 
@@ -48,7 +38,7 @@ def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[fl
     height = HEADER + map_height + FOOT + more
     figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor=PAPER)
     figure.text(SIDE / WIDTH, 1 - 0.62 / height, title, color=TEXT, size=22)
-    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=FAINT, size=11)
+    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=colours.FAINT, size=11)
     axes = figure.add_axes((SIDE / WIDTH, (FOOT + more) / height, map_width / WIDTH,
                             map_height / height))
     axes.set(xlim=(left, right), ylim=(bottom, top), xlabel="m")
@@ -67,7 +57,7 @@ def below(figure: Figure, more: float) -> Axes:
 
 def legend(axes: Axes) -> None:
     """Where it covers least."""
-    axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
+    axes.legend(facecolor=PAPER, edgecolor=colours.GRID, labelcolor=TEXT, fontsize=9)
 
 
 def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str) -> None:
@@ -93,7 +83,7 @@ def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: 
     figure, axes = map_sheet(title, subtitle, everything.min(0) - 0.15, everything.max(0) + 0.15)
     points_a_metre = 72 * (WIDTH - 2 * SIDE) / (np.ptp(everything[:, 0]) + 0.3)
     texts = ("yellow: what the car follows", "white: right edge of the lane")
-    for points, colour, text in zip(lines, (LINE, WHITE), texts, strict=True):
+    for points, colour, text in zip(lines, (colours.LINE, colours.WHITE), texts, strict=True):
         axes.plot(*points.T, color=colour, label=text,
                   linewidth=max(1.5, track_file.line_width * points_a_metre))
     axes.plot(*start_mark(yellow.pose(0.0)).T, color=TEXT, linewidth=2)
@@ -114,10 +104,10 @@ def _draw_laps(axes: Axes, drive: LapScorer) -> None:
         axes.plot(*points[max(chosen[0] - 1, 0):chosen[-1] + 1].T, color=lap_colour(number),
                   label=text, linewidth=2 * (1 + 0.6 * min(numbers[-1] - number, 4)))
     if numbers[-1] >= len(LAPS):
-        axes.plot([], [], color=FAINT,
+        axes.plot([], [], color=colours.FAINT,
                   label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
     last = drive.samples[-1]
-    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR)
+    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, colours.CAR)
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:
@@ -139,10 +129,10 @@ def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tu
     figure = Figure(figsize=(size[0] * columns, size[1] * rows), dpi=DPI, facecolor=PAPER,
                     layout="constrained")
     for number, tile in enumerate(tiles, start=1):
-        axes = figure.add_subplot(rows, columns, number, facecolor=FLOOR)
+        axes = figure.add_subplot(rows, columns, number, facecolor=colours.FLOOR)
         axes.set(xticks=(), yticks=(), aspect="equal")
         caption, good = draw(axes, tile)
-        axes.set_title(caption, fontsize=7, color=TEXT if good else CAR)
+        axes.set_title(caption, fontsize=7, color=TEXT if good else colours.CAR)
     figure.savefig(path)
 
 
@@ -162,11 +152,11 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
 
 
 def _finish(axes: Axes) -> None:
-    axes.set_facecolor(FLOOR)
-    axes.grid(color=GRID)
-    axes.tick_params(colors=FAINT, labelsize=8, length=0)
-    axes.xaxis.label.set_color(FAINT)
-    axes.yaxis.label.set_color(FAINT)
+    axes.set_facecolor(colours.FLOOR)
+    axes.grid(color=colours.GRID)
+    axes.tick_params(colors=colours.FAINT, labelsize=8, length=0)
+    axes.xaxis.label.set_color(colours.FAINT)
+    axes.yaxis.label.set_color(colours.FAINT)
     axes.set_axisbelow(True)
     for spine in axes.spines.values():
         spine.set_visible(False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 import tempfile
 import time
@@ -32,7 +31,6 @@ def running(file: Path) -> Iterator[Callable[[Callable[[], object], float], bool
     with tempfile.TemporaryDirectory() as folder, Family() as family:
         launched = Launched(family, Path(folder) / "log")
         launched.start_roscore()
-        os.environ["ROS_MASTER_URI"] = launched.master_uri
         rospy.init_node("check_exercise", disable_signals=True, disable_rosout=True)
         child = launched.start("exercise", [sys.executable, str(file)])
         try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
 import sys
 import time
 import xmlrpc.client
@@ -41,12 +40,10 @@ class CourseUp:
         self._registered: list | None = None  # at the master, since
         self._since = 0.0  # s, wall
         launched.start_roscore()
-        os.environ["ROS_MASTER_URI"] = launched.master_uri
         self._master = rosgraph.Master(ME, launched.master_uri)
         self._master.setParam("/gazebo/state_log", str(state_log))
         launched.start("roslaunch", ["roslaunch", *self._course.launch, *case.launch_args])
-        launched.wait_for(lambda: "the course", self._is_ready, lambda _: None,
-                          STARTUP_LIMIT, LOOK_PERIOD)
+        launched.wait_for("the course", self._is_ready, STARTUP_LIMIT, pause=LOOK_PERIOD)
         self.film = self._start_film(folder) if case.film else None
 
     def look_around(self, rules: Rules) -> tuple[conduct.Course, Tail]:
@@ -105,8 +102,8 @@ class CourseUp:
         child = self._launched.start(
             "film", [sys.executable, "-P", "-m", film.__name__, str(folder)])
         self._launched.wait_for(
-            lambda: "the film", lambda: film.NODE in self._connections().subscribers[
-                self._course.camera], lambda _: None, STARTUP_LIMIT, LOOK_PERIOD)
+            "the film", lambda: film.NODE in self._connections().subscribers[
+                self._course.camera], STARTUP_LIMIT, pause=LOOK_PERIOD)
         self._watching.add(film.NODE)
         return child
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from racecar_description.track.closed_line import load_track
 
-from evaluation.laps.lit_drive import MODEL_PATH
+from evaluation.laps.lap_trial import MODEL_PATH
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, ReportedTrial
 from marking.case_files import CaseFile

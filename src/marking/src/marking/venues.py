@@ -13,13 +13,14 @@ from racecar_description.track.course_model import write_model
 from racecar_description.track.errors import TrackError
 from racecar_description.track.track_file import load_track_file
 
-from evaluation.laps import lit_drive
 from evaluation.laps.disturbance import Disturbance
+from evaluation.laps.lap_trial import MODEL_PATH
 from evaluation.session.course_file import load_course
 from marking.rules import Rules
 from run_session.course import Course
 from run_session.failure import RunError
 from run_session.resources import find_package
+from trial_worlds.light import write_lit_world
 
 # What can be driven: our launch file of that name, and the course file of evaluation's.
 COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}
@@ -44,7 +45,7 @@ def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
     path = Path(rules.tracks[track - 1]) if track else None
     world, line, models = _VENUES[rules.course](path, folder / "track")
     draw = _draw(rules, seed)
-    lit = lit_drive.write_world(world, models, draw.light, folder / "world")
+    lit = write_lit_world(world, models, draw.light, folder / "world")
     x, y, yaw = draw.start(load_track(line))
     arguments = {
         "world_name": lit, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
@@ -52,7 +53,7 @@ def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
         "pub_clock_frequency": 30, "lockstep": ",".join(driven(rules.course).lockstep),
         "lockstep_timeout": f"{rules.limits.answer_s:g}",
         **dict(zip(("camera_width", "camera_height"), rules.camera, strict=False))}
-    folders = (folder / "world" / "models", models, os.environ.get(lit_drive.MODEL_PATH, ""))
+    folders = (folder / "world" / "models", models, os.environ.get(MODEL_PATH, ""))
     return Scene(line, ":".join(map(str, folders)),
                  [f"{name}:={value}" for name, value in arguments.items()])
 

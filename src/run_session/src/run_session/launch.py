@@ -19,6 +19,7 @@ from run_session.turn import take_turn
 
 USUAL_PORT = 11311
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
+LOOK_PERIOD = 0.05  # s, wall
 ROSCORE_LOG = "roscore.log"  # in the folder of each run's logs
 MAY_FINISH = ("spawn",)  # a node so named has done its work when it ends with exit code 0
 DIED = re.compile(r"\[([\w/.-]+)\] process has died \[(?:pid \d+, )?exit code (-?\d+)")
@@ -55,17 +56,16 @@ class Launched:
         self._required: dict[str, str] = {}  # child's name -> required process just reported dead
 
     def start_roscore(self) -> None:
-        """Start roscore and wait until it answers."""
+        """Start roscore and wait until it answers; this process's nodes are then its."""
+        os.environ["ROS_MASTER_URI"] = self.master_uri
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         until = time.monotonic() + ROSCORE_TIME
         while not _answers(self.master_uri):
             self.check(None)
             if time.monotonic() > until:
-                raise RunError(
-                    f"roscore did not answer within {ROSCORE_TIME:.0f} s",
-                    self._children[0].last_lines(),
-                )
-            time.sleep(0.05)
+                raise RunError(f"roscore did not answer within {ROSCORE_TIME:.0f} s",
+                               self._children[0].last_lines())
+            time.sleep(LOOK_PERIOD)
         self._turn.close()
 
     def start(self, name: str, command: list[str]) -> Child:
@@ -84,7 +84,7 @@ class Launched:
         until = time.monotonic() + limit
         while child.process.poll() is None and time.monotonic() < until:
             self.check(None)
-            time.sleep(0.05)
+            time.sleep(LOOK_PERIOD)
         code = child.process.poll()
         if code != 0:
             how = f"did not end within {limit:.0f} s" if code is None else describe_exit(code)
@@ -92,21 +92,21 @@ class Launched:
 
     def wait_for(
         self,
-        what: Callable[[], str],
+        what: str | Callable[[], str],
         condition: Callable[[], object],
-        status: Callable[[str], None],
         limit: float,
-        pause: float = 0.0,
+        status: Callable[[str], None] = lambda _: None,
+        pause: float = LOOK_PERIOD,
     ) -> object:
         """What the condition gives once it is true; RunError if it is not within `limit`, s.
 
         `what` names what is not there yet, and `status` shows it meanwhile. Between two looks
-        there are `pause` s, wall, for a condition that does not wait by itself.
+        there are `pause` s, wall: 0 for a condition that waits by itself.
         """
         until = time.monotonic() + limit
         while not (value := condition()):
             self.check(None)
-            missing = what()
+            missing = what() if callable(what) else what
             status(f"waiting for {missing}")
             if time.monotonic() > until:
                 raise RunError(f"{missing} was not there within {limit:.0f} s", self.tail())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
 import threading
 import time
@@ -46,7 +45,6 @@ class Observer:
                  listened: Iterable[str] = ()):
         """In lockstep, time begins only when `listened`, more topics, are connected, too."""
         self._course, self._listened = course, tuple(listened)
-        os.environ["ROS_MASTER_URI"] = master_uri
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Seen]] = queue.SimpleQueue()
         self._ended = threading.Event()

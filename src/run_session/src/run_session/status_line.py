@@ -22,7 +22,7 @@ class StatusLine:
         self._in_place = self._stream.isatty()
         self._shown_at, self._next_plain = 0.0, 0.0
         self._times: deque[tuple[float, float]] = deque()
-        self._open = False
+        self._open, self._part = False, ""
 
     @property
     def factor(self) -> float:
@@ -40,8 +40,15 @@ class StatusLine:
         if self._in_place:
             self._rewrite(text)
 
-    def update(self, simulated: float, make_line: Callable[[], str]) -> None:
-        """Another moment, s of simulated time; the line is made if one is due."""
+    def update(self, simulated: float, make_line: Callable[[], str], part: str = "") -> None:
+        """Another moment, s of simulated time, which begins anew with each part of the run.
+
+        The line is made if one is due.
+        """
+        if part != self._part:
+            self.end()
+            self._times.clear()
+            self._next_plain, self._part = 0.0, part
         now = time.monotonic()
         self._times.append((now, simulated))
         while now - self._times[0][0] > RATE_WINDOW:
@@ -52,12 +59,6 @@ class StatusLine:
         elif not self._in_place and simulated >= self._next_plain:
             self._next_plain = (simulated // PLAIN_PERIOD + 1) * PLAIN_PERIOD
             self.say(make_line())
-
-    def begin_anew(self) -> None:
-        """Simulated time begins again."""
-        self.end()
-        self._times.clear()
-        self._next_plain = 0.0
 
     def end(self) -> None:
         """Leave the line as it is and go to the next."""

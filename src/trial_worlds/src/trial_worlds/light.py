@@ -15,26 +15,26 @@ from xml.etree.ElementTree import Element
 import cv2
 import numpy as np
 
+from bullet_sim.formats import Resources
 from trial_worlds.errors import WorldError
 
 MODEL = "model://"
 
 
-def write_lit_world(world: Path, models: Path, sun: Path, factor: float, folder: Path) -> Path:
+def write_lit_world(world: Path, models: Path, factor: float, folder: Path) -> Path:
     """Write FOLDER/<the world's name> with its light times `factor`; returns that file.
 
     `models` is where the world's own models are: copies of them with brighter textures go to
-    FOLDER/models if the factor is above 1. `sun` is the folder of the model that lights the world.
-    Raises WorldError for a file that is no world.
+    FOLDER/models if the factor is above 1. Raises WorldError for a file that is no world.
     """
     folder.mkdir(parents=True, exist_ok=True)
     try:
         tree = ElementTree.parse(world)
-        light = ElementTree.parse(sun / "model.sdf").getroot().find("light")
+        sun = ElementTree.parse(Resources.from_environment().resolve(f"{MODEL}sun/model.sdf"))
     except (OSError, ElementTree.ParseError) as error:
         raise WorldError(
             f"{world}: no world in which the light could be changed: {error}") from error
-    scale_light(tree.getroot(), light, factor)
+    scale_light(tree.getroot(), sun.getroot().find("light"), factor)
     shutil.rmtree(folder / "models", ignore_errors=True)
     if factor > 1:
         for name in _included(tree.getroot()):

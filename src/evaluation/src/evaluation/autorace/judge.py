@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import dropwhile, pairwise
 
+import numpy as np
 from turtlebot3_gazebo.making.courses import WAY_2020
 from turtlebot3_gazebo.making.lanes import rounded
 
-MISSIONS = ("lane", "traffic_light", "parking", "bar", "tunnel", "finish")
 WAY = rounded(WAY_2020, 0.3)  # the lane's middle, m
 HALF_LANE = 0.125  # m: the base is between the lines
 LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, before the bar
@@ -56,14 +56,10 @@ def off_lane(x: float, y: float) -> float:
     """m from the lane's middle; 0 in the car park and in the tunnel."""
     if in_car_park(x, y) or in_tunnel(x, y):
         return 0.0
-    return min(_to_piece((x, y), *ends) for ends in pairwise(WAY))
-
-
-def _to_piece(place: tuple, begin: tuple, end: tuple) -> float:
-    dx, dy = end[0] - begin[0], end[1] - begin[1]
-    share = ((place[0] - begin[0]) * dx + (place[1] - begin[1]) * dy) / (dx * dx + dy * dy)
-    share = min(1.0, max(0.0, share))
-    return math.dist(place, (begin[0] + share * dx, begin[1] + share * dy))
+    place, begins, pieces = np.array((x, y)), np.array(WAY[:-1]), np.diff(WAY, axis=0)
+    shares = ((place - begins) * pieces).sum(axis=1) / (pieces**2).sum(axis=1)
+    nearest = begins + shares.clip(0.0, 1.0)[:, None] * pieces
+    return float(np.linalg.norm(place - nearest, axis=1).min())
 
 
 def in_car_park(x: float, y: float) -> bool:
@@ -79,13 +75,10 @@ def in_tunnel(x: float, y: float) -> bool:
 def score(samples: Sequence[Sample], contacts: dict[str, float], wanted: Sequence[str]
           ) -> list[Score]:
     """One for each wanted mission. `contacts`: models that the robot touched, and when first, s."""
-    rules: dict[str, Callable] = {
-        "lane": _lane, "traffic_light": _light, "parking": _parking, "bar": _bar,
-        "tunnel": _tunnel, "finish": _finish}
     found = []
     for mission in wanted:
         touched = [name for name in contacts if _whose(name) == mission]
-        time, why = rules[mission](samples)
+        time, why = RULES[mission](samples)
         why = f"touched {', '.join(touched)}" if touched else why
         found.append(Score(mission, why, None if time is None else
                            round(time - samples[0].time, 1), touched))
@@ -108,28 +101,17 @@ def _lane(samples: Sequence[Sample]) -> Found:
     return None, "did not come to its end"
 
 
-def _shown(samples: Sequence[Sample], at: int, name: str) -> bool:
-    """Whether a model stood there at a sample, or a moment before it."""
-    return any(name in each.shown for each in samples[:at + 1]
-               if each.time >= samples[at].time - MAY_CHANGE)
-
-
-def _light(samples: Sequence[Sample]) -> Found:
-    at = next((i for i, each in enumerate(samples) if each.x > LIGHT_X and each.y < -1.5), None)
-    if at is None:
-        return None, "did not come to the light"
-    if _shown(samples, at, "traffic_light_green"):
-        return samples[at].time, None
-    return samples[at].time, "did not wait for green"
-
-
-def _bar(samples: Sequence[Sample]) -> Found:
-    at = next((i for i, each in enumerate(samples) if each.x < -1.5 and 0.1 < each.y < BAR_Y), None)
-    if at is None:
-        return None, "did not come to the bar"
-    if _shown(samples, at, "traffic_bar_up"):
-        return samples[at].time, None
-    return samples[at].time, "did not wait for the bar"
+def _waits_for(shown: str, said: str, place: str, is_there: Callable[[Sample], bool]
+               ) -> Callable[[Sequence[Sample]], Found]:
+    """The rule that a model stands there, or a moment before did, when the robot comes."""
+    def rule(samples: Sequence[Sample]) -> Found:
+        come = next(filter(is_there, samples), None)
+        if come is None:
+            return None, f"did not come to the {place}"
+        stood = any(shown in each.shown for each in samples
+                    if come.time - MAY_CHANGE <= each.time <= come.time)
+        return come.time, None if stood else f"did not wait for {said}"
+    return rule
 
 
 def _parking(samples: Sequence[Sample]) -> Found:
@@ -146,16 +128,16 @@ def _parking(samples: Sequence[Sample]) -> Found:
 
 
 def _tunnel(samples: Sequence[Sample]) -> Found:
-    inside = next((i for i, each in enumerate(samples) if in_tunnel(each.x, each.y)
-                   and each.y < -0.2 and each.x < -0.2), None)
-    if inside is None:
+    inside = list(dropwhile(lambda robot: not (
+        in_tunnel(robot.x, robot.y) and robot.y < -0.2 and robot.x < -0.2), samples))
+    if not inside:
         return None, "did not come into the tunnel"
-    time = next((each.time for each in samples[inside:] if each.x > 0.1 and each.y < -1.5), None)
+    time = next((each.time for each in inside if each.x > 0.1 and each.y < -1.5), None)
     return time, None if time else "did not find the exit"
 
 
 def _finish(samples: Sequence[Sample]) -> Found:
-    after = _after_tunnel(samples)
+    after = dropwhile(lambda robot: robot.x >= -0.5 or robot.y >= -0.5, samples)  # the tunnel
     for before, each in pairwise(after):
         if START[0] < each.x < START[1] and math.dist((before.x, before.y),
                                                       (each.x, each.y)) < STANDING:
@@ -163,9 +145,13 @@ def _finish(samples: Sequence[Sample]) -> Found:
     return None, "did not stop at the red line"
 
 
-def _after_tunnel(samples: Sequence[Sample]) -> Iterator[Sample]:
-    was = False
-    for each in samples:
-        was = was or (each.x < -0.5 and each.y < -0.5)
-        if was:
-            yield each
+RULES: dict[str, Callable[[Sequence[Sample]], Found]] = {
+    "lane": _lane,
+    "traffic_light": _waits_for("traffic_light_green", "green", "light",
+                                lambda robot: robot.x > LIGHT_X and robot.y < -1.5),
+    "parking": _parking,
+    "bar": _waits_for("traffic_bar_up", "the bar", "bar",
+                      lambda robot: robot.x < -1.5 and 0.1 < robot.y < BAR_Y),
+    "tunnel": _tunnel, "finish": _finish,
+}  # fmt: skip
+MISSIONS = tuple(RULES)

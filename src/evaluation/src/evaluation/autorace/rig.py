@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import time
 from pathlib import Path
 
@@ -27,7 +26,6 @@ class Rig:
 
     def __init__(self, launched: Launched):
         self._launched = launched
-        os.environ["ROS_MASTER_URI"] = launched.master_uri
         launched.start_roscore()
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("/gazebo/pub_state_frequency", STATE_HZ)
@@ -44,8 +42,8 @@ class Rig:
             "roslaunch", "learning_autorace", "autorace.launch", f"drive:={script}", "gui:=false",
             "paused:=true", "real_time_factor:=0", "lockstep:=/cmd_vel", "lockstep_timeout:=20",
             "pub_clock_frequency:=30", *words])
-        self._launched.wait_for(lambda: "the robot, the mission and the lesson", self._ready,
-                                lambda _: None, START_LIMIT, LOOK_PERIOD)
+        self._launched.wait_for("the robot, the mission and the lesson", self._ready, START_LIMIT,
+                                pause=LOOK_PERIOD)
         simulator.unpause()
 
     def watch(self) -> Sample:

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import argparse
 import random
-import statistics
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
+import numpy as np
+from turtlebot3_gazebo.making.lanes import beside
+from turtlebot3_gazebo.making.race_worlds import BARRIERS, OBSTACLES, WALLS
+
+from evaluation.autorace import judge
 from evaluation.autorace.judge import MISSIONS, Sample, Score, off_lane, score
 from evaluation.autorace.rig import Rig
-from evaluation.autorace.sheet import write_sheet
+from evaluation.colours import CAR, FAINT, LAPS, LINE, WHITE
+from evaluation.picture import DPI, legend, map_sheet
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import cell, table
+from evaluation.trial.report import cell, mean, table
 from run_session.resources import find_package
 from run_session.session import Session
+from trial_worlds.light import write_lit_world
 
 ALL = "all"
 LOST = 0.30  # m beside the lane: the drive is over
@@ -69,6 +74,13 @@ class Drive:
         """Every mission of it."""
         return all(each.passed for each in self.scores)
 
+    @property
+    def line(self) -> str:
+        """On one line."""
+        failed = [f"{each.mission} {each.why}" for each in self.scores if not each.passed]
+        return (f"{self.name}: {'; '.join(failed) or 'passed'}, {self.time:.1f} s, light"
+                f" x{self.light:.2f}")
+
 
 class RaceTrial(ReportedTrial):
     """All drives at one ROS master."""
@@ -77,6 +89,7 @@ class RaceTrial(ReportedTrial):
     does = "Drive AutoRace 2020 by the lessons of learning_autorace, and score each mission."
     good = "every mission passed in every drive"
     writes = "report.json, report.html, autorace.png and the simulator's logs"
+    result, derived = Drive, ("passed",)
 
     def __init__(self) -> None:
         self._rig: Rig | None = None
@@ -102,11 +115,9 @@ class RaceTrial(ReportedTrial):
         self._light = round(draw.uniform(0.6, 1.0), 2)
         x, y, yaw = (value + draw.uniform(-wide, wide) for value, wide in
                      zip(self._task.start, (0.03, 0.03, 0.08), strict=True))
-        folder = session.out / "drives"
-        folder.mkdir(exist_ok=True)
-        world = folder / f"{case.name}.world"
-        write_dimmed(find_package("turtlebot3_gazebo") / "worlds/turtlebot3_autorace_2020.world",
-                     self._light, world)
+        folder, package = session.out / "drives", find_package("turtlebot3_gazebo")
+        world = write_lit_world(package / "worlds" / "turtlebot3_autorace_2020.world",
+                                package / "models", self._light, folder / case.name)
         self._rig.begin(self._task.script, [
             f"world_name:={world}", f"x_pos:={x:.4f}", f"y_pos:={y:.4f}", f"yaw:={yaw:.4f}",
             f"seed:={case.seed}"], folder / f"{case.name}.log")
@@ -133,14 +144,6 @@ class RaceTrial(ReportedTrial):
                      round(samples[-1].time - samples[0].time, 1),
                      tuple(score(samples, touched, self._task.missions)), path)
 
-    def passed(self, results: Sequence[Drive]) -> bool:
-        return all(each.passed for each in results)
-
-    def line(self, result: Drive) -> str:
-        failed = [f"{each.mission} {each.why}" for each in result.scores if not each.passed]
-        return (f"{result.name}: {'; '.join(failed) or 'passed'}, {result.time:.1f} s, light"
-                f" x{result.light:.2f}")
-
     def table(self, results: Sequence[Drive]) -> str:
         rows = [("mission", "passed", "after s", "contacts", "why not")]
         for mission in MISSIONS:
@@ -149,32 +152,36 @@ class RaceTrial(ReportedTrial):
                 times = [each.time for each in found if each.passed and each.time is not None]
                 why = dict.fromkeys(each.why for each in found if each.why)
                 rows.append((mission, f"{sum(each.passed for each in found)} of {len(found)}",
-                             cell(statistics.fmean(times) if times else None),
+                             cell(mean(times)),
                              str(sum(len(each.contacts) for each in found)),
                              "; ".join(why) or "-"))
         return table(rows, left=(0, 4))
 
     def values(self, results: Sequence[Drive]) -> dict:
-        return {"passed": self.passed(results),
-                "drives": [{**asdict(each), "passed": each.passed} for each in results]}
-
-    def from_values(self, values: dict) -> list[Drive]:
-        drives = []
-        for each in values["drives"]:
-            kept = {name: each[name] for name in Drive.__dataclass_fields__}
-            kept["scores"] = tuple(Score(**one) for one in each["scores"])
-            drives.append(Drive(**kept))
-        return drives
+        return {"passed": self.passed(results), **super().values(results)}
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_sheet(results, out / "autorace.png")
         return ["autorace.png"]
 
 
-def write_dimmed(world: Path, factor: float, path: Path) -> None:
-    """Write a copy of a world file whose lights are that much weaker."""
-    tree = ElementTree.parse(world)
-    for diffuse in tree.iterfind("world/light/diffuse"):
-        *rgb, opacity = map(float, diffuse.text.split())
-        diffuse.text = " ".join(f"{value:.4g}" for value in (*(factor * c for c in rgb), opacity))
-    tree.write(path, encoding="unicode", xml_declaration=True)
+def write_sheet(drives: Sequence, path: Path) -> None:
+    """A line for each drive; those that failed end in a cross."""
+    passed = sum(each.passed for each in drives)
+    figure, axes = map_sheet("AutoRace 2020", f"{passed} of {len(drives)} drives passed",
+                             (-2.1, -2.1), (2.1, 2.1))
+    for side, colour in ((1, LINE), (-1, WHITE)):
+        axes.plot(*np.array(beside(judge.WAY, side * judge.HALF_LANE)).T, color=colour, linewidth=3)
+    for (x, y), yaw, length in WALLS.values():
+        half = np.array((np.cos(yaw), np.sin(yaw))) * length / 2
+        axes.plot((x - half[0], x + half[0]), (y - half[1], y + half[1]), color=FAINT, linewidth=6)
+    axes.plot(*np.array(list(OBSTACLES.values())).T, "o", color=FAINT, markersize=20)
+    axes.plot(*np.array(BARRIERS).T, "s", color=CAR, markersize=8, label="barriers")
+    axes.plot(*np.array(list(judge.BAYS.values())).T, "P", color=WHITE, markersize=12, label="bays")
+    for number, drive in enumerate(drives):
+        points = np.array(drive.path)
+        axes.plot(*points.T, color=LAPS[number % len(LAPS)], linewidth=1.2)
+        if not drive.passed:
+            axes.plot(*points[-1], "x", color=CAR, markersize=14)
+    legend(axes)
+    figure.savefig(path, dpi=DPI)

@@ -1,26 +1,61 @@
-"""`make avoid`: the laser's lesson drives through halls, each with its own columns and noise."""
+"""`make avoid`: the laser's lesson drives through halls; the simulator's own log tells how."""
 
 from __future__ import annotations
 
 import argparse
+import json
+import math
+import xmlrpc.client
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import rosgraph
 from learning_laser import hall
 
-from evaluation.avoid import drive
-from evaluation.avoid.drive import CONTACT, REACHED, Drive
 from evaluation.picture import write_tiles
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import table
+from evaluation.trial.report import cell, mean, table
+from run_session.connections import look_up
+from run_session.failure import RunError
+from run_session.launch import Launched
 from run_session.resources import find_package
 from run_session.session import Session
+from run_session.simulator import WAFFLE, models, unpause
 
+START_LIMIT = 120.0  # s, wall
+LIMIT = 120.0  # s, simulated
+TOPICS = ("/scan", "/cmd_vel")
+REACHED, CONTACT, LATE = "reached", "contact", "late"
 TILE = (5.0, 1.9)  # inches
+
+
+@dataclass(frozen=True)
+class Drive:
+    """How it went; m, s."""
+
+    name: str
+    seed: int
+    outcome: str
+    time: float
+    distance: float  # of the way driven
+    nearest: float  # from the axle's middle to a column's or wall's surface
+    unanswered: int  # scans
+    path: list[list[float]] = field(repr=False)  # x, y
+
+    @property
+    def passed(self) -> bool:
+        """Did it arrive without a contact?"""
+        return self.outcome == REACHED
+
+    @property
+    def line(self) -> str:
+        """On one line."""
+        return (f"{self.name}: {self.outcome} after {self.time:.1f} s and {self.distance:.1f} m,"
+                f" nearest {self.nearest:.2f} m")
 
 
 @dataclass(frozen=True)
@@ -37,6 +72,7 @@ class AvoidTrial(ReportedTrial):
     does = "Drive by laser through halls with columns."
     good = "all goals reached without a contact"
     writes = "report.json, report.html, paths.png and worlds"
+    result = Drive
 
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 20, "halls", variable="SEEDS", least=1)
@@ -60,43 +96,91 @@ class AvoidTrial(ReportedTrial):
         world.write_text(hall.world(case.seed), encoding="utf-8")
         self._case, self._session = case, session
         self._launched = session.launched("robot", self._avoider)
-        drive.bring_up(self._launched, world, case.seed, self._avoider, self._log)
+        bring_up(self._launched, world, case.seed, self._avoider, self._log)
 
     def run(self) -> list[dict]:
         try:
-            return drive.watch(self._launched, self._log)
+            return watch(self._launched, self._log)
         finally:
             self._session.family.stop()
 
     def score(self, record: list[dict]) -> Drive:
-        return drive.scored(self._case.name, self._case.seed, record)
-
-    def passed(self, results: Sequence[Drive]) -> bool:
-        return all(each.outcome == REACHED for each in results)
-
-    def line(self, result: Drive) -> str:
-        return (f"{result.name}: {result.outcome} after {result.time:.1f} s and"
-                f" {result.distance:.1f} m, nearest {result.nearest:.2f} m")
+        return scored(self._case.name, self._case.seed, record)
 
     def table(self, results: Sequence[Drive]) -> str:
         count = Counter(each.outcome for each in results)
-        there = [each for each in results if each.outcome == REACHED]
-        mean = f"{sum(each.time for each in there) / len(there):.1f}" if there else "-"
+        times = [each.time for each in results if each.passed]
         return table([
             ("halls", "reached", "contact", "mean time, s", "slowest, s", "nearest, m"),
-            (str(len(results)), str(count[REACHED]), str(count[CONTACT]), mean,
+            (str(len(results)), str(count[REACHED]), str(count[CONTACT]), cell(mean(times)),
              f"{max(each.time for each in results):.1f}",
              f"{min(each.nearest for each in results):.2f}")])
-
-    def values(self, results: Sequence[Drive]) -> dict:
-        return {"drives": [asdict(each) for each in results]}
-
-    def from_values(self, values: dict) -> list[Drive]:
-        return [Drive(**each) for each in values["drives"]]
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_tiles(out / "paths.png", results, _draw, TILE, columns=2)
         return ["paths.png"]
+
+
+def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log: Path) -> None:
+    """Start all, wait until everybody is connected, and let time begin."""
+    launched.start_roscore()
+    launched.start("roslaunch", [
+        "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
+        f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])
+    launched.wait_for(f"model {WAFFLE}", lambda: WAFFLE in models(), START_LIMIT)
+    launched.wait_for(f"who reads /scan ({avoider})", lambda: _connected(launched.master_uri),
+                      START_LIMIT)
+    unpause()
+
+
+def watch(launched: Launched, state_log: Path) -> list[dict]:
+    """The log's states up to the finish, the first contact or LIMIT."""
+    states: list[dict] = []
+    with state_log.open(encoding="utf-8") as file:
+        while not (states and outcome(states[-1])):
+            launched.wait_for("the next state", lambda: (line := file.readline())
+                              and _take(states, line), START_LIMIT)
+    return states
+
+
+def outcome(state: dict) -> str | None:
+    """What has happened by then."""
+    if any({WAFFLE, "hall"} == set(pair) for pair in state["contacts"]):
+        return CONTACT
+    if state["poses"][WAFFLE][0] > hall.FINISH:
+        return REACHED
+    return LATE if state["time"] > LIMIT else None
+
+
+def scored(name: str, seed: int, states: list[dict]) -> Drive:
+    """The result of a drive's states."""
+    path = np.array([state["poses"][WAFFLE][:2] for state in states])
+    away = np.hypot(*(path[:, None] - hall.columns(seed)).transpose(2, 0, 1)) - hall.RADIUS
+    nearest = min(away.min(), hall.WIDTH / 2 - np.abs(path[:, 1]).max())
+    distance = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    return Drive(name, seed, outcome(states[-1]), round(states[-1]["time"], 2), round(distance, 3),
+                 round(float(nearest), 3), states[-1]["unanswered"], path.round(4).tolist())
+
+
+def _connected(master_uri: str) -> bool:
+    try:
+        found = look_up(master_uri, "/avoid", TOPICS)
+    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+        return False
+    return all(found.publishers[topic] and found.subscribers[topic]
+               and not found.missing_link(topic) for topic in TOPICS)
+
+
+def _take(states: list[dict], line: str) -> bool:
+    """Whether the line is a state of the robot; RunError where the log is none."""
+    try:
+        state = json.loads(line)
+    except ValueError as error:
+        raise RunError(f"the simulator's log of states: {error}") from error
+    if WAFFLE not in state.get("poses", {}) or not math.isfinite(state["time"]):
+        return False
+    states.append(state)
+    return True
 
 
 def _draw(axes: object, result: Drive) -> tuple[str, bool]:
@@ -106,4 +190,4 @@ def _draw(axes: object, result: Drive) -> tuple[str, bool]:
     axes.plot(*zip(*result.path, strict=True), color="#1b6ca8")
     axes.set(xlim=(-1, hall.LENGTH - 1), ylim=(-hall.WIDTH / 2, hall.WIDTH / 2), aspect="equal")
     axes.axvline(hall.FINISH, color="#c0392b", linewidth=1)
-    return f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.outcome == REACHED
+    return f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.passed

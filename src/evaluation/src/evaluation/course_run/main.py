@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -11,15 +13,18 @@ from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.course_run.film import CourseFilm
-from evaluation.course_run.options import add_options, complete
 from evaluation.course_run.report import followers_table, summarize, write_report
 from evaluation.lap import LapScorer, Verdict
 from evaluation.picture import path_picture
+from evaluation.session.course_file import drivers, load_course
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
 from evaluation.trial.car_drive import CarDrive
-from evaluation.trial.command_line import Parser
+from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.trial.live import Outcome
+from run_session.failure import RunError
 from run_session.fingerprints import Fingerprints
+
+MOST_SECONDS = 999_999_999
 
 
 class CourseRun(CarDrive):
@@ -33,19 +38,53 @@ class CourseRun(CarDrive):
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
-        add_options(parser)
+        add = parser.add_argument
+        add("--course", default="course", type=load_course, metavar="NAME",
+            help="course, race or lane, or a file (course)")
+        parser.add_whole("--laps", 1, "laps to close", variable="LAPS", least=1)
+        add("--duration", metavar="S", help="simulated seconds at most (300 a lap)", type=partial(
+            number, "--duration (DURATION=)", least=0.001, most=MOST_SECONDS,
+            what="seconds of simulated time"))
+        add("--follower", metavar="FILE",
+            help="script of the course's package that drives (the course's own)")
+        add("--fast", action="store_true",
+            help="as fast as the machine goes: after each image the world waits for the follower")
+        add("--camera", metavar="WIDTHxHEIGHT", type=_camera_px,
+            help="size of the camera's images, px (the robot's own)")
+        parser.add_whole("--seed", None, "of all noise; with --fast, repeats a run",
+                         variable="SEED", most=LARGEST_SEED)
+        add("--fingerprint", action="store_true",
+            help="also report a SHA-256 of all that each sensor sent; writes no run.mp4")
+        add("--launch-arg", action="append", default=[], metavar="NAME:=VALUE", type=_launch_arg,
+            help="passed on to roslaunch; may be given again")
+        add("--launch", nargs=2, metavar=("PACKAGE", "FILE"),
+            help="another launch file that brings up simulator, car and follower")
+        add("--track", type=Path, metavar="YAML", help="track file (the course's own)")
 
     @classmethod
     def check(cls, options: argparse.Namespace) -> argparse.Namespace:
-        complete(options)
-        options.out = options.out or Path(options.course.out)
+        """What was not asked for is as the course has it."""
+        course = options.course
+        options.duration = options.duration or 300.0 * options.laps
+        options.follower = options.follower or course.follower
+        if not options.launch or tuple(options.launch) == course.launch:
+            one_of("follower", "FOLLOWER", drivers(course), options.follower)
+        options.launch = tuple(options.launch or course.launch)
+        options.track = options.track or course.track_path()
+        options.video &= not options.fingerprint  # a node takes a topic raw or not
+        size = options.camera and dict(zip(("camera_width", "camera_height"), options.camera))
+        asked = {**(size or {}), **({} if options.seed is None else {"seed": options.seed})}
+        options.launch_args = (*(f"{name}:={value}" for name, value in asked.items()),
+                               *options.launch_arg)
+        options.out = options.out or Path(course.out)
         return options
 
     def __init__(self, options: argparse.Namespace):
         self.track_file = load_track_file(options.track)
         course = options.course
         super().__init__(options, course, LapScorer(
-            build_track(self.track_file), options.laps, off_course=course.off_course))
+            build_track(self.track_file), options.laps, course.off_course,
+            options.duration))
         self.driver = options.follower
         if options.video:
             period = FAST_FILM_PERIOD if options.fast else FILM_PERIOD
@@ -58,16 +97,8 @@ class CourseRun(CarDrive):
         return (*self.options.launch, "gui:=false", f"follower:={self.driver}",
                 *self.fast_arguments(), *self.options.launch_args)
 
-    @property
-    def is_over(self) -> bool:
-        return self.drive.verdict is not Verdict.DRIVING or self.simulated > self.options.duration
-
     def outcome(self) -> Outcome:
-        drive = self.drive
-        if drive.verdict is Verdict.DRIVING:
-            share = f"lap {len(drive.laps) + 1} was {drive.driven_share:.0%} driven"
-            return "time is up", f"{self.options.duration:g} simulated s are over: {share}"
-        return drive.verdict.value, drive.why
+        return self.drive.verdict.value, self.drive.why
 
     def line(self) -> str:
         drive = self.drive
@@ -115,3 +146,16 @@ def _titles(follower: str, summary: dict) -> tuple[str, str]:
         f"real time x{summary['real_time_factor'] or 0:.2f}",
     )
     return f"{follower}: {closed}", "   |   ".join(figures)
+
+
+def _camera_px(text: str) -> tuple[int, int]:
+    size = re.fullmatch(r"([1-9][0-9]{0,4})x([1-9][0-9]{0,4})", text)
+    if not size:
+        raise RunError(f"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got {text!r}")
+    return int(size[1]), int(size[2])
+
+
+def _launch_arg(text: str) -> str:
+    if ":=" not in text:
+        raise RunError(f"--launch-arg must look like name:=value, got {text!r}")
+    return text

@@ -6,8 +6,7 @@ import json
 from pathlib import Path
 
 from evaluation.lap import LapScorer
-from evaluation.trial.report import write_json
-from evaluation.trial.table import cell, table
+from evaluation.trial.report import cell, table, write_json
 
 COLUMNS = (  # heading, key, factor, digits
     ("laps", "laps_closed", 1, 0),

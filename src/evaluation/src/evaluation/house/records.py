@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import at_moments
+from run_session.status_line import StatusLine
 from trial_worlds.feelers import Gap
 
 TOUCHES = 0.005  # m; what is nearer counts as touched: poses are seen 25 times a second
@@ -59,6 +61,12 @@ class Records:
         """s, simulated, between two looks at the true pose, at most."""
         return max(np.diff([row[0] for row in self.truth]), default=0.0)
 
+    def show(self, progress: StatusLine, part: str, what: str) -> None:
+        """The progress line of a part of the run, if one is due."""
+        progress.update(self.now, lambda: (
+            f"{part} {self.now:.1f} s | {what} | {self.length:.1f} m driven"
+            f" | touched {len(self.contacts)} | real time x{progress.factor:.2f}"), part)
+
     def note_gap(self, gap: Gap, now: float) -> None:
         """So near is the robot to something at this moment, s."""
         self.nearest = min(self.nearest, (gap.width, now))
@@ -69,9 +77,13 @@ class Records:
         else:
             self.contacts.append(Contact(gap.own, now, now, gap.place))
 
-    def pairs(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Believed and true poses (N, 3) of the same moments, from a moment (s) on."""
-        return self.moments(since)[1:]
+    def errors(self, since: float, map_in_world: np.ndarray = np.zeros(3)
+               ) -> tuple[np.ndarray, np.ndarray]:
+        """Times (N,), s, and (N, 2), m and rad between believed and true pose then."""
+        times, believed, true = self.moments(since)
+        there = compose(map_in_world, believed)
+        return times, np.stack((np.linalg.norm(there[:, :2] - true[:, :2], axis=1),
+                                np.abs(wrap_angle(there[:, 2] - true[:, 2]))), axis=1)
 
     def moments(self, since: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times (N,), s, believed and true poses (N, 3) then, from a moment on.

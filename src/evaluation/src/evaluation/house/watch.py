@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 import rospy
@@ -30,14 +28,6 @@ POSE_RATE_HZ = 25.0
 TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36
 
 
-@dataclass(frozen=True)
-class Scan:
-    """Where the beams of one scan ended, and how the laser sees."""
-
-    points: np.ndarray  # (N, 2), m, in the laser's frame
-    angles: np.ndarray  # (M,), rad, of all beams
-
-
 class Watch:
     """Looks on while others drive. Records begin anew with each part of the run.
 
@@ -46,13 +36,13 @@ class Watch:
     /clock, and does not mind when a restarted simulator's time begins again.
     """
 
-    def __init__(self, master_uri: str):
-        os.environ["ROS_MASTER_URI"] = master_uri
+    def __init__(self) -> None:
         rospy.init_node("navigate", anonymous=True, disable_signals=True, disable_rosout=True)
         self.records = Records()
         self.feelers: Feelers | None = None  # what it touches is not noted without
         self.map: OccupancyGrid | None = None
-        self.scan: Scan | None = None
+        self.beams = np.empty(0)  # (N,), rad, of the laser
+        self.hits: np.ndarray | None = None  # (N, 2), m, of the last scan, in the laser's frame
         self.plan = np.empty((0, 2))  # m, in the map's frame
         self._map_to_odom: np.ndarray | None = None
         self._ended = threading.Event()
@@ -75,7 +65,7 @@ class Watch:
         """A new part of the run: nothing is known any more."""
         with self._lock:
             self.records = Records()
-            self.map, self.scan, self._map_to_odom = None, None, None
+            self.map, self.hits, self._map_to_odom = None, None, None
             self.plan = np.empty((0, 2))
 
     def _ask_poses(self) -> None:
@@ -109,7 +99,7 @@ class Watch:
         ranges = np.array(message.ranges)
         seen = (ranges >= message.range_min) & (ranges <= message.range_max)
         ways = np.stack((np.cos(angles[seen]), np.sin(angles[seen])), axis=1)
-        self.scan = Scan(ways * ranges[seen, None], angles)
+        self.hits, self.beams = ways * ranges[seen, None], angles
 
     def _take_plan(self, message: PathMessage) -> None:
         self.plan = np.array([(pose.pose.position.x, pose.pose.position.y)

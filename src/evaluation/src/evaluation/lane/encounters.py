@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from lane_keeping.world.files import PERSON_RADIUS
 from lane_keeping.world.scenery import Crossings, Zebra
 
-from evaluation.lane.recording import CAR, Moment, Recording
+from evaluation.lane.recording import CAR, Moment, Recording, last
 
 CAR_FRONT, CAR_REAR, CAR_HALF_WIDTH = 0.20, 0.16, 0.15  # m round base_footprint, wheels included
 APPROACH, KEPT_OFF, TOUCHED = 2.0, 0.3, 0.005  # m
@@ -66,7 +66,7 @@ def judge(recording: Recording, crossings: Crossings, lane_half: float) -> list[
     found = []
     for number, zebra in enumerate(crossings.zebras, start=1):
         person = f"pedestrian_{number}"
-        for begin, end in _walks(recording.moments.get(person, []), zebra, lane_half):
+        for begin, end in _walks(recording.get(person, []), zebra, lane_half):
             encounter = _encounter(recording, crossings, number, (begin, end))
             if encounter is not None:
                 found.append(encounter)
@@ -75,9 +75,9 @@ def judge(recording: Recording, crossings: Crossings, lane_half: float) -> list[
 
 def nearest_ever(recording: Recording) -> float:
     """Least distance (m) of the car's outline from anybody, over the whole drive."""
-    people = [name for name in recording.moments if name != CAR]
-    gaps = [distance(car, there) for name in people for car in recording.moments.get(CAR, [])
-            if (there := recording.at(name, car.time)) is not None
+    people = [moments for name, moments in recording.items() if name != CAR]
+    gaps = [distance(car, there) for moments in people for car in recording.get(CAR, [])
+            if (there := last(moments, car.time)) is not None
             and abs(there.x - car.x) + abs(there.y - car.y) < 2 * APPROACH]
     return min(gaps, default=math.inf)
 
@@ -106,16 +106,16 @@ def _walks(moments: list[Moment], zebra: Zebra, lane_half: float) -> list[tuple[
 def _encounter(recording: Recording, crossings: Crossings, number: int,
                walk: tuple[float, float]) -> Encounter | None:
     zebra, person = crossings.zebras[number - 1], f"pedestrian_{number}"
-    cars = [car for car in recording.moments.get(CAR, []) if walk[0] <= car.time <= walk[1]]
+    cars = [car for car in recording.get(CAR, []) if walk[0] <= car.time <= walk[1]]
     before = [(car, gap) for car in cars
               if (gap := _front_gap(car, zebra, crossings.length)) is not None]
     if not any(gap <= APPROACH for _, gap in before):
         return None
-    pairs = [(car, recording.at(person, car.time)) for car in cars]
+    pairs = [(car, last(recording[person], car.time)) for car in cars]
     nearest = min(distance(car, there) for car, there in pairs if there is not None)
     stood = [gap for car, gap in before if car.speed < STANDS and gap <= APPROACH]
     stands_at_end = before[-1][0].speed < GOES and before[-1][1] <= APPROACH
-    after = _moves_after(recording.moments[CAR], walk[1]) if stands_at_end else None
+    after = _moves_after(recording[CAR], walk[1]) if stands_at_end else None
     return Encounter(person, number, walk[0], walk[1], nearest, min(stood, default=None), after,
                      stands_at_end)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bisect
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from run_session.failure import RunError
@@ -23,17 +23,14 @@ class Moment:
     speed: float
 
 
-@dataclass
-class Recording:
-    """Moments in the order of time, by name: CAR, and people by their models' names."""
+# In the order of time, by name: CAR, and people by their models' names.
+Recording = dict[str, list[Moment]]
 
-    moments: dict[str, list[Moment]] = field(default_factory=dict)
 
-    def at(self, name: str, time: float) -> Moment | None:
-        """The last moment of a name up to this time."""
-        known = self.moments.get(name, [])
-        index = bisect.bisect_right(known, time, key=lambda moment: moment.time)
-        return known[index - 1] if index else None
+def last(moments: list[Moment], time: float) -> Moment | None:
+    """The last of them up to this time."""
+    index = bisect.bisect_right(moments, time, key=lambda moment: moment.time)
+    return moments[index - 1] if index else None
 
 
 def line_of(name: str, moment: Moment) -> str:
@@ -44,7 +41,7 @@ def line_of(name: str, moment: Moment) -> str:
 
 def read_recording(path: Path) -> Recording:
     """What `line_of` wrote; a last line that was cut off does not count."""
-    found = Recording()
+    found: Recording = {}
     try:
         lines = path.read_text(encoding="utf-8").split("\n")[:-1]
         for line in lines:
@@ -52,11 +49,11 @@ def read_recording(path: Path) -> Recording:
             moment = Moment(*map(float, numbers))
             if not all(map(math.isfinite, (moment.time, moment.x, moment.y))):
                 raise ValueError(line)
-            found.moments.setdefault(name, []).append(moment)
+            found.setdefault(name, []).append(moment)
     except OSError as error:
         raise RunError(f"{path}: {error.strerror}") from error
     except (TypeError, ValueError) as error:
         raise RunError(f"{path}: no recording of a drive: {error}") from error
-    for moments in found.moments.values():
+    for moments in found.values():
         moments.sort(key=lambda moment: moment.time)
     return found

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from evaluation.lane.encounters import KEPT_OFF, MOVES_ON, TOUCHED, Encounter
-from evaluation.laps import lap_drive
 from evaluation.laps.disturbance import Disturbance
-from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, seen, summary
-from evaluation.trial.table import cell, table, table_of
+from evaluation.laps.lap_trial import COUNTS, FIGURES, LapDrive, seen, summary
+from evaluation.trial.report import cell, grouped, table, table_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +30,17 @@ class LaneDrive(LapDrive):
         return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
 
     @property
+    def line(self) -> str:
+        """On one line, and another for each encounter that was not passed."""
+        failed = [each for each in self.encounters if not each.passed]
+        count = len(self.encounters)
+        met = f", {count - len(failed)} of {count} encounters passed" if self.people else ""
+        drove = (f"{self.method} seed {self.seed}: {self.outcome}, "
+                 f"{self.laps_closed} of {self.laps_wanted} laps, {self.mean_speed:.2f} m/s, "
+                 f"RMS {self.rms_lateral * 100:.1f} cm{met} (light x{self.disturbance.light:.2f})")
+        return "\n  not passed: ".join([drove, *map(str, failed)])
+
+    @property
     def kept_clear(self) -> bool:
         """Was nobody touched, over the whole drive? Without a distance nobody knows."""
         return self.nearest_person is not None and self.nearest_person >= TOUCHED
@@ -43,27 +53,15 @@ def from_report(report: dict, method: str, seed: int, disturbance: Disturbance,
                      laps_wanted=report["laps_wanted"], laps_closed=report["laps_closed"])
 
 
-def line_of(drive: LaneDrive) -> str:
-    """One drive on one line."""
-    light = f"light x{drive.disturbance.light:.2f}"
-    met = ""
-    if drive.people:
-        good = sum(each.passed for each in drive.encounters)
-        met = f", {good} of {len(drive.encounters)} encounters passed"
-    return (f"{drive.method} seed {drive.seed}: {drive.outcome}, "
-            f"{drive.laps_closed} of {drive.laps_wanted} laps, {drive.mean_speed:.2f} m/s, "
-            f"RMS {drive.rms_lateral * 100:.1f} cm{met} ({light})")
-
-
 def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None = None) -> str:
     """A row for each method; figures are of closed laps."""
     columns = {"method": lambda found: found["method"], "laps closed": COUNTS["closed"],
                "within limits": COUNTS["within limits"], **FIGURES}
     if ms_a_frame:
         columns["ms a frame"] = lambda found: cell(ms_a_frame.get(found["method"]))
-    methods = dict.fromkeys(drive.method for drive in drives)
-    return table_of(columns, [{"method": method, **summary(
-        [drive for drive in drives if drive.method == method])} for method in methods])
+    methods = grouped(drives, lambda drive: drive.method)
+    return table_of(columns, [{"method": method, **summary(found)}
+                              for method, found in methods.items()])
 
 
 def encounter_table(drives: Sequence[LaneDrive]) -> str:
@@ -75,26 +73,18 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
     stops = [each.stopped_before for each in met if each.stopped_before is not None]
     starts = [each.moved_after for each in met if each.moved_after is not None]
     stood = f"{min(stops):.2f} m before" if stops else "nowhere"
+
+    def kept(rule: str) -> str:
+        return f"{sum(getattr(each, rule) for each in met)} of {len(met)}"
+
+    touched = sum(each.touched for each in met)
     rows = [
         ["demanded", "kept", "worst"],
-        ["no contact", f"{sum(not each.touched for each in met)} of {len(met)}",
-         f"{nearest:.2f} m, over all drives"],
-        [f"{KEPT_OFF:g} m from person and zebra",
-         f"{sum(each.stood_off for each in met)} of {len(met)}",
+        ["no contact", f"{len(met) - touched} of {len(met)}", f"{nearest:.2f} m, over all drives"],
+        [f"{KEPT_OFF:g} m from person and zebra", kept("stood_off"),
          f"{min(each.nearest for each in met):.2f} m; stood {stood}"],
-        [f"moves on within {MOVES_ON:g} s", f"{sum(each.moved_on for each in met)} of {len(met)}",
+        [f"moves on within {MOVES_ON:g} s", kept("moved_on"),
          f"{max(starts):.2f} s" if starts else "-"],
-        ["all of it", f"{sum(each.passed for each in met)} of {len(met)}", ""],
+        ["all of it", kept("passed"), ""],
     ]
     return table(rows)
-
-
-def to_json(drives: Sequence[LaneDrive], **more: object) -> dict:
-    """All there is, with the limits it is held against."""
-    return lap_drive.to_json(LaneDrive, "drives", drives, **more)
-
-
-def from_json(values: dict) -> list[LaneDrive]:
-    """The drives that `to_json` was given; KeyError or TypeError."""
-    return [lap_drive.from_json(LaneDrive, each, encounters=tuple(
-        Encounter(**met) for met in each["encounters"])) for each in values["drives"]]

@@ -4,28 +4,20 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import lane_keeping.methods
 from lane_keeping.settings import SettingsError
-from lane_keeping.world.scenery import Crossings, load_crossings
+from lane_keeping.world.scenery import load_crossings
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.lane.encounters import judge, nearest_ever
 from evaluation.lane.recording import read_recording
-from evaluation.lane.results import (
-    LaneDrive,
-    encounter_table,
-    from_json,
-    from_report,
-    lap_table,
-    line_of,
-    to_json,
-)
+from evaluation.lane.results import LaneDrive, encounter_table, from_report, lap_table
 from evaluation.laps.disturbance import Bounds, draw
-from evaluation.laps.lap_trial import LapTrial, Outing
-from evaluation.trial.command_line import Parser
+from evaluation.laps.lap_trial import LapTrial, Outing, Venue
+from evaluation.session.course_file import drivers, load_course
+from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import REPORT, Case
 from run_session.failure import RunError
 from run_session.resources import find_package
@@ -56,19 +48,21 @@ def lane_case(method: str, seed: int, people: bool = False) -> LaneCase:
 class LaneDrives(LapTrial):
     """What the trials of one method and the comparison of all have in common."""
 
+    result = LaneDrive
+
     def outing(self, out: Path, case: LaneCase) -> Outing:
         """With people, poses.txt is written beside the report."""
         lit = out / "drives" / case.name.partition(" ")[2]
         folder = lit / case.method
-        models = find_package("lane_keeping") / "models"
-        world = models.parent / "worlds" / ("lane.world" if case.people else "lane_empty.world")
+        package, course = find_package("lane_keeping"), "lane" if case.people else "lane_empty"
+        venue = Venue(package / "worlds" / f"{course}.world", load_course(course).track_path(),
+                      package / "models")
         options, record = (), ()
         if case.people:
             options = ("--launch", "evaluation", "lane.launch")
             record = (f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}")
-        return Outing(f"{case.method}, seed {case.seed}", "lane" if case.people else "lane_empty",
-                      f"{case.method}.py", _track(), world, models, lit, folder,
-                      draw(case.seed, BOUNDS), LONGEST_LAP, case.laps, options, record)
+        return Outing(f"{case.method}, seed {case.seed}", course, f"{case.method}.py", venue, lit,
+                      folder, draw(case.seed, BOUNDS), LONGEST_LAP, case.laps, options, record)
 
     def score(self, record: dict) -> LaneDrive:
         case = self._case
@@ -77,23 +71,17 @@ class LaneDrives(LapTrial):
         if not case.people:
             return found
         recording = read_recording(self._outing.out / "poses.txt")
-        met = judge(recording, _crossings(), load_track_file(_track()).lane_width)
-        nearest = round(nearest_ever(recording), 3)
-        return LaneDrive(**{**vars(found), "nearest_person": nearest, "encounters": tuple(met)})
+        lane_half = load_track_file(self._outing.venue.track).lane_width
+        try:
+            met = judge(recording, load_crossings(), lane_half)
+        except SettingsError as error:
+            raise RunError(str(error)) from error
+        return replace(found, nearest_person=round(nearest_ever(recording), 3),
+                       encounters=tuple(met))
 
     def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
         """None is no mistake."""
         return super().earlier(options) if (options.out / REPORT).exists() else []
-
-    def line(self, result: LaneDrive) -> str:
-        failed = [f"\n  not passed: {each}" for each in result.encounters if not each.passed]
-        return line_of(result) + "".join(failed)
-
-    def values(self, results: Sequence[LaneDrive]) -> dict:
-        return to_json(results)
-
-    def from_values(self, values: dict) -> list[LaneDrive]:
-        return from_json(values)
 
 
 class LaneTrial(LaneDrives):
@@ -112,7 +100,7 @@ class LaneTrial(LaneDrives):
                             help="(sliding_windows)")
 
     def check(self, options: argparse.Namespace) -> None:
-        check_methods([options.method])
+        one_of("method", "METHOD", known_methods(), options.method)
         if not options.seeds and not options.crossings:
             raise RunError("--seeds 0 --crossings 0: nothing to drive")
         self._crossings = options.crossings
@@ -158,28 +146,7 @@ def count_met(results: Sequence[LaneDrive]) -> int:
     return sum(len(each.encounters) for each in results)
 
 
-def _track() -> Path:
-    return find_package("evaluation") / "tracks" / "lane.yaml"
-
-
-def _crossings() -> Crossings:
-    try:
-        return load_crossings()
-    except SettingsError as error:
-        raise RunError(str(error)) from error
-
-
 def known_methods() -> list[str]:
     """Names of all methods; sliding_windows comes first."""
-    folders = (Path(folder) for folder in lane_keeping.methods.__path__)
-    names = sorted(path.stem for folder in folders for path in folder.glob("*.py")
-                   if "def plan" in path.read_text(encoding="utf-8"))
+    names = [Path(file).stem for file in drivers(load_course("lane"))]
     return sorted(names, key=lambda name: name != "sliding_windows")
-
-
-def check_methods(methods: Sequence[str]) -> None:
-    """RunError for a name that no method has."""
-    known = known_methods()
-    for name in methods:
-        if name not in known:
-            raise RunError(f"no method {name!r} (METHOD=); there are: {', '.join(known)}")

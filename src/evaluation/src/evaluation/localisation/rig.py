@@ -11,20 +11,16 @@ import numpy as np
 import rospy
 from dynamic_reconfigure.msg import Config, IntParameter
 from dynamic_reconfigure.srv import Reconfigure
-from gazebo_msgs.srv import (
-    GetPhysicsProperties,
-    SetPhysicsProperties,
-    SetPhysicsPropertiesRequest,
-)
+from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from evaluation.house.progress import Progress
 from evaluation.house.watch import ROBOT, Watch, told_pose
 from run_session import simulator
 from run_session.cpu import processes
 from run_session.failure import RunError
 from run_session.launch import Launched
+from run_session.status_line import StatusLine
 from trial_worlds.ground import Ground
 
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
@@ -40,16 +36,16 @@ class Rig:
     """Made once a run; all of its calls may raise RunError."""
 
     def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
-                 map_file: str, progress: Progress):
+                 map_file: str, progress: StatusLine):
         self._launched, self._ground, self._progress = launched, ground, progress
         launched.start_roscore()
-        self.watch = Watch(launched.master_uri)
+        self.watch = Watch()
         launched.start("localisation", [
             "roslaunch", "evaluation", "localisation.launch", f"map_file:={map_file}",
             f"world_name:={options.house.world_path}", f"model:={options.house.model}",
             f"seed:={options.seed}", f"real_time_factor:={options.real_time_factor:g}"])
         self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
-        self._wait("the simulator", lambda: _answers(simulator.simulated_time))
+        self._wait("the simulator", simulator.models)
         self._start, self._by_wheels = options.house.start, None
         self.use_odometry(by_wheels=True)
         self.watch.start()
@@ -62,7 +58,6 @@ class Rig:
         """s, simulated."""
         return self.watch.records.now
 
-    @property
     def may_go_on(self) -> bool:
         """Whether the robot, going straight on, stays on the map: it ends where the house does."""
         truth = self.watch.records.truth
@@ -118,14 +113,13 @@ class Rig:
             if time.monotonic() - began > STILL_LIMIT:
                 raise RunError(f"no news of the robot for {STILL_LIMIT:.0f} s: the simulator hangs",
                                self._launched.tail())
-        self._progress.show(part, what, self.watch.records)
+        self.watch.records.show(self._progress, part, what)
 
     def set_pace(self, factor: float) -> None:
         """So many simulated seconds a second."""
         now = call_service("/gazebo/get_physics_properties", GetPhysicsProperties)
         call_service("/gazebo/set_physics_properties", SetPhysicsProperties,
-                   SetPhysicsPropertiesRequest(now.time_step, factor / now.time_step, now.gravity,
-                                               now.ode_config))
+                     now.time_step, factor / now.time_step, now.gravity, now.ode_config)
 
     def set_particles(self, count: int) -> None:
         """amcl has so many, never fewer."""
@@ -142,13 +136,4 @@ class Rig:
         return sum(process.cpu for process in processes() if process.name == "amcl")
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
-        return self._launched.wait_for(lambda: what, condition, self._progress.status, START_LIMIT,
-                                       LOOK_PERIOD)
-
-
-def _answers(question: Callable[[], object]) -> bool:
-    try:
-        question()
-    except RunError:
-        return False
-    return True
+        return self._launched.wait_for(what, condition, START_LIMIT, self._progress.status)

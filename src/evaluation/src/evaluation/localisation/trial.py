@@ -5,26 +5,17 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+
+import numpy as np
 
 from evaluation.house.house_file import load_house
-from evaluation.house.progress import Progress
-from evaluation.localisation.results import (
-    FINDING,
-    KIDNAPS,
-    LIMITS_IN_REPORT,
-    Load,
-    Result,
-    Tracking,
-    Trial,
-    passed,
-    score,
-    summary_table,
-)
+from evaluation.localisation import outcomes
+from evaluation.localisation.outcomes import FINDING, KIDNAPS, Load, Result, Tracking, Trial
 from evaluation.localisation.rig import Rig
 from evaluation.localisation.trials import find, kidnap, measure_load, track
 from evaluation.trial import protocol
 from evaluation.trial.command_line import Parser
+from evaluation.trial.report import grouped, table
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from run_session.failure import RunError
@@ -88,39 +79,41 @@ class LocalisationTrial(protocol.ReportedTrial):
         to_be_found = case.kind in (FINDING, KIDNAPS)
         self._rig.use_odometry(by_wheels=to_be_found or self._options.wheel_odometry)
 
-    def run(self) -> Any:
+    def run(self) -> Result:
         """What the case's kind sees."""
         return RUNS[self._case.kind](
             self._rig, self._ground, self._options.seed, self._case.amount)
 
-    def score(self, record: Any) -> Result:
-        return score(record)
-
     def passed(self, results: Sequence[Result]) -> bool:
-        return passed(results)
-
-    def line(self, result: Result) -> str:
-        return result.line
+        """Is all that was tried within the limits?"""
+        shares = [sum(each.right for each in found) >= outcomes.LEAST_SHARES[kind] * len(found)
+                  for kind, found in _sets(results).items()]
+        return all(shares) and all(each.passed for each in _others(results))
 
     def table(self, results: Sequence[Result]) -> str:
-        return summary_table(results)
+        """A row for each thing that was tried, with its limit."""
+        rows = [("", "found", "wanted", "")]
+        for kind, trials in _sets(results).items():
+            took = [trial.took for trial in trials if trial.right]
+            median = f"in {np.median(took):.1f} s (median)" if took else ""
+            rows.append((f"{kind}, within {outcomes.LIMITS[kind]:.0f} s",
+                         f"{len(took)} of {len(trials)}",
+                         f"{outcomes.LEAST_SHARES[kind]:.0%}", median))
+        return table([*rows, *(each.row for each in _others(results))], left=range(4))
 
     def values(self, results: Sequence[Result]) -> dict:
-        others = {each.name: asdict(each) for each in results if not isinstance(each, Trial)}
+        others = {each.name: asdict(each) for each in _others(results)}
         return {
-            "passed": passed(results), "limits": LIMITS_IN_REPORT,
+            "passed": self.passed(results), "limits": outcomes.LIMITS_IN_REPORT,
             "trials": [{**asdict(each), "right": each.right} for each in results
                        if isinstance(each, Trial)],
             "tracking": others.get("tracking"), "load": others.get("load"),
         }  # fmt: skip
 
     def from_values(self, values: dict) -> list[Result]:
-        found: list[Result] = [
-            Trial(**{name: each[name] for name in Trial.__dataclass_fields__})
-            for each in values["trials"]]
-        found += [kind(**values[name]) for name, kind in (("tracking", Tracking), ("load", Load))
-                  if values[name]]
-        return found
+        found = [protocol.from_json(Trial, each) for each in values["trials"]]
+        return found + [kind(**values[kind.name]) for kind in (Tracking, Load)
+                        if values[kind.name]]
 
     def _bring_up(self, session: Session) -> Rig:
         try:
@@ -128,7 +121,15 @@ class LocalisationTrial(protocol.ReportedTrial):
         except (OSError, MapFileError) as error:
             raise RunError(
                 f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
-        progress = session.progress = Progress()
-        rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file), progress)
+        rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file),
+                  session.progress)
         session.at_end(rig.watch.stop)
         return rig
+
+
+def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
+    return grouped((each for each in results if isinstance(each, Trial)), lambda each: each.set)
+
+
+def _others(results: Sequence[Result]) -> list[Tracking | Load]:
+    return [each for each in results if not isinstance(each, Trial)]

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Callable, Iterator
 
 import numpy as np
+import rospy
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import LaserScan
 
-from evaluation.house.records import Records
-from evaluation.localisation.results import (
-    FINDING,
-    HOLD,
-    KIDNAPS,
-    LIMITS,
-    Load,
-    Search,
-    Tracked,
-    right_since,
-)
+from evaluation.localisation import outcomes
+from evaluation.localisation.outcomes import FINDING, HOLD, KIDNAPS, LIMITS, Load, Tracking, Trial
 from evaluation.localisation.rig import Rig
-from evaluation.localisation.wander import Wander
-from nav_algorithms.poses import wrap_angle
 from run_session.failure import RunError
 from trial_worlds.ground import Ground
 
@@ -29,16 +23,14 @@ TOLD_OFF = (0.3, 0.3, 0.26)  # m along x and y, and rad, at most, of a pose that
 PERIOD = 1.0  # s, simulated, between two looks at whether it is found
 MOST_DRAWS = 1000
 PARTICLES = 2000
+SPEED, TURN_RATE = 0.22, 0.8  # m/s, rad/s
+WEAVE = 0.15  # rad/s, of the random turns on the way
+AHEAD, BESIDE = np.radians((25.0, 75.0))  # to either side
+NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser: turn
+CLEAR_AHEAD = 0.8  # m, from which on it goes on
 
 
-def errors_since(records: Records, since: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (N,), s, and errors (N, 2), m and rad; the map lies as the world does."""
-    times, believed, true = records.moments(since)
-    off = believed - true
-    return times, np.stack((np.hypot(off[:, 0], off[:, 1]), np.abs(wrap_angle(off[:, 2]))), axis=1)
-
-
-def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
+def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     """A robot somewhere in the house that knows nothing of where."""
     random = np.random.default_rng([seed, number, 0])
     place = _draw_place(ground, random)
@@ -47,36 +39,30 @@ def find(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
     return _search(rig, FINDING, number, place, random)
 
 
-def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Search:
+def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
     """A robot that knows where it is, and is carried elsewhere while it drives."""
     random = np.random.default_rng([seed, number, 1])
     _begin_known(rig, ground, random)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
-    finally:
-        wander.stop()
     place = _draw_place(ground, random, rig.watch.records.true_pose)
     rig.put(place)
     return _search(rig, KIDNAPS, number, place, random)
 
 
-def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracked:
+def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
     """A long drive; the pose it is told is off a little, and the first seconds do not count."""
     random = np.random.default_rng([seed, 0, 2])
     _begin_known(rig, ground, random)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, "tracking", "finding itself")
         since, before = rig.now, rig.watch.records.length
         _watch_for(rig, seconds, "tracking", "driving")
-    finally:
-        wander.stop()
     records = rig.watch.records
-    _, errors = errors_since(records, since)
+    _, errors = records.errors(since)
     if not len(errors):
         raise RunError("amcl said no pose while it should have tracked the robot")
-    return Tracked(seconds, records.length - before, errors)
+    return outcomes.tracking(seconds, records.length - before, errors)
 
 
 def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
@@ -84,15 +70,12 @@ def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
     rig.set_pace(1.0)
     _begin_known(rig, ground, np.random.default_rng([seed, 0, 3]))
     rig.set_particles(PARTICLES)
-    wander = Wander(seed, lambda: rig.may_go_on)
-    try:
+    with wandering(seed, rig.may_go_on):
         _watch_for(rig, SETTLE, "load", "driving off")
         began, used, wall = rig.now, rig.cpu(), time.monotonic()
         _watch_for(rig, seconds, "load", "driving")
         simulated, used = rig.now - began, rig.cpu() - used
         wall = time.monotonic() - wall
-    finally:
-        wander.stop()
     return Load(PARTICLES, simulated, wall, 100.0 * used / simulated)
 
 
@@ -103,27 +86,24 @@ def _begin_known(rig: Rig, ground: Ground, random: np.random.Generator) -> None:
 
 
 def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
-            random: np.random.Generator) -> Search:
+            random: np.random.Generator) -> Trial:
     """Drives until it has been right for long enough, or can no more be in time."""
     began = looked = rig.now
-    wander = Wander(int(random.integers(1 << 31)), lambda: rig.may_go_on)
     since, what, part = None, "searching", f"{kind} {number}"
-    try:
+    with wandering(int(random.integers(1 << 31)), rig.may_go_on):
         while rig.now - began < LIMITS[kind] + HOLD:
             rig.look(part, what)
             if rig.now - looked < PERIOD:
                 continue
             looked = rig.now
-            times, errors = errors_since(rig.watch.records, began)
-            since = right_since(times, errors)
+            times, errors = rig.watch.records.errors(began)
+            since = outcomes.right_since(times, errors)
             what = "searching" if since is None else "right"
             if since is not None and times[-1] - since >= HOLD:
                 break
-    finally:
-        wander.stop()
-    times, errors = errors_since(rig.watch.records, began)
-    return Search(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
-                  len(rig.watch.records.contacts))
+    times, errors = rig.watch.records.errors(began)
+    return outcomes.searched(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
+                    len(rig.watch.records.contacts))
 
 
 def _watch_for(rig: Rig, seconds: float, part: str, what: str) -> None:
@@ -140,3 +120,49 @@ def _draw_place(ground: Ground, random: np.random.Generator,
         if away_from is None or np.linalg.norm(place[:2] - away_from[:2]) >= CARRIED:
             return place
     raise RunError(f"no place {CARRIED:g} m away: change the house file")
+
+
+class Steering:
+    """What to do about a scan. It needs no map and no pose, which a lost robot has not."""
+
+    def __init__(self, seed: int):
+        self._random = np.random.default_rng([seed, 2])
+        self._turning = 0.0  # rad/s; 0: straight on
+
+    def choose(self, ranges: np.ndarray, bearings: np.ndarray, may_go_on: bool = True
+               ) -> tuple[float, float]:
+        """m/s and rad/s, by ranges (N,), m, at bearings (N,), rad, -pi to pi, left is positive."""
+        ahead = ranges[np.abs(bearings) < AHEAD].min()
+        beside = ranges[np.abs(bearings) < BESIDE].min()
+        wanted = CLEAR_AHEAD if self._turning else NEAR_AHEAD
+        if not may_go_on or beside < NEAR_BESIDE or ahead < wanted:
+            if not self._turning:
+                left = ranges[(bearings > 0) & (bearings < 2)].mean()
+                right = ranges[(bearings < 0) & (bearings > -2)].mean()
+                self._turning = TURN_RATE if left > right else -TURN_RATE
+            return 0.0, self._turning
+        self._turning = 0.0
+        return SPEED, float(self._random.normal(0.0, WEAVE))
+
+
+@contextlib.contextmanager
+def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
+    """A command for each scan meanwhile; `may_go_on` says whether straight ahead it may go."""
+    steering, commands = Steering(seed), rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+
+    def take(message: LaserScan) -> None:
+        ranges = np.array(message.ranges)
+        ranges[~(ranges >= message.range_min)] = message.range_max
+        bearings = message.angle_min + message.angle_increment * np.arange(len(ranges))
+        command = Twist()
+        command.linear.x, command.angular.z = steering.choose(
+            np.minimum(ranges, message.range_max), (bearings + np.pi) % (2 * np.pi) - np.pi,
+            may_go_on())
+        commands.publish(command)
+
+    scans = rospy.Subscriber("/scan", LaserScan, take, queue_size=1)
+    try:
+        yield
+    finally:
+        scans.unregister()
+        commands.publish(Twist())

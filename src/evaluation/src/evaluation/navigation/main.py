@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 
 from evaluation.house.house_file import load_house
-from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
-from evaluation.navigation.film import Film
 from evaluation.navigation.new_map import read_map_frame
 from evaluation.navigation.parts import MappingPart, NavigationPart
-from evaluation.navigation.picture import map_picture
+from evaluation.navigation.pictures import Film, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import Result
 from evaluation.trial.command_line import LARGEST_SEED, Parser
@@ -39,6 +36,7 @@ class NavigationRun(LiveDrive):
     vehicle = "robot"
     logs = "*simulator.log"
     writes = ("map.png", "run.mp4", "report.json", "map.pgm", "map.yaml", "map.json")
+    stay = writes[3:]
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
@@ -60,10 +58,13 @@ class NavigationRun(LiveDrive):
         return options
 
     def __init__(self, options: argparse.Namespace):
-        super().__init__(options, Progress())
+        super().__init__(options)
         self.result = Result()
         self._ground = options.house.ground()
-        self._check_way_points()
+        for point in options.house.way_points:
+            if not self._ground.has_room(np.array(point)):
+                raise RunError(f"way_points: the robot cannot get to {list(point)} without touching"
+                               " a wall: change the house file")
         self._goals = self._ground.draw_goals(options.goals, options.seed)
         if options.map:
             try:
@@ -75,16 +76,15 @@ class NavigationRun(LiveDrive):
 
     def bring_up(self, launched: Launched) -> None:
         """Who looks on; each part brings up its own nodes."""
-        self._watch = Watch(launched.master_uri)
+        self._watch = Watch()
         self._watch.start()
         if self.options.video:
             self.film = Film(self.out / "run.mp4", self._ground, self._watch, self.result)
             self.film.start()
-        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
 
     def watch(self, launched: Launched) -> Outcome:
         """Both parts, or the second on a map that is there."""
-        everybody = self.options, self._ground, self._watch, launched, self.progress
+        everybody = self, self._ground, self._watch, launched
         map_file = self.options.map
         if map_file is None:
             self._tell("mapping: slam_gmapping, move_base to way-points")
@@ -109,9 +109,6 @@ class NavigationRun(LiveDrive):
     def faults(self, outcome: Outcome) -> list[str]:
         return self.result.faults
 
-    def owned_files(self) -> Sequence[str]:
-        return self.writes[:3]  # a map is replaced by the next that is whole
-
     def figures(self, outcome: Outcome, log: list[str]) -> dict:
         return summarize(self.options, outcome, self.result)
 
@@ -124,12 +121,6 @@ class NavigationRun(LiveDrive):
     def _tell(self, title: str) -> None:
         if self.film is not None:
             self.film.title = title
-
-    def _check_way_points(self) -> None:
-        for point in self.options.house.way_points:
-            if not self._ground.has_room(np.array(point)):
-                raise RunError(f"way_points: the robot cannot get to {list(point)} without touching"
-                               " a wall: change the house file")
 
 
 def _titles(options: argparse.Namespace, result: Result) -> tuple[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -10,23 +9,14 @@ from pathlib import Path
 import numpy as np
 import rospy
 
-from evaluation.house.progress import Progress
 from evaluation.house.watch import Watch
+from evaluation.navigation import score
 from evaluation.navigation.driver import Driver
 from evaluation.navigation.new_map import keep_map, place_for_map
-from evaluation.navigation.score import (
-    Navigation,
-    Pace,
-    Result,
-    localisation,
-    pose_errors,
-    score_mapping,
-    seen_of,
-)
+from evaluation.trial.live import LiveDrive
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose, invert, relative, wrap_angle
 from run_session.cpu import CpuMeter
-from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.processes import Child
 from trial_worlds.ground import Ground
@@ -48,13 +38,11 @@ class Part:
 
     name = ""
 
-    def __init__(self, options: argparse.Namespace, ground: Ground, watch: Watch,
-                 launched: Launched, progress: Progress):
-        self._options, self._ground, self._watch = options, ground, watch
-        self._launched, self._progress = launched, progress
+    def __init__(self, run: LiveDrive, ground: Ground, watch: Watch, launched: Launched):
+        self._run, self._ground, self._watch, self._launched = run, ground, watch, launched
+        self._options, self._progress = run.options, run.progress
         self._children: list[Child] = []
-        self._moved_at = self._began = time.monotonic()
-        self._moved_to = self._begin_time = 0.0  # s, simulated
+        self._began, self._begin_time = time.monotonic(), 0.0  # s: wall, simulated
         self._driver: Driver | None = None
         self._cpu: CpuMeter | None = None
 
@@ -63,21 +51,21 @@ class Part:
         self._watch.begin()
         house, options = self._options.house, self._options
         x, y, yaw = house.start
-        self._run("simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
-                  f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
-                  f"real_time_factor:={options.real_time_factor:g}")
+        self._start_one(
+            "simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
+            f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
+            f"real_time_factor:={options.real_time_factor:g}")
         self._wait_for("the robot in the simulator", lambda: self._watch.records.truth)
         self._watch.feelers = self._ground.feelers(rospy.get_param("/robot_description"))
         for number, command in enumerate(commands, start=1):
-            self._run(f"navigation-{number}", *command, f"model:={house.model}")
+            self._start_one(f"navigation-{number}", *command, f"model:={house.model}")
 
-    def _run(self, name: str, *command: str) -> None:
+    def _start_one(self, name: str, *command: str) -> None:
         self._children.append(self._launched.start(f"{self.name}-{name}", list(command)))
 
     def _wait_for(self, what: str, condition: Callable[[], object]) -> None:
-        self._launched.wait_for(
-            lambda: what, condition, lambda text: self._progress.status(f"{self.name}: {text}"),
-            self._options.startup_timeout, LOOK_PERIOD)
+        self._launched.wait_for(what, condition, self._options.startup_timeout,
+                                lambda text: self._progress.status(f"{self.name}: {text}"))
 
     def _connect(self, map_in_world: np.ndarray) -> Driver:
         self._driver = Driver(self._watch, self._ground, self._look, map_in_world,
@@ -90,26 +78,20 @@ class Part:
         self._cpu = CpuMeter()
         self._began, self._begin_time = time.monotonic(), self._watch.records.now
 
-    def _pace(self) -> Pace:
+    def _pace(self) -> score.Pace:
         simulated = self._watch.records.now - self._begin_time
         wall = time.monotonic() - self._began
         used = self._cpu.look()  # percent of a core in wall time
         share = {name: round(percent * wall / max(simulated, 1e-9), 1)
                  for name, percent in sorted(used.items(), key=lambda item: -item[1])}
-        return Pace(simulated, wall, share)
+        return score.Pace(simulated, wall, share)
 
     def _look(self, what: str) -> None:
         """Waits a little, checks that all goes on, shows how things stand."""
         time.sleep(LOOK_PERIOD)
-        records, now = self._watch.records, time.monotonic()
-        self._launched.check(records.now)
-        if records.now > self._moved_to or not self._moved_to:
-            self._moved_at, self._moved_to = now, records.now
-        still = now - self._moved_at
-        if still > self._options.stuck_timeout:
-            raise RunError(f"simulated time has stood still at {records.now:.1f} s for "
-                           f"{still:.0f} s: the simulator is paused or hangs")
-        self._progress.show(self.name, what, records)
+        records = self._watch.records
+        self._run.check_time(self._launched, records.now)
+        records.show(self._progress, self.name, what)
 
     def end(self) -> None:
         """Ends this part's programs, those that were started last first."""
@@ -124,7 +106,7 @@ class MappingPart(Part):
 
     name = "mapping"
 
-    def run(self, result: Result) -> None:
+    def run(self, result: score.Result) -> None:
         """Drives the round and saves the map; what was found stands in `result`, always."""
         self._start(SLAM, MOVE_BASE)
         watch, house = self._watch, self._options.house
@@ -145,8 +127,9 @@ class MappingPart(Part):
         finally:
             result.paths[self.name] = np.array(watch.records.truth).reshape(-1, 4)[:, 1:3]
         result.map = read_map(made)[0]
-        result.mapping = score_mapping(self._ground, result.map, watch.records, watch.scan.angles,
-                                       house.laser_reach, ways, self._pace())
+        result.mapping = score.score_mapping(
+            self._ground, result.map, watch.records, watch.beams, house.laser_reach, ways,
+            self._pace())
         result.map_in_world = result.mapping.trajectory.alignment
         keep_map(made, result.map_in_world)
 
@@ -166,7 +149,7 @@ class NavigationPart(Part):
 
     name = "goals"
 
-    def run(self, result: Result, map_file: str, goals: np.ndarray) -> None:
+    def run(self, result: score.Result, map_file: str, goals: np.ndarray) -> None:
         """Visits the goals (N, 3), in the world's frame; `result` keeps what was found, always."""
         self._start((*NAVIGATION, f"map_file:={map_file}"))
         watch = self._watch
@@ -184,10 +167,10 @@ class NavigationPart(Part):
         finally:
             records = watch.records
             result.paths[self.name] = np.array(records.truth).reshape(-1, 4)[:, 1:3]
-            errors = pose_errors(records, result.map_in_world, since)
-            result.navigation = Navigation(ways, records.contacts, seen_of(records),
-                                           records.length, localisation(told, errors),
-                                           self._pace())
+            _, errors = records.errors(since, result.map_in_world)
+            result.navigation = score.Navigation(
+                **score.seen_of(records), ways=ways, pace=self._pace(),
+                localisation=score.localisation(told, errors))
 
     def _tell_pose(self, driver: Driver) -> tuple[float, float]:
         """Tells a pose that is off as the seed says; returns how far, m and rad."""

@@ -8,20 +8,10 @@ from dataclasses import asdict
 
 import numpy as np
 
-from evaluation.house.records import Contact
+from evaluation.navigation import score
 from evaluation.navigation.driver import Way
-from evaluation.navigation.score import (
-    LEAST_AGREEMENT,
-    MOST_ATE,
-    MOST_OFF,
-    MOST_OFF_DEG,
-    Mapping,
-    Navigation,
-    Pace,
-    Result,
-    Seen,
-)
-from evaluation.trial.table import table
+from evaluation.navigation.score import Leg, Mapping, Navigation, Result
+from evaluation.trial.report import table
 
 COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
 
@@ -37,8 +27,8 @@ def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Res
         "wanted_real_time_factor": options.real_time_factor,
         "goals_wanted": options.goals,
         "goals_reached": sum(way.reached for way in navigation.ways) if navigation else 0,
-        "limits": {"ate_m": MOST_ATE, "agreement": LEAST_AGREEMENT, "localisation_m": MOST_OFF,
-                   "localisation_deg": MOST_OFF_DEG, "contacts": 0},
+        "limits": {"ate_m": score.MOST_ATE, "agreement": score.LEAST_AGREEMENT, "contacts": 0,
+                   "localisation_m": score.MOST_OFF, "localisation_deg": score.MOST_OFF_DEG},
         "faults": result.faults,
         "map_in_world": [round(value, 4) for value in result.map_in_world.tolist()],
         "mapping": _mapping(mapping, speed) if mapping else None,
@@ -54,8 +44,7 @@ def lines(options: argparse.Namespace, result: Result) -> list[str]:
         found += [
             f"map: {mapping.agreement}",
             f"trajectory while mapping: ATE {mapping.trajectory.ate_rmse * 100:.1f} cm,"
-            f" {mapping.driven:.1f} m in {mapping.pace.simulated:.0f} s,"
-            f" {_touched(mapping)}",
+            f" {_drove(mapping)}",
         ]
     if result.navigation:
         place = result.navigation.localisation
@@ -63,8 +52,7 @@ def lines(options: argparse.Namespace, result: Result) -> list[str]:
             *_table(result.navigation.ways, options.house.max_speed),
             f"localisation: {_both(place.mean)} off in the mean, {_both(place.largest)} at most"
             + (f"; was told {_both(place.told)} off" if place.told else ""),
-            f"driven {result.navigation.driven:.1f} m in {result.navigation.pace.simulated:.0f} s,"
-            f" {_touched(result.navigation)}",
+            f"driven {_drove(result.navigation)}",
         ]
     return found
 
@@ -82,43 +70,39 @@ def _table(ways: list[Way], speed: float) -> list[str]:
 
 
 def _mapping(mapping: Mapping, speed: float) -> dict:
-    trajectory, agreement = mapping.trajectory, mapping.agreement
-    return {
-        **_pace(mapping.pace),
-        "distance_m": round(mapping.driven, 3),
+    trajectory = mapping.trajectory
+    return _leg(mapping, speed, "way_points", {
         "ate_rmse_m": round(trajectory.ate_rmse, 4),
         "yaw_rmse_deg": round(math.degrees(trajectory.yaw_rmse), 3),
         "largest_m": round(trajectory.largest, 4),
-        **asdict(agreement),
+        **asdict(mapping.agreement),
         "known_m2": round(mapping.known, 1),
-        **_seen(mapping.seen),
-        "contacts": [_contact(each) for each in mapping.contacts],
-        "way_points": [_way(way, speed) for way in mapping.ways],
-    }
+    })
 
 
 def _navigation(navigation: Navigation, speed: float) -> dict:
     place = navigation.localisation
-    return {
-        **_pace(navigation.pace),
-        "distance_m": round(navigation.driven, 3),
+    return _leg(navigation, speed, "goals", {
         "told_off": _error(place.told) if place.told else None,
         "found_off": _error(place.found),
         "mean_off": _error(place.mean),
         "largest_off": _error(place.largest),
-        **_seen(navigation.seen),
-        "contacts": [_contact(each) for each in navigation.contacts],
-        "goals": [_way(way, speed) for way in navigation.ways],
+    })
+
+
+def _leg(leg: Leg, speed: float, ways: str, own: dict) -> dict:
+    pace = leg.pace
+    return {
+        "simulated_s": round(pace.simulated, 1), "wall_s": round(pace.wall, 1),
+        "real_time_factor": round(pace.factor, 3), "cpu_percent_of_a_core": pace.cpu,
+        "distance_m": round(leg.driven, 3),
+        **own,
+        "nearest_m": _finite(leg.nearest, 3), "longest_unseen_s": round(leg.unseen, 2),
+        "contacts": [{"own": each.own, "begin_s": round(each.begin, 2),
+                      "end_s": round(each.end, 2), "place_m": each.place}
+                     for each in leg.contacts],
+        ways: [_way(way, speed) for way in leg.ways],
     }
-
-
-def _pace(pace: Pace) -> dict:
-    return {"simulated_s": round(pace.simulated, 1), "wall_s": round(pace.wall, 1),
-            "real_time_factor": round(pace.factor, 3), "cpu_percent_of_a_core": pace.cpu}
-
-
-def _seen(seen: Seen) -> dict:
-    return {"nearest_m": _finite(seen.nearest, 3), "longest_unseen_s": round(seen.unseen, 2)}
 
 
 def _way(way: Way, speed: float) -> dict:
@@ -127,15 +111,10 @@ def _way(way: Way, speed: float) -> dict:
         "x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
         "reached": way.reached, "text": way.text, "time_s": round(way.time, 1),
         "straight_s": round(way.straight / speed, 1),
-        "shortest_s": round(way.shortest / speed, 1) if math.isfinite(way.shortest) else None,
+        "shortest_s": _finite(way.shortest / speed, 1),
         "driven_m": round(way.driven, 3), "off_m": round(way.off, 3),
         "off_deg": round(math.degrees(way.off_yaw), 1),
     }  # fmt: skip
-
-
-def _contact(contact: Contact) -> dict:
-    return {"own": contact.own, "begin_s": round(contact.begin, 2),
-            "end_s": round(contact.end, 2), "place_m": contact.place}
 
 
 def _error(error: tuple[float, float]) -> dict:
@@ -146,8 +125,9 @@ def _finite(value: float, digits: int) -> float | None:
     return round(value, digits) if np.isfinite(value) else None
 
 
-def _touched(part: Mapping | Navigation) -> str:
-    return f"touched {len(part.contacts)}, smallest gap {part.seen.nearest * 100:.1f} cm"
+def _drove(leg: Leg) -> str:
+    return (f"{leg.driven:.1f} m in {leg.pace.simulated:.0f} s, touched {len(leg.contacts)},"
+            f" smallest gap {leg.nearest * 100:.1f} cm")
 
 
 def _both(error: tuple[float, float]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -10,7 +11,6 @@ from evaluation.house.records import Contact, Records
 from evaluation.navigation.driver import Way
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
 from nav_algorithms.map_agreement import MapAgreement, map_agreement
-from nav_algorithms.poses import compose, wrap_angle
 from nav_algorithms.trajectory_error import TrajectoryError, trajectory_error
 from run_session.failure import RunError
 from trial_worlds.ground import Ground
@@ -38,26 +38,53 @@ class Pace:
         return self.simulated / self.wall if self.wall > 0 else 0.0
 
 
-@dataclass(frozen=True)
-class Seen:
-    """How near the robot was to touching something, and how well that was looked at."""
+@dataclass(frozen=True, kw_only=True)
+class Leg:
+    """What was seen of one part of the run."""
 
-    nearest: float  # m, smallest gap to anything
-    unseen: float  # s, simulated, between two looks, at most
-
-
-@dataclass(frozen=True)
-class Mapping:
-    """The mapping round."""
+    name: ClassVar[str]  # in words
+    way: ClassVar[str]  # what one of its ways leads to
 
     ways: list[Way]
     contacts: list[Contact]
-    seen: Seen
+    nearest: float  # m, smallest gap to anything
+    unseen: float  # s, simulated, between two looks whether it touches something, at most
     driven: float  # m
+    pace: Pace
+
+    def common_faults(self) -> list[str]:
+        """What is beyond the limits of both parts, in words."""
+        found = []
+        for number, way in enumerate(self.ways, start=1):
+            name = f"{self.way} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
+            off_deg = np.degrees(way.off_yaw)
+            if not way.reached:
+                found.append(f"{name} not reached: {way.text}")
+            elif way.off > MOST_MISS or off_deg > MOST_MISS_DEG:
+                found.append(f"{name} called reached, but {_cm(way.off)} and {off_deg:.0f}° off")
+        found += [f"{self.name}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
+                  for each in self.contacts]
+        if self.unseen > MOST_UNSEEN:
+            found.append(f"{self.name}: nobody looked for {self.unseen:.1f} s whether it touches"
+                         f" something, more than {MOST_UNSEEN:g} s: this machine is too busy")
+        return found
+
+
+def seen_of(records: Records) -> dict:
+    """The fields of a part that its records hold."""
+    return dict(contacts=records.contacts, nearest=records.nearest[0],
+                unseen=float(records.longest_unseen), driven=records.length)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mapping(Leg):
+    """The mapping round."""
+
+    name, way = "mapping", "way-point"
+
     trajectory: TrajectoryError
     agreement: MapAgreement
     known: float  # m^2, free
-    pace: Pace
 
     @property
     def faults(self) -> list[str]:
@@ -70,8 +97,7 @@ class Mapping:
                             ("seen walls on the map", self.agreement.walls_found)):
             if share < LEAST_AGREEMENT:
                 found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
-        return (found + _way_faults("way-point", self.ways)
-                + _contact_faults("mapping", self.contacts, self.seen))
+        return found + self.common_faults()
 
 
 @dataclass(frozen=True)
@@ -84,27 +110,22 @@ class Localisation:
     largest: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Navigation:
+@dataclass(frozen=True, kw_only=True)
+class Navigation(Leg):
     """The goals."""
 
-    ways: list[Way]
-    contacts: list[Contact]
-    seen: Seen
-    driven: float  # m
+    name, way = "on the way to the goals", "goal"
+
     localisation: Localisation
-    pace: Pace
 
     @property
     def faults(self) -> list[str]:
         """What is beyond the limits, in words."""
-        found = []
         off, off_deg = self.localisation.mean[0], np.degrees(self.localisation.mean[1])
-        if off > MOST_OFF or off_deg > MOST_OFF_DEG:
-            found.append(f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
-                         f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°")
-        return (found + _way_faults("goal", self.ways)
-                + _contact_faults("on the way to the goals", self.contacts, self.seen))
+        if off <= MOST_OFF and off_deg <= MOST_OFF_DEG:
+            return self.common_faults()
+        return [f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
+                f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°", *self.common_faults()]
 
 
 @dataclass
@@ -129,7 +150,7 @@ def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles
 
     Raises RunError where true and believed poses of the same moments were never seen.
     """
-    believed, true = records.pairs()
+    _, believed, true = records.moments()
     if not len(true):
         raise RunError("mapping: the true pose was seen too seldom to judge the map by: this "
                        "machine is too busy; PACE=0.5 may help")
@@ -137,21 +158,8 @@ def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles
     seen = visible_walls(ground.walls, true[::POSE_STEP], angles, reach)
     agreement = map_agreement(built, ground.walls, seen, trajectory.alignment)
     free = (built.cells >= FREE) & (built.cells < 50) & (built.cells != UNKNOWN)
-    return Mapping(ways, records.contacts, seen_of(records), records.length, trajectory,
-                   agreement, float(free.sum() * built.resolution ** 2), pace)
-
-
-def seen_of(records: Records) -> Seen:
-    """Of one part of the run."""
-    return Seen(records.nearest[0], float(records.longest_unseen))
-
-
-def pose_errors(records: Records, map_in_world: np.ndarray, since: float) -> np.ndarray:
-    """(N, 2): m and rad between believed and true pose, from a moment (s) on."""
-    believed, true = records.pairs(since)
-    there = compose(map_in_world, believed)
-    return np.stack((np.linalg.norm(there[:, :2] - true[:, :2], axis=1),
-                     np.abs(wrap_angle(there[:, 2] - true[:, 2]))), axis=1)
+    return Mapping(**seen_of(records), ways=ways, pace=pace, trajectory=trajectory,
+                   agreement=agreement, known=float(free.sum() * built.resolution ** 2))
 
 
 def localisation(told: tuple[float, float] | None, errors: np.ndarray) -> Localisation:
@@ -160,27 +168,6 @@ def localisation(told: tuple[float, float] | None, errors: np.ndarray) -> Locali
         errors = np.full((1, 2), np.inf)
     return Localisation(told, tuple(errors[0].tolist()), tuple(errors.mean(axis=0).tolist()),
                         tuple(errors.max(axis=0).tolist()))
-
-
-def _way_faults(what: str, ways: list[Way]) -> list[str]:
-    found = []
-    for number, way in enumerate(ways, start=1):
-        name = f"{what} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
-        off_deg = np.degrees(way.off_yaw)
-        if not way.reached:
-            found.append(f"{name} not reached: {way.text}")
-        elif way.off > MOST_MISS or off_deg > MOST_MISS_DEG:
-            found.append(f"{name} called reached, but {_cm(way.off)} and {off_deg:.0f}° off")
-    return found
-
-
-def _contact_faults(when: str, contacts: list[Contact], seen: Seen) -> list[str]:
-    found = [f"{when}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
-             for each in contacts]
-    if seen.unseen > MOST_UNSEEN:
-        found.append(f"{when}: nobody looked for {seen.unseen:.1f} s whether it touches something, "
-                     f"more than {MOST_UNSEEN:g} s: this machine is too busy")
-    return found
 
 
 def _cm(length: float) -> str:

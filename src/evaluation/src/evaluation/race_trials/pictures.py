@@ -10,6 +10,7 @@ import cv2
 
 from evaluation.picture import chart, write_tiles
 from evaluation.race_trials.results import Lap
+from evaluation.trial.report import grouped
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"
@@ -24,11 +25,11 @@ ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
 
 def write_chart(laps: Sequence[Lap], path: Path) -> None:
     """A column for each set of laps; a lap that was not closed is a cross."""
-    sets = list(dict.fromkeys(lap.set for lap in laps))
+    sets = grouped(laps, lambda lap: lap.set)
     with chart(path, len(ROWS), len(sets), sharey="row") as grid:
-        for column, name in enumerate(sets):
+        for column, (name, found) in enumerate(sets.items()):
             for axes, (label, value, limit, side) in zip(grid[:, column], ROWS, strict=True):
-                _draw(axes, [lap for lap in laps if lap.set == name], value)
+                _draw(axes, found, value)
                 axes.axhline(limit, color=LIMIT_COLOUR, linewidth=1, label=f"{side} {limit:g}")
                 axes.set_ylabel(label, fontsize=9)
             grid[0, column].set_title(name, fontsize=10)
@@ -40,12 +41,12 @@ def write_chart(laps: Sequence[Lap], path: Path) -> None:
 
 def _draw(axes: object, laps: Sequence[Lap], value: Callable[[Lap], float]) -> None:
     seeds = sorted({lap.seed for lap in laps})
-    for number, follower in enumerate(dict.fromkeys(lap.follower for lap in laps)):
-        for closed, marker, how in ((True, "o", ""), (False, "x", ", not closed")):
-            found = [lap for lap in laps if lap.follower == follower and lap.closed == closed]
-            if found:
-                axes.plot([seeds.index(lap.seed) for lap in found], [value(lap) for lap in found],
-                          marker, color=COLOURS[number % len(COLOURS)], label=f"{follower}{how}")
+    followers = list(dict.fromkeys(lap.follower for lap in laps))
+    for (follower, closed), found in grouped(
+            laps, lambda lap: (lap.follower, lap.closed)).items():
+        axes.plot([seeds.index(lap.seed) for lap in found], [value(lap) for lap in found],
+                  "o" if closed else "x", label=f"{follower}{'' if closed else ', not closed'}",
+                  color=COLOURS[followers.index(follower) % len(COLOURS)])
     axes.set_xticks(range(len(seeds)), [str(seed) for seed in seeds])
     axes.margins(y=0.1)
 

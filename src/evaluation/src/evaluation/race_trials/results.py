@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from evaluation.laps.lap_drive import COUNTS, FIGURES, LapDrive, summary
+from evaluation.laps.lap_trial import COUNTS, FIGURES, LapDrive, summary
+from evaluation.trial.report import grouped
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +26,17 @@ class Lap(LapDrive):
         """Of its case."""
         return f"{self.follower} {self.set} {self.seed}"
 
+    @property
+    def line(self) -> str:
+        """On one line."""
+        said = self.disturbance
+        start = f"start {said.sideways * 100:+.0f} cm {said.turn * 57.2958:+.0f}°"
+        drawn = f"{start}, noise {said.camera_noise:.3f}, light x{said.light:.2f}"
+        time = f" in {self.time:.1f} s" if self.closed else ""
+        figures = f"{self.mean_speed:.2f} m/s, RMS {self.rms_lateral * 100:.1f} cm"
+        return (f"{self.follower} {self.track} seed {self.seed}: {self.outcome}{time}, {figures}"
+                f" ({drawn})")
+
 
 COLUMNS = {"follower": lambda each: each["follower"], "laps on": lambda each: each["set"],
            **COUNTS, **FIGURES, "worst seed": lambda each: str(each["worst_seed"])}
@@ -35,19 +47,7 @@ def summarize(laps: Sequence[Lap]) -> list[dict]:
 
     `worst_seed`: of a lap that was not closed, else of the farthest beside the line in the mean.
     """
-    groups: dict[tuple[str, str], list[Lap]] = {}
-    for lap in laps:
-        groups.setdefault((lap.follower, lap.set), []).append(lap)
+    groups = grouped(laps, lambda lap: (lap.follower, lap.set))
     return [{**summary(group), "follower": follower, "set": name, "worst_seed": max(
         group, key=lambda lap: (not lap.closed, lap.rms_lateral)).seed}
         for (follower, name), group in groups.items()]
-
-
-def lap_line(lap: Lap) -> str:
-    """One lap on one line."""
-    said = lap.disturbance
-    start = f"start {said.sideways * 100:+.0f} cm {said.turn * 57.2958:+.0f}°"
-    drawn = f"{start}, noise {said.camera_noise:.3f}, light x{said.light:.2f}"
-    time = f" in {lap.time:.1f} s" if lap.closed else ""
-    figures = f"{lap.mean_speed:.2f} m/s, RMS {lap.rms_lateral * 100:.1f} cm"
-    return f"{lap.follower} {lap.track} seed {lap.seed}: {lap.outcome}{time}, {figures} ({drawn})"

@@ -8,17 +8,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from racecar_description.track.from_numbers import from_seed
+from racecar_description.track.model_files import write_course
+from racecar_description.track.wishes import Wishes
+
 from evaluation.laps.disturbance import RACE, draw
-from evaluation.laps.lap_drive import from_json, seen, to_json
-from evaluation.laps.lap_trial import LapTrial, Outing
+from evaluation.laps.lap_trial import LapTrial, Outing, Venue, seen
 from evaluation.race_trials.pictures import write_chart, write_path_sheet
-from evaluation.race_trials.results import COLUMNS, Lap, lap_line, summarize
-from evaluation.race_trials.venue import RACETRACK, RANDOM_TRACKS, racetrack, random_track
+from evaluation.race_trials.results import COLUMNS, Lap, summarize
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
-from evaluation.trial.table import table_of
+from evaluation.trial.report import grouped, table_of
 from run_session.failure import RunError
+from run_session.resources import find_package
 
+RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps
 LARGEST_SEED = 100_000_000  # a larger one is none for course_run
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
@@ -41,6 +45,7 @@ class RaceTrial(LapTrial):
             " followers.")
     good = "all laps of the first follower closed within the limits"
     writes = "report.json, report.html, trials.png and the laps"
+    result, listed = Lap, "laps"
 
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 20, "laps on the racetrack")
@@ -65,37 +70,49 @@ class RaceTrial(LapTrial):
                 for seed, follower in itertools.product(range(first, first + count), followers)]
 
     def outing(self, out: Path, case: RaceCase) -> Outing:
-        venue = self._venue = (racetrack() if case.set == RACETRACK else
-                               random_track(case.seed, out / "tracks"))
-        self._out, folder = out, out / "laps" / f"{venue.name}-{case.seed}"
-        return Outing(f"{case.follower} on {venue.name}, seed {case.seed}", "race", case.follower,
-                      venue.track, venue.world, venue.models, folder,
-                      folder / Path(case.follower).stem, draw(case.seed, RACE), LONGEST_LAP)
+        venue = (racetrack() if case.set == RACETRACK else
+                 random_track(case.seed, out / "tracks"))
+        name = venue.world.stem
+        self._out, folder = out, out / "laps" / f"{name}-{case.seed}"
+        return Outing(f"{case.follower} on {name}, seed {case.seed}", "race", case.follower, venue,
+                      folder, folder / Path(case.follower).stem, draw(case.seed, RACE),
+                      LONGEST_LAP)
 
     def score(self, record: dict) -> Lap:
         case, outing = self._case, self._outing
         return Lap(**seen(record, case.seed, outing.disturbance), follower=record["follower"],
-                   set=case.set, track=self._venue.name,
+                   set=case.set, track=outing.venue.world.stem,
                    folder=str(outing.out.relative_to(self._out)),
                    time=record["laps"][0]["time_s"] if record["laps"] else None)
 
     def passed(self, results: Sequence[Lap]) -> bool:
         return all(lap.within_limits for lap in results if lap.follower == self._first)
 
-    def line(self, result: Lap) -> str:
-        return lap_line(result)
-
     def table(self, results: Sequence[Lap]) -> str:
         return table_of(COLUMNS, summarize(results), left=(0, 1))
 
     def values(self, results: Sequence[Lap]) -> dict:
-        return to_json(Lap, "laps", results, summaries=summarize(results))
-
-    def from_values(self, values: dict) -> list[Lap]:
-        return [from_json(Lap, each) for each in values["laps"]]
+        return super().values(results, summaries=summarize(results))
 
     def pictures(self, results: Sequence[Lap], out: Path) -> list[str]:
         write_chart(results, out / "trials.png")
-        sheets = [write_path_sheet([lap for lap in results if lap.follower == follower], out)
-                  for follower in dict.fromkeys(lap.follower for lap in results)]
+        sheets = [write_path_sheet(laps, out)
+                  for laps in grouped(results, lambda lap: lap.follower).values()]
         return ["trials.png", *(sheet.name for sheet in sheets)]
+
+
+def racetrack() -> Venue:
+    """The one in racecar_description."""
+    return _venue("racetrack", find_package("racecar_description"))
+
+
+def random_track(seed: int, out: Path) -> Venue:
+    """The seed's track, as make_track makes it, made anew below `out`."""
+    course, _ = from_seed(seed, Wishes(f"random_{seed}"))
+    write_course(course, out)
+    return _venue(course.name, out)
+
+
+def _venue(name: str, root: Path) -> Venue:
+    return Venue(root / "worlds" / f"{name}.world", root / "tracks" / f"{name}.yaml",
+                 root / "models")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import select
-import shutil
 import subprocess
 import tempfile
 import time
@@ -17,16 +16,8 @@ FINISH_TIME = 20.0  # s, wall, for the encoder to end
 WRITE_TIME = 10.0  # s, wall, for it to take a picture
 
 
-def open_encoder(
-    path: Path, width: int, height: int, rate_hz: int
-) -> FfmpegEncoder | OpenCvEncoder:
-    """The better encoder that this machine has; it takes pictures of (height, width, 3), BGR."""
-    make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
-    return make(path, width, height, rate_hz)
-
-
 class FfmpegEncoder:
-    """H.264 that every player shows, through Debian's ffmpeg."""
+    """H.264 that every player shows, by Debian's ffmpeg; pictures are (height, width, 3), BGR."""
 
     codec = "H.264 by ffmpeg"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 import time
 from abc import abstractmethod
@@ -16,7 +17,7 @@ from sensor_msgs.msg import Image
 
 from evaluation.colours import FAINT, PAPER, bgr
 from evaluation.plan import write_text
-from evaluation.session.encoders import FfmpegEncoder, OpenCvEncoder, open_encoder
+from evaluation.session.encoders import FfmpegEncoder, OpenCvEncoder
 
 FILM_RATE_HZ = 10
 # s, simulated, between two pictures of the film, which so runs at 2 or 8 times the speed
@@ -72,7 +73,8 @@ class FilmFile:
             if self._writer is None:
                 self._path.unlink(missing_ok=True)
                 height, width, _ = page.shape
-                self._writer = open_encoder(self._path, width, height, FILM_RATE_HZ)
+                make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
+                self._writer = make(self._path, width, height, FILM_RATE_HZ)
                 self.codec = self._writer.codec
             for _ in range(times):
                 self._writer.write(page)

@@ -12,17 +12,26 @@ from ai_robot_tracking.scenes.start import draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
-from evaluation.tracking.course import COURSE, LAUNCH, PACKAGE, PAGE, PID, TRACKERS, annotated_topic
-from evaluation.tracking.film import TrackFilm
-from evaluation.tracking.picture import write_picture
+from evaluation.tracking.pictures import TrackFilm, write_picture
 from evaluation.tracking.report import lines, summarize
 from evaluation.tracking.score import Task, TrackScorer
 from evaluation.trial.car_drive import CarDrive
 from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.trial.live import Outcome
 from evaluation.trial.report import write_json
+from run_session.course import Course
 from run_session.resources import find_package
 
+PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
+PAGE, PID = TRACKERS = ("visual_tracker.py", "visual_tracker_pid.py")
+
+COURSE = Course(
+    launch=(PACKAGE, LAUNCH), follower_package=PACKAGE,
+    followers="scripts/visual_tracker*.py", follower=PID, drives_by="cmd_vel",
+    robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",
+    camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
+    odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0,
+)  # fmt: skip
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
 LONGEST = 120.0      # s, simulated, to reach a cylinder that stands
 
@@ -69,8 +78,8 @@ class TrackRun(CarDrive):
         self.driver = options.tracker
         if options.video:
             period = FAST_FILM_PERIOD / 2 if options.fast else FILM_PERIOD
-            self.film = TrackFilm(options.out / "run.mp4", annotated_topic(options.tracker),
-                                  self.scene, self.drive, period)
+            seen = f"/{options.tracker.removesuffix('.py')}/annotated"
+            self.film = TrackFilm(options.out / "run.mp4", seen, self.scene, self.drive, period)
 
     def launch_words(self) -> Sequence[str]:
         options, start = self.options, self.start
@@ -80,10 +89,6 @@ class TrackRun(CarDrive):
         return (PACKAGE, LAUNCH, "gui:=false", f"world_name:={world}",
                 f"tracker:={options.tracker}", f"x_pos:={start.x:.6f}", f"y_pos:={start.y:.6f}",
                 f"yaw:={start.yaw:.6f}", f"seed:={options.seed}", *self.fast_arguments(), *patient)
-
-    @property
-    def is_over(self) -> bool:
-        return self.drive.over
 
     def outcome(self) -> Outcome:
         return self.drive.outcome, ""

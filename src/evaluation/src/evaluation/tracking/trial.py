@@ -12,11 +12,11 @@ from pathlib import Path
 
 from ai_robot_tracking.scenes.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
 
-from evaluation.tracking.course import PAGE, PID
+from evaluation.tracking.run import PAGE, PID
 from evaluation.tracking.score import FIND_TIME
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial
-from evaluation.trial.table import cell, mean, table_of
+from evaluation.trial.report import cell, mean, table_of
 from run_session.failure import RunError
 from run_session.resources import find_package
 from run_session.session import Session

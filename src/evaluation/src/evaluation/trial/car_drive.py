@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from evaluation.lap import LapScorer, Sample, fingerprint
 from evaluation.trial.live import LiveDrive, Outcome
 from run_session.course import Course
-from run_session.failure import RunError
 from run_session.fingerprints import Fingerprints
 from run_session.frames import frame_figures
 from run_session.launch import Launched
@@ -23,7 +22,7 @@ class CarDrive(LiveDrive):
     """Options are those of LiveDrive and `fast`; `drive` scores and keeps the samples."""
 
     def __init__(self, options: argparse.Namespace, course: Course, drive: LapScorer):
-        """`drive` has `samples` and takes one more by `add`."""
+        """`drive` has `samples`, takes one more by `add`, and says when it is `over`."""
         super().__init__(options)
         self.course, self.drive = course, drive
         self.fingerprints: Fingerprints | None = None
@@ -35,11 +34,6 @@ class CarDrive(LiveDrive):
     @abstractmethod
     def launch_words(self) -> Sequence[str]:
         """Package, launch file, its arguments."""
-
-    @property
-    @abstractmethod
-    def is_over(self) -> bool:
-        """Whether more samples do not count."""
 
     @abstractmethod
     def outcome(self) -> Outcome:
@@ -56,26 +50,21 @@ class CarDrive(LiveDrive):
         self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
                                   self.course, lockstep=self.options.fast, listened=listened)
         launched.start("roslaunch", ["roslaunch", *words])
-        self.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
         if self.fingerprints:
             self.fingerprints.start()  # before time may begin
         self._observer.start()
         if self.film is not None:
             self.film.start()
-        launched.wait_for(lambda: self._observer.missing, self._take_samples, self.progress.status,
-                          self.options.startup_timeout)
+        launched.wait_for(lambda: self._observer.missing, self._take_samples,
+                          self.options.startup_timeout, self.progress.status, pause=0.0)
 
     def watch(self, launched: Launched) -> Outcome:
         """Follow the car until the drive is over."""
-        while not self.is_over:
+        while not self.drive.over:
             self._take_samples()
             now = self.drive.samples[-1].time
             self.progress.update(now, self.line)
-            launched.check(now)
-            still = time.monotonic() - self._last_at
-            if still > self.options.stuck_timeout:
-                raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
-                               " the simulator is paused or hangs")
+            self.check_time(launched, now)
         return self.outcome()
 
     def _take_samples(self) -> int:
@@ -84,7 +73,7 @@ class CarDrive(LiveDrive):
         samples: list[Sample] = self.drive.samples
         for arrived, seen in arrivals:
             sample = Sample(*seen)
-            if samples and self.is_over:
+            if samples and self.drive.over:
                 break
             if not samples:
                 self._first_at = self._last_at = arrived

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,14 +35,17 @@ class LiveDrive(ABC):
     ends: ClassVar[str]  # what the exit codes mean
     usual_out: ClassVar[str]  # where results go, for --help
     writes: ClassVar[Sequence[str]]  # files in `out`
+    stay: ClassVar[Sequence[str]] = ()  # those of a run before stay until the next are whole
     vehicle: ClassVar[str] = "car"
     logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
     driver = ""  # the script that drives, for messages
 
-    def __init__(self, options: argparse.Namespace, progress: StatusLine | None = None):
+    def __init__(self, options: argparse.Namespace):
         self.options, self.out = options, options.out
-        self.progress = progress or StatusLine()
+        self.progress = StatusLine()
         self.film: FilmFile | None = None
+        self._time: float | None = None  # s, simulated, when it was last checked
+        self._since = 0.0  # s, wall: it has been so late since then
 
     # --- what is asked for
 
@@ -87,6 +91,16 @@ class LiveDrive(ABC):
     def end(self) -> None:
         """Count what is still to be counted, while all still runs; then look no more."""
 
+    def check_time(self, launched: Launched, now: float) -> None:
+        """RunError if a program died, or if simulated time, s, has stood still for too long."""
+        launched.check(now)
+        if now != self._time:
+            self._time, self._since = now, time.monotonic()
+        still = time.monotonic() - self._since
+        if still > self.options.stuck_timeout:
+            raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                           " the simulator is paused or hangs")
+
     # --- what was found
 
     @property
@@ -106,10 +120,6 @@ class LiveDrive(ABC):
     def faults(self, outcome: Outcome) -> list[str]:
         """What was not good, one line each; "" is one that the report says already."""
 
-    def owned_files(self) -> Sequence[str]:
-        """Files of `out` that a run before may have left, and that are not to be kept."""
-        return self.writes
-
 
 def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
     """Run the command line of such a drive; returns the exit code."""
@@ -125,6 +135,7 @@ def run_live(drive: LiveDrive) -> int:
         try:
             drive.progress.status("starting roscore")
             launched.start_roscore()
+            drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
             drive.bring_up(launched)
             outcome = drive.watch(launched)
         except (KeyboardInterrupt, RunError) as ended:
@@ -173,7 +184,8 @@ def _make_room(drive: LiveDrive) -> None:
     earlier = drive.out / EARLIER
     try:
         drive.out.mkdir(parents=True, exist_ok=True)
-        for path in filter(Path.exists, map(drive.out.joinpath, drive.owned_files())):
+        owned = (drive.out / name for name in drive.writes if name not in drive.stay)
+        for path in filter(Path.exists, owned):
             earlier.mkdir(exist_ok=True)
             path.replace(earlier / path.name)
     except PermissionError:

@@ -6,9 +6,9 @@ import argparse
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
 from evaluation.trial.command_line import Parser
 from run_session.failure import RunError
@@ -68,19 +68,19 @@ class Trial(ABC):
     def run(self) -> Any:
         """Let it happen; returns the record of what was seen. RunError if it could not be run."""
 
-    @abstractmethod
     def score(self, record: Any) -> Any:
-        """The result of a record."""
+        """The result of a record: itself if it was judged on the way."""
+        return record
 
     # --- all of them
 
-    @abstractmethod
     def passed(self, results: Sequence[Any]) -> bool:
         """Whether the results are good: exit code 0, else 1."""
+        return all(each.passed for each in results)
 
-    @abstractmethod
     def line(self, result: Any) -> str:
         """One result on one line."""
+        return result.line
 
     @abstractmethod
     def table(self, results: Sequence[Any]) -> str:
@@ -122,9 +122,19 @@ class Trial(ABC):
 class ReportedTrial(Trial):
     """A trial whose report.json holds all of its results: --resume reads them there."""
 
-    @abstractmethod
+    result: ClassVar[type]  # a dataclass
+    listed: ClassVar[str] = "drives"  # the results' key in report.json
+    derived: ClassVar[Sequence[str]] = ()  # properties that stand there beside the fields
+
+    def values(self, results: Sequence[Any]) -> dict:
+        """What report.json holds."""
+        return {self.listed: [
+            {**asdict(each), **{name: getattr(each, name) for name in self.derived}}
+            for each in results]}
+
     def from_values(self, values: dict) -> list[Any]:
         """The results of a report.json, as `values` wrote them; KeyError, TypeError, ValueError."""
+        return [from_json(self.result, each) for each in values[self.listed]]
 
     def earlier(self, options: argparse.Namespace) -> list[Any]:
         """The results to go on with; RunError if there are none."""
@@ -141,3 +151,14 @@ def try_case(trial: Trial, session: Session, case: Case) -> Any:
     """The result of one case."""
     trial.setup(session, case)
     return trial.score(trial.run())
+
+
+def from_json(kind: Any, value: Any) -> Any:
+    """One of `kind` from what asdict and JSON made of it; KeyError for a field that is missing."""
+    if is_dataclass(kind):
+        kinds = get_type_hints(kind)
+        return kind(**{each.name: from_json(kinds[each.name], value[each.name])
+                       for each in fields(kind)})
+    if get_origin(kind) is tuple:
+        return tuple(from_json(get_args(kind)[0], each) for each in value)
+    return value

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from evaluation.yards import results
-from evaluation.yards.judge import WALKED_INTO, Judge, Sample
-from evaluation.yards.results import Drive
+from evaluation.trial.protocol import Case
+from evaluation.yards import outcomes
+from evaluation.yards.judge import WALKED_INTO, Judge
+from evaluation.yards.outcomes import Drive
 from evaluation.yards.rig import PERSON as PERSON_MODEL
 from evaluation.yards.rig import Rig
 from run_session.failure import RunError
@@ -18,7 +19,7 @@ from run_session.simulator import Place
 from trial_worlds import crossing
 from trial_worlds.crossing import APPROACH, ROBOT_SPEED, Crossing
 from trial_worlds.models import person_model, room_model, yard_model
-from trial_worlds.yard import RADIUS, Yard
+from trial_worlds.yard import draw_yard
 
 LOOK_PERIOD = 0.05  # s, wall
 SILENCE = 30.0      # s, wall
@@ -26,13 +27,21 @@ LIMIT = 100.0       # s, simulated, as in the benchmark
 NEAR = 0.2          # m from a goal that is called reached, by the simulator's own pose
 ORIGIN = (0.0, 0.0, 0.0)
 
+
 @dataclass(frozen=True)
-class Task:
-    """What is to be driven; m, rad."""
+class YardCase(Case):
+    """One drive."""
 
     set: str
     seed: int
     repeat: int
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be driven; m, rad."""
+
+    case: YardCase
     models: dict[str, tuple[str, Place]]  # SDF and place, by name
     start: Place
     goal: Place
@@ -41,37 +50,19 @@ class Task:
     drawn: dict
     walk: Crossing | None = None
 
-    @property
-    def name(self) -> str:
-        """Of its case."""
-        return f"{self.set}-{self.seed}-{self.repeat}"
 
-
-@dataclass(frozen=True)
-class Driven:
-    """What was seen of a drive."""
-
-    judge: Judge
-    ended: str
-    real_time_factor: float
-    recoveries: list[str]
-    slow_cycles: int
-
-
-def yard_task(yard: Yard, repeat: int) -> Task:
-    """Through a yard."""
-    drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
-             "path_length": yard.path_length, **asdict(yard.difficulty)}
-    return Task(results.YARDS, yard.seed, repeat, {"yard": (yard_model(yard), ORIGIN)},
-                yard.start(repeat), yard.goal, yard.path_length, yard.cylinders, drawn)
-
-
-def crossing_task(walk: Crossing) -> Task:
-    """Through a room that a person walks across."""
+def task_of(case: YardCase) -> Task:
+    """Through a yard, or through a room that a person walks across."""
+    if case.set == outcomes.YARDS:
+        yard = draw_yard(case.seed)
+        drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
+                 "path_length": yard.path_length, **asdict(yard.difficulty)}
+        return Task(case, {"yard": (yard_model(yard), ORIGIN)}, yard.start(case.repeat), yard.goal,
+                    yard.path_length, yard.cylinders, drawn)
+    walk, start, goal = crossing.draw_crossing(case.seed), crossing.START, crossing.GOAL
     models = {"room": (room_model(), ORIGIN), PERSON_MODEL: (person_model(), walk.begin)}
-    start, goal = crossing.START, crossing.GOAL
-    return Task(results.CROSSINGS, walk.seed, 0, models, start, goal,
-                math.dist(start[:2], goal[:2]), np.empty((0, 2)), asdict(walk), walk)
+    return Task(case, models, start, goal, math.dist(start[:2], goal[:2]), np.empty((0, 2)),
+                asdict(walk), walk)
 
 
 def prepare(rig: Rig, task: Task) -> None:
@@ -81,92 +72,66 @@ def prepare(rig: Rig, task: Task) -> None:
         rig.wait(rig.person_listens, "the person")
 
 
-def drive(rig: Rig, task: Task) -> Driven:
-    """From start to goal, or as far as it comes."""
-    judge = Judge(task.cylinders, RADIUS)
-    walker = Walker(rig, task.walk) if task.walk is not None else None
-    ended, pace = _watch(rig, judge, task.goal, walker)
-    return Driven(judge, ended, pace, list(rig.recoveries), rig.slow_cycles)
-
-
-def score(task: Task, driven: Driven) -> Drive:
-    """The drive's result."""
-    judge, ended = driven.judge, driven.ended
+def drive(rig: Rig, task: Task, judge: Judge) -> Drive:
+    """From start to goal, or as far as it comes; the judge has seen the way."""
+    ended, pace = _watch(rig, judge, task)
     straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
-    if outcome == results.NOT_THERE:
+    if outcome == outcomes.NOT_THERE:
         ended = f"from {judge.off(task.goal):.2f} m away"
     return Drive(
-        set=task.set,
-        seed=task.seed,
-        repeat=task.repeat,
+        set=task.case.set,
+        seed=task.case.seed,
+        repeat=task.case.repeat,
         outcome=outcome,
-        why=None if ended == results.REACHED else ended,
+        why=None if ended == outcomes.REACHED else ended,
         time=round(judge.time, 2),
         distance=round(judge.distance, 3),
         straight_time=round(straight / ROBOT_SPEED, 2),
         shortest_time=round(task.shortest / ROBOT_SPEED, 2),
         to_obstacles=_known(judge.to_obstacles),
         to_person=_known(judge.to_person),
-        recoveries=driven.recoveries,
-        slow_cycles=driven.slow_cycles,
-        real_time_factor=round(driven.real_time_factor, 2),
+        recoveries=list(rig.recoveries),
+        slow_cycles=rig.slow_cycles,
+        real_time_factor=round(pace, 2),
         drawn=task.drawn,
     )
 
 
-class Walker:
-    """Has the person set off in time, and stop on the other side."""
-
-    def __init__(self, rig: Rig, walk: Crossing):
-        self._rig, self._walk = rig, walk
-        self._walking: bool | None = None  # None: waits
-
-    def see(self, sample: Sample) -> None:
-        """Where the robot is decides when the person sets off."""
-        if self._walking is None and sample.robot[0] >= self._walk.trigger:
-            self._rig.walk(self._walk.speed)
-            self._walking = True
-        elif self._walking and math.dist(sample.person[:2], self._walk.begin[:2]) > 2 * APPROACH:
-            self._rig.walk(0.0)
-            self._walking = False
-
-    def stop(self) -> None:
-        """However the drive ended."""
-        self._rig.walk(0.0)
-
-
-def _watch(rig: Rig, judge: Judge, goal: Place, walker: Walker | None = None
-           ) -> tuple[str, float]:
+def _watch(rig: Rig, judge: Judge, task: Task) -> tuple[str, float]:
     """Drives until the goal has ended; how, and the real-time factor meanwhile."""
-    rig.send(goal)
+    rig.send(task.goal)
     began, ended = time.monotonic(), None
-    heard = began
+    heard, walk, walking = began, task.walk, None  # None: the person waits
     while ended is None:
         ended = rig.result()  # before the samples, so that those of the way there all count
         for sample in rig.samples(LOOK_PERIOD):
             heard = time.monotonic()
             judge.see(sample)
-            if walker:
-                walker.see(sample)
+            if walk and walking is None and sample.robot[0] >= walk.trigger:
+                walking = True
+                rig.walk(walk.speed)
+            elif walking and math.dist(sample.person[:2], walk.begin[:2]) > 2 * APPROACH:
+                walking = False
+                rig.walk(0.0)
         if time.monotonic() > heard + SILENCE:
             raise RunError(f"no news of the robot for {SILENCE:.0f} s: the simulator hangs")
         if judge.contact or judge.time > LIMIT:
             ended = judge.contact or f"not there within {LIMIT:.0f} s"
     wall = time.monotonic() - began
-    if walker:
-        walker.stop()
+    if walk:
+        rig.walk(0.0)
     rig.end_goal()
     return ended, judge.time / wall
 
 
 def _outcome(judge: Judge, ended: str, goal: Place) -> str:
     if judge.contact == WALKED_INTO:
-        return results.WALKED_INTO
+        return outcomes.WALKED_INTO
     if judge.contact:
-        return results.CONTACT
-    if ended == results.REACHED:
-        return results.REACHED if judge.off(goal) <= NEAR else results.NOT_THERE
-    return results.LATE if judge.time > LIMIT else results.GIVEN_UP
+        return outcomes.CONTACT
+    if ended == outcomes.REACHED:
+        return outcomes.REACHED if judge.off(goal) <= NEAR else outcomes.NOT_THERE
+    return outcomes.LATE if judge.time > LIMIT else outcomes.GIVEN_UP
 
 
 def _known(air: float) -> float | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import queue
 import time
 from collections.abc import Callable
@@ -39,7 +38,6 @@ class Rig:
 
     def __init__(self, launched: Launched, real_time_factor: float, parameters: Path):
         self._launched = launched
-        os.environ["ROS_MASTER_URI"] = launched.master_uri
         launched.start_roscore()
         launched.start("yard", [
             "roslaunch", "evaluation", "yard.launch", f"real_time_factor:={real_time_factor:g}",
@@ -131,7 +129,7 @@ class Rig:
 
     def wait(self, condition: Callable[[], bool], what: str, limit: float = ANSWER_LIMIT) -> None:
         """Returns once the condition is true; RunError after `limit`, s, wall."""
-        self._launched.wait_for(lambda: what, condition, lambda _: None, limit, LOOK_PERIOD)
+        self._launched.wait_for(what, condition, limit, pause=LOOK_PERIOD)
 
     def _take(self, message: ModelStates) -> None:
         places = dict(zip(message.name, message.pose, strict=True))

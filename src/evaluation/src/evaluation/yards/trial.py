@@ -5,44 +5,25 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
 from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import Case, ReportedTrial
-from evaluation.trial.table import table_of
-from evaluation.yards.chart import write_chart
-from evaluation.yards.drive import Driven, Task, crossing_task, drive, prepare, score, yard_task
-from evaluation.yards.results import (
-    COLUMNS,
-    CROSSINGS,
-    LEAST_SHARE,
-    YARDS,
-    Drive,
-    drive_line,
-    passed,
-    summarize,
-)
+from evaluation.trial.protocol import ReportedTrial
+from evaluation.trial.report import grouped, table_of
+from evaluation.yards import outcomes
+from evaluation.yards.drive import YardCase, drive, prepare, task_of
+from evaluation.yards.judge import Judge
+from evaluation.yards.outcomes import CROSSINGS, YARDS, Drive
+from evaluation.yards.pictures import write_chart, write_sheets
 from evaluation.yards.rig import Rig
-from evaluation.yards.sheet import write_sheets
 from run_session.failure import RunError
 from run_session.resources import find_package
 from run_session.session import Session
-from trial_worlds.crossing import draw_crossing
 from trial_worlds.models import world, yard_model
-from trial_worlds.yard import draw_yard
+from trial_worlds.yard import RADIUS, draw_yard
 
 PARAMETERS = Path("config") / "yard.yaml"
-
-
-@dataclass(frozen=True)
-class YardCase(Case):
-    """One drive."""
-
-    set: str
-    seed: int
-    repeat: int
 
 
 class YardTrial(ReportedTrial):
@@ -53,6 +34,7 @@ class YardTrial(ReportedTrial):
             " who cross its way.")
     good = "at least 95 %% of the yards crossed and no person touched"
     writes = "report.json, report.html, pictures, worlds and drives"
+    result, derived = Drive, ("score",)
 
     def __init__(self) -> None:
         self._rig: Rig | None = None
@@ -87,52 +69,41 @@ class YardTrial(ReportedTrial):
     def setup(self, session: Session, case: YardCase) -> None:
         if self._rig is None:
             self._rig = self._make_rig(session.launched("robot"))
-        self._out, self._task = session.out, _task(case)
+        self._out, self._case, self._task = session.out, case, task_of(case)
         if case.set == YARDS:
             path = session.out / "worlds" / f"yard_{case.seed}.world"
             path.parent.mkdir(exist_ok=True)
             path.write_text(world(yard_model(draw_yard(case.seed))), encoding="utf-8")
         prepare(self._rig, self._task)
 
-    def run(self) -> Driven:
-        """The drive, and where it went, below drives/."""
-        driven = drive(self._rig, self._task)
-        path = self._out / "drives" / f"{self._task.name}.json"
+    def run(self) -> Drive:
+        """The drive; where it went stands below drives/."""
+        judge = Judge(self._task.cylinders, RADIUS)
+        drove = drive(self._rig, self._task, judge)
+        path = self._out / "drives" / f"{self._case.name}.json"
         path.parent.mkdir(exist_ok=True)
-        rounded = [[round(value, 4) for value in place] for place in driven.judge.path]
+        rounded = [[round(value, 4) for value in place] for place in judge.path]
         path.write_text(json.dumps(rounded) + "\n", encoding="utf-8")
-        return driven
-
-    def score(self, record: Driven) -> Drive:
-        return score(self._task, record)
+        return drove
 
     def passed(self, results: Sequence[Drive]) -> bool:
-        return passed(results)
-
-    def line(self, result: Drive) -> str:
-        return drive_line(result)
+        """Enough goals reached, and nobody touched by the robot; one that stands touches nobody."""
+        touched = any(d.set == CROSSINGS and d.outcome == outcomes.CONTACT for d in results)
+        sets = grouped((d for d in results if d.outcome != outcomes.WALKED_INTO), lambda d: d.set)
+        shares = [sum(d.reached for d in found) / len(found) for found in sets.values()]
+        return not touched and min(shares, default=1.0) >= outcomes.LEAST_SHARE
 
     def table(self, results: Sequence[Drive]) -> str:
-        return table_of(COLUMNS, summarize(results), left=())
+        return table_of(outcomes.COLUMNS, outcomes.summarize(results), left=())
 
     def values(self, results: Sequence[Drive]) -> dict:
         return {
-            "least_share_of_yards": LEAST_SHARE,
-            "passed": passed(results),
-            "summaries": summarize(results),
-            "drives": [{**asdict(drive), "score": drive.score} for drive in results],
+            "least_share_of_yards": outcomes.LEAST_SHARE,
+            "passed": self.passed(results),
+            "summaries": outcomes.summarize(results),
+            **super().values(results),
         }
-
-    def from_values(self, values: dict) -> list[Drive]:
-        return [Drive(**{name: each[name] for name in Drive.__dataclass_fields__})
-                for each in values["drives"]]
 
     def pictures(self, results: Sequence[Drive], out: Path) -> list[str]:
         write_chart(results, out / "trials.png")
         return ["trials.png", *write_sheets(results, out)]
-
-
-def _task(case: YardCase) -> Task:
-    if case.set == YARDS:
-        return yard_task(draw_yard(case.seed), case.repeat)
-    return crossing_task(draw_crossing(case.seed))

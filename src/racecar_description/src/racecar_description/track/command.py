@@ -20,10 +20,10 @@ from racecar_description.track.from_numbers import from_seed, from_track_file
 from racecar_description.track.model_files import (
     TAKEN_NAMES,
     WRITTEN_BY,
-    course_files,
     model_folder,
     preview_path,
     world_path,
+    write_course,
 )
 from racecar_description.track.problem_picture import draw_problem
 from racecar_description.track.wishes import Wishes
@@ -84,11 +84,7 @@ def _make(words: list[str], package: Path) -> int:
             raise TrackError(f"{name!r} cannot be a track: the world takes {taken}; use --name")
         _check_free(out, name)
         course, remarks = _course(options, name)
-        files = course_files(course)
-        for relative, data in files.items():
-            path = out / relative
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
+        write_course(course, out)
     except DrawingError as error:
         return _fail(f"{error}{_write_problem(error, options.out or Path(), name)}")
     except TrackError as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 import cv2
 import numpy as np
@@ -113,6 +113,14 @@ def world_path(name: str) -> PurePosixPath:
 def preview_path(name: str) -> PurePosixPath:
     """Where a course's preview lies."""
     return PurePosixPath("tracks") / f"{name}.png"
+
+
+def write_course(course: Course, folder: Path) -> None:
+    """All files, below a folder; OSError names the one that cannot be written."""
+    for relative, data in course_files(course).items():
+        path = folder / relative
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
 
 
 def course_files(course: Course) -> dict[PurePosixPath, bytes]:

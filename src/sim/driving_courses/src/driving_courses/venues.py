@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from racecar_description.track.closed_line import Track, build_track, load_track
 from racecar_description.track.course_model import write_model
 from racecar_description.track.from_numbers import from_seed
-from racecar_description.track.model_files import course_files, world_path
+from racecar_description.track.model_files import world_path, write_course
 from racecar_description.track.random_circuit import Room, random_circuit
 from racecar_description.track.track_file import load_track_file
 from racecar_description.track.wishes import Wishes
@@ -80,9 +80,7 @@ class Venues:
     def _random_race(self, seed: int, folder: Path) -> Venue:
         """As the race's trials make them."""
         course, _ = from_seed(seed, Wishes(name=f"random_{seed}"))
-        for name, data in course_files(course).items():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            (folder / name).write_bytes(data)
+        write_course(course, folder)
         found = resources(self._course, (folder / "models",))
         return Venue(load_world(folder / world_path(course.name), found),
                      build_track(course.track_file()))

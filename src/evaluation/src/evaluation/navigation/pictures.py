@@ -1,7 +1,8 @@
-"""run.mp4: the camera's picture beside the map, with the scan, the plan and the way driven."""
+"""run.mp4: camera beside map, scan, plan and way; map.png: map, true walls, all ways, goals."""
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from pathlib import Path
 
@@ -14,20 +15,24 @@ from sensor_msgs.msg import Image
 from evaluation.colours import CAR, FLOOR, TEXT, bgr, lap_colour
 from evaluation.house.records import Records
 from evaluation.house.watch import Watch
-from evaluation.navigation.picture import CLEAR, OCCUPIED_FROM
 from evaluation.navigation.score import Result
+from evaluation.picture import legend, map_sheet, pixels
 from evaluation.plan import Plan
 from evaluation.session.film import FilmFile, fit, side_by_side
-from nav_algorithms.grid import FREE, OccupancyGrid
+from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
 from trial_worlds.ground import Ground
 
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint
 PERIOD = 1.0  # s, simulated, between two pictures: the film runs at ten times the speed
-LOOK_PERIOD = 0.1  # s, wall
+LOOK_PERIOD, VIEW_TIME = 0.1, 1.0  # s, wall; the latter for the camera's picture
 PLAN_PX = 760
 SCAN, PLANNED, DRIVEN = "#ff5050", "#fae65a", lap_colour(0)
+CLEAR, TRUE_WALL, GOAL = "#363a42", "#3cbe78", "#fac846"
+OCCUPIED_FROM = 50  # percent
+PATHS = (("mapping", "driven while mapping", lap_colour(0)),
+         ("goals", "driven to the goals", lap_colour(3)))
 
 
 class Film(FilmFile):
@@ -42,7 +47,6 @@ class Film(FilmFile):
         high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
         self._floor = Plan(low - 0.2, high + 0.2, PLAN_PX)
         self._view: Image | None = None
-        self._eye: rospy.Subscriber | None = None
         self._records: Records | None = None
         self._number = -1
         self._thread = threading.Thread(target=self._film, daemon=True, name="film")
@@ -58,16 +62,6 @@ class Film(FilmFile):
             self._thread.join()
         return super().close()
 
-    def _look(self) -> None:
-        """Ask for one picture: while somebody subscribes, the camera draws thirty a second."""
-        if self._eye is None:
-            self._eye = rospy.Subscriber(CAMERA, Image, self._take, queue_size=1, buff_size=2**20)
-
-    def _take(self, message: Image) -> None:
-        self._view, eye, self._eye = message, self._eye, None
-        if eye is not None:
-            eye.unregister()
-
     def _film(self) -> None:
         while not self._ended.wait(LOOK_PERIOD):
             records = self._watch.records
@@ -76,8 +70,10 @@ class Film(FilmFile):
             number = int(records.now / PERIOD)
             if records.truth and number > self._number:
                 self._number = number
+                # One picture: while somebody subscribes, the camera draws thirty a second.
+                with contextlib.suppress(rospy.ROSException):
+                    self._view = rospy.wait_for_message(CAMERA, Image, VIEW_TIME)
                 self._add(self._page(records))
-                self._look()
 
     def _page(self, records: Records) -> np.ndarray:
         view = self._view and fit(CvBridge().imgmsg_to_cv2(self._view, "bgr8"))
@@ -89,17 +85,17 @@ class Film(FilmFile):
         """The map as it is now, on it what the robot sees, wants and has done."""
         watch, plan, there = self._watch, self._floor.copy(), self._result.map_in_world
         if watch.map is not None:
-            _draw_cells(plan, watch.map, there)
+            _lay_cells(plan, watch.map, there)
         plan.line(np.array(records.truth).reshape(-1, 4)[:, 1:3], DRIVEN, 2)
         plan.line(transform_points(there, watch.plan), PLANNED, 2)
-        if watch.scan is not None and records.believed:
+        if watch.hits is not None and records.believed:
             laser = compose(compose(there, records.believed_pose), LASER)
-            plan.dots(transform_points(laser, watch.scan.points), SCAN)
+            plan.dots(transform_points(laser, watch.hits), SCAN)
         plan.arrow(records.true_pose, 0.38, CAR)
         return plan.image
 
 
-def _draw_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
+def _lay_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
     """Unknown cells have the floor's colour."""
     cells = np.full((*grid.cells.shape, 3), bgr(FLOOR), np.uint8)
     cells[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = bgr(CLEAR)
@@ -111,3 +107,52 @@ def _draw_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> N
     turn = cv2.getAffineTransform(corners.astype(np.float32), there.astype(np.float32))
     plan.image = cv2.warpAffine(cells, turn, plan.image.shape[1::-1], flags=cv2.INTER_NEAREST,
                                 borderValue=bgr(FLOOR))
+
+
+def map_picture(ground: Ground, result: Result, title: str, subtitle: str) -> np.ndarray:
+    """The picture (rows, 1400, 3), BGR."""
+    walls = ground.walls
+    low = np.array(walls.origin)
+    high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
+    figure, axes = map_sheet(title, subtitle, low - 0.3, high + 0.3)
+    axes.grid(False)
+    if result.map is not None:
+        _draw_cells(axes, result.map, result.map_in_world)
+    x, y = _edges(walls)
+    middle = walls.resolution / 2
+    axes.contour(x[:-1] + middle, y[:-1] + middle, walls.cells == OCCUPIED, levels=[0.5],
+                 colors=[TRUE_WALL], linewidths=1)
+    axes.plot([], [], color=TRUE_WALL, label="true wall")
+    for part, text, colour in PATHS:
+        axes.plot(*result.paths.get(part, np.empty((0, 2))).T, color=colour, linewidth=2,
+                  label=text)
+    ways = result.navigation.ways if result.navigation else []
+    for number, way in enumerate(ways, start=1):
+        ends = transform_points(np.array(way.goal), np.array([(0.0, 0.0), (0.4, 0.0)]))
+        axes.plot(*ends.T, color=GOAL if way.reached else CAR, linewidth=2, marker="o",
+                  markevery=[0], markersize=12, fillstyle="none")
+        axes.annotate(str(number), ends[0], (10, 8), textcoords="offset points", color=TEXT)
+    for colour, text in ((GOAL, "goal"), (CAR, "not reached")):
+        axes.plot([], [], "o", color=colour, fillstyle="none", label=text)
+    legend(axes)
+    return pixels(figure)
+
+
+def _draw_cells(axes: object, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
+    """Free and occupied cells, turned to where the map lies in the world."""
+    from matplotlib.colors import ListedColormap
+
+    shade = np.zeros(grid.cells.shape)
+    shade[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = 1
+    shade[grid.cells >= OCCUPIED_FROM] = 2
+    corners = np.stack(np.meshgrid(*_edges(grid)), axis=-1)
+    there = transform_points(np.asarray(grid_in_world), corners.reshape(-1, 2))
+    axes.pcolormesh(*there.reshape(corners.shape).transpose(2, 0, 1), shade, vmin=0, vmax=2,
+                    cmap=ListedColormap([FLOOR, CLEAR, TEXT]), rasterized=True)
+
+
+def _edges(grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of the cells' borders in the grid's frame, m."""
+    rows, columns = grid.cells.shape
+    return (grid.origin[0] + np.arange(columns + 1) * grid.resolution,
+            grid.origin[1] + np.arange(rows + 1) * grid.resolution)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from evaluation.trial.table import cell, mean
+from evaluation.trial.report import cell, grouped, mean
 
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
@@ -50,8 +50,18 @@ class Drive:
 
     @property
     def name(self) -> str:
-        """As its files are called."""
+        """Of its case, and as its files are called."""
         return f"{self.set}-{self.seed}-{self.repeat}"
+
+    @property
+    def line(self) -> str:
+        """On one line."""
+        why = f" ({self.why})" if self.why else ""
+        air = self.to_obstacles if self.to_person is None else self.to_person
+        recovered = f", {len(self.recoveries)} recoveries" if self.recoveries else ""
+        return (f"{self.name}: {self.outcome}{why}, {self.time:.1f} s (straight"
+                f" {self.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
+                f" real time x{self.real_time_factor:.2f}")
 
 
 COLUMNS = {
@@ -70,8 +80,7 @@ COLUMNS = {
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
     """One for each set; means are of drives that reached the goal, None where none did."""
-    sets = dict.fromkeys(drive.set for drive in drives)
-    return [_summary(name, [drive for drive in drives if drive.set == name]) for name in sets]
+    return [_summary(*group) for group in grouped(drives, lambda drive: drive.set).items()]
 
 
 def _summary(name: str, drives: list[Drive]) -> dict:
@@ -92,23 +101,3 @@ def _summary(name: str, drives: list[Drive]) -> dict:
         "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
         "failed": [drive.name for drive in drives if not drive.reached],
     }  # fmt: skip
-
-
-def passed(drives: Sequence[Drive]) -> bool:
-    """Enough goals reached, and nobody touched by the robot; who stands still touches nobody."""
-    touched = any(d.set == CROSSINGS and d.outcome == CONTACT for d in drives)
-    counted = [drive for drive in drives if drive.outcome != WALKED_INTO]
-    return not touched and all(
-        sum(reached) >= LEAST_SHARE * len(reached)
-        for reached in ([d.reached for d in counted if d.set == name]
-                        for name in (YARDS, CROSSINGS)))
-
-
-def drive_line(drive: Drive) -> str:
-    """One drive on one line."""
-    why = f" ({drive.why})" if drive.why else ""
-    air = drive.to_obstacles if drive.to_person is None else drive.to_person
-    recovered = f", {len(drive.recoveries)} recoveries" if drive.recoveries else ""
-    return (f"{drive.name}: {drive.outcome}{why}, {drive.time:.1f} s (straight"
-            f" {drive.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
-            f" real time x{drive.real_time_factor:.2f}")

@@ -1,41 +1,76 @@
-"""yards.png and crossings.png: every drive's way, seen from above."""
+"""trials.png: time, air and difficulty; yards.png, crossings.png: every way from above."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from evaluation.colours import CAR, FAINT, GOOD, lap_colour
-from evaluation.picture import write_tiles
-from evaluation.yards.results import CROSSINGS, YARDS, Drive
+from evaluation.picture import chart, write_tiles
+from evaluation.trial.report import grouped
+from evaluation.yards.outcomes import CROSSINGS, REACHED, YARDS, Drive
 from trial_worlds.crossing import APPROACH, PERSON_RADIUS, Crossing
 from trial_worlds.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
 
 YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
 ROOM = (-0.2, 5.2, *YARD[2:])
 TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
+COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
+           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}  # fmt: skip
+
+# Set, what is along, across, and their values.
+PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], float]], ...] = (
+    (YARDS, "yard", "time by straight-line time",
+     lambda drive: drive.seed, lambda drive: drive.time / drive.straight_time),
+    (YARDS, "closest obstacle along the shortest way, cells", "time by straight-line time",
+     lambda drive: drive.drawn["closest_obstacle"],
+     lambda drive: drive.time / drive.straight_time),
+    (YARDS, "yard", "least air, cm",
+     lambda drive: drive.seed, lambda drive: (drive.to_obstacles or 0.0) * 100),
+    (CROSSINGS, "crossing", "least air to the person, cm",
+     lambda drive: drive.seed, lambda drive: (drive.to_person or 0.0) * 100),
+)  # fmt: skip
+
+
+def write_chart(drives: Sequence[Drive], path: Path) -> None:
+    """Four panels; the colour says how a drive ended."""
+    with chart(path, 2, 2) as grid:
+        for axes, (kind, along, across, x, y) in zip(grid.flat, PANELS, strict=True):
+            _draw(axes, [drive for drive in drives if drive.set == kind], x, y)
+            axes.set_xlabel(along, fontsize=9)
+            axes.set_ylabel(across, fontsize=9)
+
+
+def _draw(axes: object, drives: Sequence[Drive], x: Callable[[Drive], float],
+          y: Callable[[Drive], float]) -> None:
+    for outcome, colour in COLOURS.items():
+        found = [drive for drive in drives if drive.outcome == outcome]
+        if found:
+            marker = "o" if outcome == REACHED else "x"
+            axes.plot([x(drive) for drive in found], [y(drive) for drive in found], marker,
+                      color=colour, label=f"{outcome}: {len(found)}")
+    if drives:
+        axes.legend(fontsize=8)
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
 
 
 def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
     """Write them below `out`; returns their names."""
     written = []
+    sets = grouped(drives, lambda drive: drive.set)
     for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
-        groups: dict[int, list[Drive]] = {}
-        for drive in drives:
-            if drive.set == kind:
-                groups.setdefault(drive.seed, []).append(drive)
-
         def draw(axes: object, group: list[Drive], edges=edges, ground=ground) -> tuple[str, bool]:
             axes.set(xlim=edges[:2], ylim=edges[2:])
             ground(axes, group[0])
             return _draw_ways(axes, group, out)
 
-        if groups:
+        if kind in sets:
+            groups = list(grouped(sets[kind], lambda drive: drive.seed).values())
             height = TILE_WIDTH * (edges[3] - edges[2]) / (edges[1] - edges[0]) + CAPTION
-            write_tiles(out / f"{kind}.png", list(groups.values()), draw, (TILE_WIDTH, height))
+            write_tiles(out / f"{kind}.png", groups, draw, (TILE_WIDTH, height))
             written.append(f"{kind}.png")
     return written
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-
-from evaluation.trial.table import table
 
 FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
 RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees, at most, of a pose that counts as right
@@ -21,7 +18,6 @@ LIMITS_IN_REPORT = {
     "right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
     "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG], "cpu": MOST_CPU,
 }  # fmt: skip
-Row = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ class Tracking:
         return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
 
     @property
-    def row(self) -> Row:
+    def row(self) -> tuple[str, str, str, str]:
         """Of the table."""
         return (f"tracking, {self.time:.0f} s", f"{self.off * 100:.1f} cm, {self.off_deg:.1f}°",
                 f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
@@ -109,7 +105,7 @@ class Load:
         return f"load: {self.percent:.0f} % of a core"
 
     @property
-    def row(self) -> Row:
+    def row(self) -> tuple[str, str, str, str]:
         """Of the table."""
         return (f"amcl with {self.particles} particles", f"{self.percent:.0f} % of a core",
                 f"{MOST_CPU:.0f} %", f"real time x{self.simulated / self.wall:.2f}")
@@ -118,56 +114,21 @@ class Load:
 Result = Trial | Tracking | Load
 
 
-def passed(results: Sequence[Result]) -> bool:
-    """Is all that was tried within the limits?"""
-    shares = [sum(each.right for each in found) >= LEAST_SHARES[kind] * len(found)
-              for kind, found in _sets(results).items()]
-    return all(shares) and all(each.passed for each in results if not isinstance(each, Trial))
+def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
+    """Of a drive of so many s, simulated, and m; errors are (N, 2), m and rad."""
+    mean, largest = errors.mean(axis=0), errors.max(axis=0)
+    return Tracking(seconds, driven, float(mean[0]), float(np.degrees(mean[1])),
+                    float(largest[0]), float(np.degrees(largest[1])))
 
 
-def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
-    trials = [each for each in results if isinstance(each, Trial)]
-    return {kind: [each for each in trials if each.set == kind] for kind in LEAST_SHARES}
-
-
-@dataclass(frozen=True)
-class Search:
-    """What was seen of a robot that had to be found; s, simulated."""
-
-    set: str
-    number: int
-    start: tuple[float, float, float]  # in the world; m, rad
-    began: float
-    times: np.ndarray  # (N,)
-    errors: np.ndarray  # (N, 2), m and rad
-    touched: int
-
-
-@dataclass(frozen=True)
-class Tracked:
-    """What was seen of a long drive."""
-
-    seconds: float  # simulated
-    driven: float  # m
-    errors: np.ndarray  # (N, 2), m and rad
-
-
-def score(record: Search | Tracked | Load) -> Result:
-    """The result of a record."""
-    if isinstance(record, Load):
-        return record
-    if isinstance(record, Tracked):
-        mean, largest = record.errors.mean(axis=0), record.errors.max(axis=0)
-        return Tracking(record.seconds, record.driven, float(mean[0]), float(np.degrees(mean[1])),
-                        float(largest[0]), float(np.degrees(largest[1])))
-    times, errors = record.times, record.errors
+def searched(kind: str, number: int, start: tuple[float, float, float], began: float,
+             times: np.ndarray, errors: np.ndarray, touched: int) -> Trial:
+    """Of a robot that had to be found; times (N,), s, simulated; errors (N, 2), m and rad."""
     since = right_since(times, errors)
     held = since is not None and times[-1] - since >= HOLD
     off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
-    return Trial(record.set, record.number, record.start,
-                 round(since - record.began, 2) if held else None, off,
-                 turned if turned is None else round(float(np.degrees(turned)), 3),
-                 record.touched)
+    return Trial(kind, number, start, round(since - began, 2) if held else None, off,
+                 turned if turned is None else round(float(np.degrees(turned)), 3), touched)
 
 
 def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
@@ -177,16 +138,3 @@ def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
     wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))
     first = wrong[-1] + 1 if len(wrong) else 0
     return float(times[first]) if first < len(times) else None
-
-
-def summary_table(results: Sequence[Result]) -> str:
-    """A row for each thing that was tried, with its limit."""
-    rows = [("", "found", "wanted", "")]
-    for kind, trials in _sets(results).items():
-        if trials:
-            took = [trial.took for trial in trials if trial.right]
-            median = f"in {np.median(took):.1f} s (median)" if took else ""
-            rows.append((f"{kind}, within {LIMITS[kind]:.0f} s", f"{len(took)} of {len(trials)}",
-                         f"{LEAST_SHARES[kind]:.0%}", median))
-    rows += [each.row for each in results if not isinstance(each, Trial)]
-    return table(rows, left=range(4))
