@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.display_type import DisplayType, Problem, Statuses, simple
 from sim_viewer.rviz.displays import point_style
 from sim_viewer.rviz.displays.point_style import colours_of, counted, evenly
@@ -15,8 +16,8 @@ NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8
 COLOURS = ("rgb", "rgba")
 
 
-def cloud_points(message: Any, options: dict[str, Any],
-                 most: int) -> tuple[list[Part], Statuses]:
+def cloud_points(message: Any, options: dict[str, Any], most: int,
+                 pose: Pose) -> tuple[list[Part], Statuses]:
     """As many as the page takes, evenly from the whole cloud. Problem for sizes that do not fit."""
     table = records(message)
     chosen = table[evenly(len(table), most)]
@@ -27,7 +28,8 @@ def cloud_points(message: Any, options: dict[str, Any],
         colours = packed_colours(chosen[colour])
     else:
         channel = options["Channel Name"]
-        colours = colours_of(positions, chosen[channel] if channel in names else None, options)
+        values = chosen[channel] if channel in names else None
+        colours = colours_of(positions, values, options, pose)
     return [point_style.points(positions, colours, options)], counted(len(chosen), len(table))
 
 
@@ -65,7 +67,7 @@ def packed_colours(values: np.ndarray) -> np.ndarray:
 
 TYPE = DisplayType(
     "rviz/PointCloud2", simple(cloud_points), messages=("sensor_msgs/PointCloud2",),
-    topic="/camera/depth/points",
+    topic="/camera/depth/points", most_bytes=1 << 29,
     options=(Option("Color Transformer", "choice", "RGB8",
                     ("RGB8", "RGBF32", "Intensity", "AxisColor", "FlatColor")),
              *point_style.OPTIONS))
