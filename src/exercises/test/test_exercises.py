@@ -2,6 +2,8 @@
 
 import os
 import re
+import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +17,7 @@ from exercises.catalogue import find_exercises
 from exercises.errors import Mistake
 from exercises.main import main
 
+ROOT = Path(__file__).resolve().parents[3]
 EXERCISES = find_exercises()
 NODES = "radar", "switch", "wall"  # checks that need a master: test_exercise_nodes.py tries one
 WITHOUT_MASTER = [name for name, exercise in EXERCISES.items() if exercise.check not in NODES]
@@ -65,6 +68,18 @@ def test_rosrun_finds_the_starting_file_and_not_the_solution(exercise):
     assert not os.access(exercise.solution, os.X_OK)
     if exercise.start.suffix == ".py":
         assert exercise.start.read_text(encoding="utf-8").startswith("#!/usr/bin/env python3\n")
+
+
+def test_make_test_does_not_judge_a_learners_unfinished_file():
+    """Style and imports: ruff and test_arrows.py leave the starting files alone."""
+    ruff = shutil.which("ruff") or "ruff"
+    styled = subprocess.run([ruff, "check", "--show-files"], cwd=ROOT, capture_output=True,
+                            text=True, check=True).stdout.splitlines()
+    walked = {str(path) for path in runpy.run_path(str(ROOT / "test/test_arrows.py"))[
+        "python_files"]()}
+    for exercise in EXERCISES.values():
+        assert str(exercise.start) not in walked.union(styled)
+    assert str(ROOT / "src/exercises/src/exercises/main.py") in walked.intersection(styled)
 
 
 @pytest.mark.parametrize("folder", sorted(LESSONS), ids=lambda folder: folder.name)
