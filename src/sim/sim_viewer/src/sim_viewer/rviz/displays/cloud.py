@@ -14,6 +14,7 @@ from sim_viewer.rviz.options import Option
 # sensor_msgs/PointField's datatypes
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 COLOURS = ("rgb", "rgba")
+PACKED = "RGB8", "RGBF32"  # the Color Transformers that need them
 
 
 def cloud_points(message: Any, options: dict[str, Any], most: int,
@@ -24,10 +25,13 @@ def cloud_points(message: Any, options: dict[str, Any], most: int,
     positions = np.stack([chosen[axis].astype(np.float32) for axis in "xyz"], axis=1)
     kind, names = options["Color Transformer"], chosen.dtype.names
     colour = next((name for name in COLOURS if name in names), None)
-    if kind in ("RGB8", "RGBF32") and colour:
+    channel = options["Channel Name"]
+    if kind in PACKED and colour:
         colours = packed_colours(chosen[colour])
     else:
-        channel = options["Channel Name"]
+        if kind in PACKED:  # what rviz takes where a cloud has no colours
+            options = options | {"Color Transformer": "Intensity" if channel in names
+                                 else "AxisColor"}
         values = chosen[channel] if channel in names else None
         colours = colours_of(positions, values, options, pose)
     return [point_style.points(positions, colours, options)], counted(len(chosen), len(table))
