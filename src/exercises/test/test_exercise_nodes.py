@@ -18,8 +18,12 @@ def check(command, *file):
                           timeout=120)
 
 
-def test_the_starting_file_fails_and_the_solution_passes():
-    begun, solved = check(TYPED), check(SCRIPT, f"{LESSON}/solutions/turtle_switch.py")
+def test_a_toggle_fails_and_the_solution_passes(tmp_path):
+    solution = Path(LESSON) / "solutions/turtle_switch.py"
+    toggle = tmp_path / "mine.py"
+    toggle.write_text(solution.read_text(encoding="utf-8").replace(
+        "self.driving = request.data", "self.driving = not self.driving"), encoding="utf-8")
+    begun, solved = check(TYPED, str(toggle)), check(SCRIPT, str(solution))
     assert begun.returncode == 1, begun.stdout + begun.stderr
     assert "FAIL  after /turtle_drive true: the turtle stands, wanted the turtle drives" \
         in begun.stdout

@@ -2,31 +2,63 @@
 
 import os
 import re
+import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import yaml
 
 from exercises import node
 from exercises.catalogue import find_exercises
 from exercises.errors import Mistake
 from exercises.main import main
 
+ROOT = Path(__file__).resolve().parents[3]
 EXERCISES = find_exercises()
 NODES = "radar", "switch", "wall"  # checks that need a master: test_exercise_nodes.py tries one
 WITHOUT_MASTER = [name for name, exercise in EXERCISES.items() if exercise.check not in NODES]
 LESSONS = {exercise.start.parents[1] for exercise in EXERCISES.values()}
 
 
+ANSWERS = yaml.safe_load(Path(__file__).with_name("answers.yaml").read_text(encoding="utf-8"))
+
+
+def committed(path):
+    """The text as git has it: a learner may have solved the exercise in place. None without git."""
+    done = subprocess.run(["git", "show", f"HEAD:./{path.name}"], cwd=path.parent,
+                          capture_output=True)
+    return done.stdout.decode() if done.returncode == 0 else None
+
+
 @pytest.mark.parametrize("name", WITHOUT_MASTER)
-def test_the_starting_file_fails_and_the_solution_passes(name, capsys):
-    assert main([name]) == 1
-    assert "FAIL  " in capsys.readouterr().out
-    assert main([name, str(EXERCISES[name].solution)]) == 0
+def test_the_starting_file_fails_and_the_solution_passes(name, tmp_path, capsys):
+    exercise = EXERCISES[name]
+    begun = committed(exercise.start)
+    if begun is not None:
+        (tmp_path / exercise.start.name).write_text(begun, encoding="utf-8")
+        assert main([name, str(tmp_path / exercise.start.name)]) == 1
+        assert "FAIL  " in capsys.readouterr().out
+    assert main([name, str(exercise.solution)]) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[-1].startswith("passed, ") and all(" wanted " in line for line in said[1:-1])
+
+
+@pytest.mark.parametrize(("name", "answer"), [(name, answer) for name, answers in ANSWERS.items()
+                                              for answer in answers])
+def test_what_learners_may_answer(name, answer, tmp_path, capsys):
+    """The solution with one part of it written otherwise; `said`: what is wrong with it."""
+    solution = EXERCISES[name].solution
+    text = solution.read_text(encoding="utf-8")
+    assert text.count(answer["part"]) == 1
+    file = tmp_path / solution.name
+    file.write_text(text.replace(answer["part"], answer["written"]), encoding="utf-8")
+    assert main([name, str(file)]) == ("said" in answer)
+    seen = [line for line in capsys.readouterr().out.splitlines() if line.startswith("FAIL")]
+    assert "said" not in answer or any(answer["said"] in line for line in seen)
 
 
 @pytest.mark.parametrize("exercise", EXERCISES.values(), ids=EXERCISES)
@@ -36,6 +68,18 @@ def test_rosrun_finds_the_starting_file_and_not_the_solution(exercise):
     assert not os.access(exercise.solution, os.X_OK)
     if exercise.start.suffix == ".py":
         assert exercise.start.read_text(encoding="utf-8").startswith("#!/usr/bin/env python3\n")
+
+
+def test_make_test_does_not_judge_a_learners_unfinished_file():
+    """Style and imports: ruff and test_arrows.py leave the starting files alone."""
+    ruff = shutil.which("ruff") or "ruff"
+    styled = subprocess.run([ruff, "check", "--show-files"], cwd=ROOT, capture_output=True,
+                            text=True, check=True).stdout.splitlines()
+    walked = {str(path) for path in runpy.run_path(str(ROOT / "test/test_arrows.py"))[
+        "python_files"]()}
+    for exercise in EXERCISES.values():
+        assert str(exercise.start) not in walked.union(styled)
+    assert str(ROOT / "src/exercises/src/exercises/main.py") in walked.intersection(styled)
 
 
 @pytest.mark.parametrize("folder", sorted(LESSONS), ids=lambda folder: folder.name)
@@ -68,6 +112,8 @@ def test_an_unknown_name_lists_all(capsys):
     ("def white_mask(image)\n", ":1: expected ':': def white_mask(image)"),
     ("import no_such_module\n", ":1: ModuleNotFoundError: No module named 'no_such_module'"),
     ("import sys\nsys.exit('no screen')\n", ":2: SystemExit: no screen"),
+    ("from __future__ import annotations\nfrom dataclasses import dataclass\n@dataclass\n"
+     "class Mask:\n    size: int\n", "has no `white_mask(image)`"),
     ("def mask(image): pass\n", "has no `white_mask(image)`, which the check calls"),
 ])
 def test_what_cannot_be_checked_is_one_line(tmp_path, capsys, text, said):
@@ -80,6 +126,7 @@ def test_what_cannot_be_checked_is_one_line(tmp_path, capsys, text, said):
 
 
 @pytest.mark.parametrize(("body", "said"), [
+    ("exit()", "mine.py:2: SystemExit:"),
     ("1 / 0", "mine.py:2: ZeroDivisionError: division by zero"),
     ("return None", "white_mask(image) answered None, wanted a mask (120, 90)"),
     ("return image", "answered an array (120, 90, 3), wanted a mask (120, 90)"),

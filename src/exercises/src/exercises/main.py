@@ -97,10 +97,13 @@ def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
         yield from module.look(file.resolve(), exercise.limits)
     except (CannotCheck, Mistake, RunError):
         raise
-    except Exception as error:
-        if line_in(error, file.resolve()) is None:
-            raise
-        raise Mistake(said(error, file.resolve())) from error
+    except (Exception, SystemExit) as error:
+        if line_in(error, file.resolve()) is not None:
+            raise Mistake(said(error, file.resolve())) from error
+        if isinstance(error, (AttributeError, TypeError)):  # what it calls is not as it was
+            raise Mistake(f"{file}: {error}: keep names, arguments and answers as in the starting"
+                          " file") from error
+        raise
 
 
 def shown(path: Path) -> str:

@@ -18,6 +18,8 @@ def compiled(file: Path) -> CodeType:
     """The file's code; CannotCheck says in a line what of it is no Python."""
     try:
         return compile(file.read_bytes(), str(file), "exec")
+    except OSError as error:
+        raise CannotCheck(f"{file}: {error.strerror}: make it readable") from error
     except (SyntaxError, ValueError) as error:
         line = (getattr(error, "text", None) or "").strip()
         raise CannotCheck(f"{file}:{getattr(error, 'lineno', None) or 1}: {error.args[0]}"
@@ -29,6 +31,7 @@ def load(file: Path) -> ModuleType:
     code = compiled(file)
     module = ModuleType(f"exercise_{file.stem}", None)
     module.__file__ = str(file)
+    sys.modules[module.__name__] = module  # dataclasses look there
     sys.path.insert(0, str(file.parent))
     try:
         exec(code, module.__dict__)

@@ -21,8 +21,8 @@ class MadeUpView:
         self.parameters: dict[str, str] = {}
         self.known_until = float("inf")
 
-    def pose(self, frame: str, stamp: float = 0.0) -> Pose:
-        if frame not in self.places or stamp > self.known_until:
+    def pose(self, frame: str, stamp: int = 0) -> Pose:
+        if frame not in self.places or stamp > self.known_until * 1e9:
             raise NoTransform(f"For frame [{frame}]: Frame [{frame}] does not exist")
         return self.places[frame]
 

@@ -68,6 +68,11 @@ def test_what_is_unknown_becomes_an_entry_and_a_wrong_value_a_warning():
     ("Visualization Manager: {Displays: 3}", "Displays is no list"),
     ("Visualization Manager: {Displays: [{Name: a}]}", "entry 1 has no Class"),
     ("Visualization Manager: {Global Options: 1}", "Global Options is no mapping"),
+    ("Visualization Manager: {Displays: &a [{Class: rviz/Group, Displays: *a}]}",
+     "line 1: this is no YAML: an alias (*name)"),
+    ("Visualization Manager: {Displays: [&a {Class: rviz/Grid, Offset: *a}]}", "an alias (*name)"),
+    ("Date: 2001-13-01", "this is no YAML: month must be in 1..12"),
+    ("a" * (1 << 20) + "b", "is larger than 1048576 bytes"),
     ("\0", "this is no YAML"), (b"\xff\xfe\x80", "is no text"),
     ("Visualization Manager: {Displays: [" + "{Class: rviz/Grid}," * 51 + "]}", "51 displays"),
 ])

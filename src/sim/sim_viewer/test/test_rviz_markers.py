@@ -10,6 +10,7 @@ from rviz_messages import (
 )
 from rviz_view import MadeUpView, draw, drawer, only
 from sim_viewer.rviz.display_type import ERROR
+from sim_viewer.rviz.displays import markers as module
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
@@ -56,6 +57,27 @@ def test_markers_are_changed_deleted_and_gone_after_their_lifetime():
     assert cubes(made, view) == 3
     made.take(marker(action=Marker.DELETEALL), None, 0.0)
     assert cubes(made, view) == 0
+
+
+def test_markers_with_a_lifetime_are_gone_when_time_begins_anew():
+    made, view = drawer("Marker"), MadeUpView()
+    view.now = 1000.0
+    brief = marker(id=1)
+    brief.lifetime.secs = 2
+    for one in (marker(id=0), brief):
+        made.take(one, None, view.now)
+    assert cubes(made, view) == 2
+    view.now = 0.5
+    assert cubes(made, view) == 1
+
+
+def test_more_markers_than_are_shown_are_told_of(monkeypatch):
+    monkeypatch.setattr(module, "MOST_MARKERS", 2)
+    made, view = drawer("Marker"), MadeUpView()
+    for number in range(3):
+        made.take(marker(id=number), None, 0.0)
+    assert cubes(made, view) == 2
+    assert made.statuses["Markers"] == ("warning", "showing 2: more are left out")
 
 
 def test_a_marker_stays_where_its_frame_was_unless_it_is_locked_to_it():

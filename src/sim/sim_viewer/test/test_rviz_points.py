@@ -85,6 +85,26 @@ def test_colours_of_a_cloud_are_unpacked_and_what_is_no_number_is_left_out():
     assert part.arrays["colour"].tolist() == [[255, 0, 0, 255]] * 3
 
 
+def test_a_cloud_without_colours_is_coloured_by_intensity_or_else_by_height():
+    message = cloud(2)
+    message.data = np.array([(0, 0, 2), (1, 0, 1)], "<f4").tobytes()
+    assert only(draw("PointCloud2", message)[0]).arrays["colour"][:, 2].tolist() == [255, 0]
+    message.fields[0].name, message.fields[2].name = "intensity", "x"
+    message.fields.append(PointField("z", 4, PointField.FLOAT32, 1))
+    assert only(draw("PointCloud2", message)[0]).arrays["colour"][:, 2].tolist() == [0, 255]
+
+
+@pytest.mark.parametrize("fixed, seen", [(True, [(255, 0, 255), (255, 0, 0)]),
+                                         (False, [(255, 0, 0)] * 2)])
+def test_an_axis_colours_in_the_fixed_frame(fixed, seen):
+    message = cloud(2)
+    message.data = np.array([(0, 0, 1), (0, 1, 1)], "<f4").tobytes()  # a camera: z ahead, y down
+    camera = Pose.from_xyz_rpy((0.0, 0.0, 1.0), (-math.pi / 2, 0.0, -math.pi / 2))
+    colours = only(draw("PointCloud2", message, camera, **{
+        "Color Transformer": "AxisColor", "Use Fixed Frame": fixed})[0]).arrays["colour"]
+    assert [tuple(one[:3]) for one in colours.tolist()] == seen
+
+
 @pytest.mark.parametrize("changes, said", [
     ({"width": 4_000_000_000}, "does not match width"), ({"data": b""}, "does not match width"),
     ({"row_step": 3}, "does not match width"), ({"fields": []}, "no field x"),

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import Quaternion
+from geometry_msgs.msg import Point, PointStamped, Quaternion
 from nav_msgs.msg import Odometry
 from rviz_messages import at, estimate, footprint, particles, path, sonar
 from rviz_view import MadeUpView, draw, drawer, only
 from sim_viewer.rviz.display_type import Problem
+from sim_viewer.rviz.displays import poses
 
 from bullet_sim.pose import IDENTITY, Pose
 
@@ -70,6 +71,26 @@ def test_odometry_leaves_a_trail_of_as_many_as_are_kept():
     assert len(made.draw(MadeUpView())[0].arrays["rows"]) == 3
 
 
+def test_a_trail_without_a_limit_has_one(monkeypatch):
+    monkeypatch.setattr(poses, "MOST_KEPT", 2)
+    made = drawer("Odometry", **{"Keep": 0, "Covariance/Value": False})
+    for x in range(5):
+        made.take(odometry(float(x)), IDENTITY, 0.0)
+    assert len(made.draw(MadeUpView())[0].arrays["rows"]) == 2
+
+
+def test_points_are_balls_and_some_are_kept():
+    made = drawer("PointStamped", **{"History Length": 2, "Radius": 0.3})
+    for x in (1.0, 2.0, 3.0):
+        made.take(PointStamped(point=Point(x, 0.0, 0.5)), Pose((10.0, 0.0, 0.0)), 0.0)
+    balls = made.draw(MadeUpView())
+    assert [one.arrays["rows"][0].tolist() for one in balls] == [
+        pytest.approx([x, 0, 0.5, 0, 0, 0, 1, 0.3, 0.3, 0.3]) for x in (2, 3)]
+    assert [one.pose.position for one in balls] == [(10.0, 0.0, 0.0)] * 2
+    with pytest.raises(Problem, match="nans or infs"):
+        draw("PointStamped", PointStamped(point=Point(math.nan, 0, 0)))
+
+
 @pytest.mark.parametrize("turn, said", [(Quaternion(0, 0, 0, 5), "quaternions"),
                                         (Quaternion(math.nan, 0, 0, 1), "nans or infs")])
 def test_what_is_no_rotation_is_refused(turn, said):
@@ -106,6 +127,12 @@ def test_a_grid_has_as_many_lines_as_its_cells_need():
     assert np.abs(part.arrays["position"]).max() == 1.0
     with pytest.raises(Problem):
         draw_fixed("Axes", **{"Reference Frame": "lost"})
+
+
+def test_a_grid_is_as_wide_as_its_style_says():
+    widths = [only(draw_fixed("Grid", **{"Line Style/Value": style, "Line Style/Line Width": 0.03}))
+              .fields["width"] for style in ("Lines", "Billboards")]
+    assert widths == [0.0, 0.03]
 
 
 def draw_fixed(name, **options):

@@ -3,6 +3,7 @@
 import asyncio
 import math
 import time
+from types import SimpleNamespace
 
 import pytest
 import rospy
@@ -12,10 +13,12 @@ from sim_viewer.context import Context, Node
 from sim_viewer.options import Options
 from sim_viewer.registry import Refused
 from sim_viewer.rviz.display import Display, Displays
+from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.page import rviz_config, rviz_types
 from sim_viewer.rviz.tools import TOOLS, Publishers, rviz_publish
 from sim_viewer.rviz.types import TYPES
-from sim_viewer.transforms import NoPose, Transforms
+from sim_viewer.tools.clock import SharedClock
+from sim_viewer.transforms import NANO, NoPose, Transforms
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
@@ -54,6 +57,38 @@ def test_a_number_belongs_to_one_display(context):
         context.loop.run_until_complete(Display(context, HONEST, print).start())
 
 
+@pytest.fixture
+def laser(context, monkeypatch):
+    """Makes a display of a topic; nothing is subscribed to but counted."""
+    for kind in (Transforms, SharedClock):
+        monkeypatch.setattr(kind, "subscribe", lambda _: SimpleNamespace(unregister=lambda: None))
+    return lambda topic: Display(
+        context, {"display": 1, "class": "rviz/LaserScan", "frame": "map", "topic": topic}, print)
+
+
+def test_a_page_that_goes_while_a_display_is_opened_leaves_nothing_subscribed(context, laser):
+    shown = laser("")
+    context.loop.run_until_complete(shown.stop())
+    shown._open()  # in its thread, which nobody can stop
+    assert context.node.shared(Transforms)._holders == 0
+
+
+@pytest.mark.parametrize("topic", ["a b", "~mine", "/a" * 200])
+def test_what_is_no_name_of_a_topic_is_not_subscribed_to(laser, topic, monkeypatch):
+    monkeypatch.setattr(rospy, "Subscriber", None)
+    shown = laser(topic)
+    shown._open()
+    level, text = shown._showing.statuses["Topic"]
+    assert level == "error" and "is no name of a topic" in text and len(text) < 100
+
+
+def test_a_message_that_is_too_large_is_not_read(laser):
+    raw = SimpleNamespace(_buff=bytes(20 << 20),
+                          _connection_header={"type": "sensor_msgs/LaserScan"})
+    with pytest.raises(Problem, match="of 20 MB is larger than the 16 MB"):
+        laser("/scan")._read(raw)
+
+
 def test_the_page_is_told_of_all_displays_and_of_the_file(context):
     ask = context.loop.run_until_complete
     assert [kind["class"] for kind in ask(rviz_types(context))] == list(TYPES)
@@ -85,6 +120,8 @@ def test_tools_are_refused_what_is_no_topic_and_places_that_are_far_off(context)
                               ("goal", "~goal", "no name"), ("goal", "/" * 300, "no name")):
         with pytest.raises(Refused, match=said):
             publishers.open(tool, topic)
+    with pytest.raises(Refused, match="no fixed frame yet"):
+        context.loop.run_until_complete(rviz_publish(context, "goal", "/goal", "", 1.0, 0.0))
     with pytest.raises(Refused, match="farther than"):
         context.loop.run_until_complete(rviz_publish(context, "goal", "/goal", "map", 1e9, 0.0))
 
@@ -126,12 +163,21 @@ def test_frames_are_placed_at_the_time_that_is_asked_for():
     for stamp in (10.0, 11.0):
         frames._take(TFMessage([transform("/odom", "/base", stamp - 9.0, stamp)]), False)
     assert frames.frames() == {"map": "", "odom": "map", "base": "odom"}
-    assert frames.pose("map", "base", 10.5).position[0] == pytest.approx(2.5)
+    assert frames.pose("map", "base", 10_500_000_000).position[0] == pytest.approx(2.5)
     assert frames.pose("map", "base").position[0] == pytest.approx(3.0)  # the newest
     assert frames.pose("moon", "moon").position == (0.0, 0.0, 0.0)
-    for frame, stamp in (("base", 12.0), ("base", -1.0), ("moon", 0.0), ("", 0.0)):
+    for frame, stamp in (("base", 12 * NANO), ("base", -NANO), ("moon", 0), ("", 0)):
         with pytest.raises(NoPose):
             frames.pose("map", frame, stamp)
+
+
+def test_a_message_is_placed_at_its_own_nanosecond():
+    frames = Transforms()
+    stamp = rospy.Time(100, 300_000_000)  # Time.from_sec(100.3) is 1 ns earlier
+    only = transform("odom", "base", 5.0)
+    only.header.stamp = stamp
+    frames._take(TFMessage([only]), False)
+    assert frames.pose("odom", "base", stamp.to_nsec()).position[0] == 5.0
 
 
 def test_frames_are_forgotten_when_a_simulator_begins_anew():

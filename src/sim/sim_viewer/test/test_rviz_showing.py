@@ -1,17 +1,19 @@
 """One display at work: when its messages are shown, and what the list says below it."""
 
 import time
+import weakref
 
 import numpy as np
 import pytest
 import rospy
-from rviz_messages import grid, scan
+from rviz_messages import grid, odometry, scan
 from rviz_view import MadeUpView
 from sim_viewer.rviz import showing
 from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.options import check_all
 from sim_viewer.rviz.showing import Showing
 from sim_viewer.rviz.types import TYPES
+from visualization_msgs.msg import Marker
 
 from bullet_sim.pose import IDENTITY, Pose
 
@@ -124,3 +126,67 @@ def test_a_map_without_its_frame_is_hidden_and_the_list_says_why():
     shown.waiting.put(Raw(message))
     assert shown.look() == []
     assert shown.statuses["Transform"] == ("error", "No transform from [moon] to [map]")
+
+
+def test_what_was_shown_goes_with_the_fixed_frame_it_was_placed_in():
+    shown, view = begin()
+    view.places["laser"] = IDENTITY
+    shown.waiting.put(scan_at(1.0))
+    assert len(shown.look()) == 1
+    del view.places["laser"]  # in moon, nobody knows where it is
+    shown.change(check_all(TYPES["rviz/LaserScan"].options, {}), "moon")
+    assert shown.look() == [] and shown.look() is None
+
+
+def test_an_error_stays_until_something_can_be_drawn():
+    shown, view = begin()
+    view.places["laser"] = IDENTITY
+    broken = scan_at(1.0)
+    broken.message.angle_increment = np.nan
+    shown.waiting.put(broken)
+    for _ in range(2):
+        assert shown.look() is None
+        assert shown.statuses["Error"] == ("error", "The scan's angles are no numbers")
+    shown.waiting.put(scan_at(2.0))
+    assert shown.look() and "Error" not in shown.statuses
+
+
+@pytest.mark.parametrize("name, make", [("Map", grid), ("Marker", Marker)])
+def test_messages_that_were_shown_are_not_kept(name, make):
+    shown, view = begin(name)
+    raw = Raw(make())
+    gone = weakref.ref(raw)
+    shown.waiting.put(raw)
+    del raw
+    shown.look()
+    assert gone() is None
+    view.places["map"] = Pose((4.0, 0.0, 0.0))
+    shown.change(check_all(TYPES[f"rviz/{name}"].options, {}), "odom")
+    assert name == "Marker" or shown.look()[0].pose.position[0] == 1.0
+
+
+def test_a_long_decay_time_keeps_only_what_there_is_room_for(monkeypatch):
+    monkeypatch.setattr(showing, "MOST_BYTES", 100)
+    shown, view = begin(**{"Decay Time": 60.0})
+    view.places["laser"] = IDENTITY
+    for second in (1.0, 2.0, 3.0, 4.0):
+        view.now = second
+        message = scan_at(second)
+        message._buff = bytes(40)
+        shown.waiting.put(message)
+        parts = shown.look()
+    assert len(parts) == 2
+    assert shown.statuses["Messages"] == (
+        "warning", "showing the last 2: there is no room for more")
+
+
+def test_when_time_begins_anew_the_old_trail_is_gone():
+    shown, view = begin("Odometry")
+    view.places["odom"] = IDENTITY
+    for second, x in ((100.0, 0.0), (101.0, 5.0), (0.1, 9.0)):
+        view.now = second
+        message = odometry()
+        message.pose.pose.position.x = x
+        shown.waiting.put(Raw(message))
+        parts = shown.look()
+    assert len(parts[0].arrays["rows"]) == 1

@@ -14,7 +14,7 @@ CALL = "follow(x, y)"
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """It comes as near as asked, stands there, and never came nearer."""
+    """It comes as near as asked, stands there, never came nearer, and does not drive backwards."""
     follow = part(load(file), CALL)
     target, (x, y, yaw), apart, speed = (5.5, 5.5), (1.0, 1.0, math.pi), [], 0.0
     for _ in range(round(limits["seconds"] / STEP)):
@@ -28,3 +28,5 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     yield near("distance at the end", apart[-1], limits["distance"], limits["tolerance"], " m")
     yield at_least("least distance", min(apart), limits["distance"] - limits["tolerance"], " m")
     yield near("speed at the end", speed, 0.0, 0.05, " m/s")
+    too_near = float(follow(limits["distance"] / 2, 0.0).linear.x)
+    yield near("speed at half that distance", too_near, 0.0, 0.01, " m/s")

@@ -32,15 +32,18 @@ def bend(near: float, swing: float) -> np.ndarray:
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     """The column in the near rows counts; what is far away does not."""
     find_line, random = part(load(file), CALL), np.random.default_rng(0)
-    errors = []
+    errors, misplaced = [], 0
     for near, swing in random.uniform((150, -300), (490, 300), (round(limits["pictures"]), 2)):
         picture = bend(near, swing)
         answer = find_line(picture.copy())
         if answer is None:
             raise Mistake(f"{CALL} answered None for a line at column {near:.0f}")
         columns = np.nonzero((picture[BAND] == YELLOW).all(axis=2))[1]
-        errors.append(abs(numbers(answer, 2, CALL)[0] - columns.mean()))
+        column, row = numbers(answer, 2, CALL)
+        errors.append(abs(column - columns.mean()))
+        misplaced += not BAND.start <= row < BAND.stop
     yield at_most("largest error of the column, in bends", max(errors), limits["error_px"], " px")
+    yield at_most(f"answers with a row outside of {BAND.start} to {BAND.stop - 1}", misplaced, 0)
     far_only = bend(320.0, 0.0)
     far_only[5 * HEIGHT // 8:] = ASPHALT
     answer = find_line(far_only)

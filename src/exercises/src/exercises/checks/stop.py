@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exercises.finding import Finding, at_least, at_most, near
+from exercises.finding import Finding, at_least, near
 from exercises.program import load, numbers, part
 
 WIDTH, HEIGHT, HFOV = 640, 480, 1.3962634  # px, px, rad: as my_robot's camera
@@ -45,6 +45,6 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     yield near("distance to the cylinder's axis at the end", apart[-1], limits["distance"],
                limits["tolerance"], " m")
     yield at_least("least distance", min(apart), limits["distance"] - limits["tolerance"], " m")
-    yield at_most("speed at the end", abs(speed), 0.0, " m/s")
+    yield near("speed at the end", speed, 0.0, 0.02, " m/s")
     degrees = math.degrees(math.remainder(bearing, 2 * math.pi))
     yield near("bearing at the end", degrees, 0.0, 5.0, "°")

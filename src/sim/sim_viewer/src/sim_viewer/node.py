@@ -11,6 +11,7 @@ from rosgraph.network import get_local_addresses
 
 from sim_viewer import registry
 from sim_viewer.context import Node
+from sim_viewer.memory import give_back_large_blocks
 from sim_viewer.meshes import Meshes
 from sim_viewer.options import OptionError, read_options
 from sim_viewer.restart import restart, wait_for_other_master
@@ -20,6 +21,7 @@ from sim_viewer.server import NoPort, Server, further_urls, page_url
 
 def main(name: str = "sim_viewer", rviz: str = "") -> None:
     """Until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file."""
+    give_back_large_blocks()
     try:
         # The loop takes the signals; roslaunch and Ctrl-C end this node with SIGINT.
         rospy.init_node(name, disable_signals=True)

@@ -15,6 +15,7 @@ from bullet_sim.pose import IDENTITY, Pose
 from sim_viewer.subscription import SharedSubscription, Subscription
 from sim_viewer.tools import names
 
+NANO = 10**9  # ns
 JUMP = 2.0  # s that a stamp is older than the frame's last when time has begun anew
 
 
@@ -53,14 +54,16 @@ class Transforms(SharedSubscription):
         """Whether there is a transform to or from this frame."""
         return self._buffer._frameExists(frame.lstrip("/"))
 
-    def pose(self, fixed: str, frame: str, stamp: float = 0.0) -> Pose:
-        """Of `frame` in the frame `fixed` at a time in s, 0: the newest. NoPose if unknown."""
+    def pose(self, fixed: str, frame: str, stamp: int = 0) -> Pose:
+        """Of `frame` in the frame `fixed` at a time in ns, 0: the newest. NoPose if unknown."""
         # tf2 has no leading slashes; old tf nodes write them.
         fixed, frame = fixed.lstrip("/"), frame.lstrip("/")
         if frame == fixed:
             return IDENTITY
         try:
-            found = self._buffer.lookup_transform_core(fixed, frame, rospy.Time.from_sec(stamp))
+            # Of ns: Time.from_sec(100.3) is 1 ns early, and tf2 extrapolates nothing.
+            time = rospy.Time(*divmod(stamp, NANO))
+            found = self._buffer.lookup_transform_core(fixed, frame, time)
         except (tf2_ros.TransformException, ValueError, TypeError) as error:
             raise NoPose(str(error)) from None
         place, turn = found.transform.translation, found.transform.rotation

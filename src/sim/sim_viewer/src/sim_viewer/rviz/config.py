@@ -27,20 +27,33 @@ class ConfigError(ValueError):
     """A file of which nothing can be shown; the text names it, the place and what is wrong."""
 
 
+class Loader(yaml.SafeLoader):
+    """YAML without aliases: rviz writes none, and ten lines of them can stand for millions."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """ComposerError for an alias."""
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.composer.ComposerError(
+                None, None, "an alias (*name), which rviz never writes",
+                self.peek_event().start_mark)
+        return super().compose_node(parent, index)
+
+
 def read_config(path: str | Path) -> dict[str, Any]:
     """What `parse` gives for a file; ConfigError if it cannot be read."""
     path = Path(path)
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
-        if len(data) > LARGEST_FILE:
-            raise ConfigError(f"{path} is larger than {LARGEST_FILE} bytes: no .rviz file")
-        read = yaml.safe_load(data.decode("utf-8"))
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}; give a .rviz file") from None
+    if len(data) > LARGEST_FILE:
+        raise ConfigError(f"{path} is larger than {LARGEST_FILE} bytes: no .rviz file")
+    try:
+        read = Loader(data.decode("utf-8")).get_single_data()
     except UnicodeDecodeError:
         raise ConfigError(f"{path} is no text; give a .rviz file") from None
-    except (yaml.YAMLError, RecursionError) as error:
+    except (yaml.YAMLError, RecursionError, ValueError) as error:  # ValueError: month 13
         raise ConfigError(f"{path}{_where(error)}: this is no YAML: {_what(error)}") from None
     try:
         return parse(read)

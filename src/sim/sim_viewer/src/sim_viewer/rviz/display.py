@@ -1,12 +1,13 @@
 """`rviz_display`: one display of one page, from its topic to frames of drawing.py.
 
 Events are bytes, a frame, or {"status": [[name, level, text]], "namespaces": of markers}. The page
-answers a frame by the operation `rviz_drawn` once it is drawn, and only then comes the next: the
+answers a frame by `rviz_drawn` (answers.py) once it is drawn, and only then comes the next: the
 newest there is by then.
 """
 
 import asyncio
 import contextlib
+import threading
 import time
 from typing import Any
 
@@ -15,7 +16,7 @@ import rospy
 from roslib.message import get_message_class
 
 from sim_viewer.context import Context, Node
-from sim_viewer.registry import Refused, argument, operation, watchable
+from sim_viewer.registry import Refused, argument, watchable
 from sim_viewer.rviz.display_type import DisplayType, Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
 from sim_viewer.rviz.options import check_all
@@ -25,6 +26,7 @@ from sim_viewer.rviz.types import TYPES
 from sim_viewer.rviz.view import RosView
 from sim_viewer.subscription import decode
 from sim_viewer.tools.clock import SharedClock
+from sim_viewer.tools.names import is_topic
 from sim_viewer.transforms import Transforms
 
 RATE_HZ = 15.0  # of frames, at most
@@ -64,6 +66,8 @@ class Display:
         self._status: tuple[Any, float] = (None, 0.0)  # the last one, and when
         self._news = asyncio.Event()
         self._closing = contextlib.ExitStack()
+        self._lock = threading.Lock()  # a page may go while its display is being opened
+        self._ended = False
         self._task: asyncio.Task | None = None
 
     async def start(self) -> None:
@@ -81,7 +85,7 @@ class Display:
             del shown[self._key]
         if self._task:
             self._task.cancel()
-        await self._context.run_in_thread(self._closing.close)
+        await self._context.run_in_thread(self._close)
 
     def drawn(self, number: int) -> None:
         """The page has drawn a frame; in the loop."""
@@ -95,6 +99,16 @@ class Display:
         self._news.set()
 
     def _open(self) -> None:
+        with self._lock:
+            if not self._ended:
+                self._subscribe()
+
+    def _close(self) -> None:
+        with self._lock:
+            self._ended = True
+            self._closing.close()
+
+    def _subscribe(self) -> None:
         for shared in (Transforms, SharedClock):
             self._closing.enter_context(self._context.node.shared(shared).held())
         self._closing.callback(self._view.close)
@@ -102,6 +116,10 @@ class Display:
             return
         if not self._topic.strip("/ "):
             self._showing.fail("Topic", "Error subscribing: Empty topic name")
+            return
+        if not is_topic(self._topic):
+            self._showing.fail("Topic", f"Error subscribing: {self._topic!r:.40} is no name of a "
+                                        "topic")
             return
         endings = ("", self._kind.update_topic) if self._kind.update else ("",)
         try:
@@ -124,6 +142,9 @@ class Display:
         if name not in (*self._kind.messages, self._kind.update):
             raise Problem(f"{self._topic} is {name}, and this display shows "
                           f"{' or '.join(self._kind.messages)}")
+        if len(raw._buff) > self._kind.most_bytes:
+            raise Problem(f"a message of {len(raw._buff) >> 20} MB is larger than the "
+                          f"{self._kind.most_bytes >> 20} MB that this display reads")
         try:
             return decode(raw, get_message_class(name)), header.get("callerid", "")
         except Exception as error:  # a publisher with another definition of the type
@@ -177,22 +198,3 @@ def _checked(kind: DisplayType, options: dict[str, Any]) -> dict[str, Any]:
         return check_all(kind.options, options)
     except ValueError as error:
         raise Refused(str(error)) from None
-
-
-def _find(context: Context, number: int) -> Display:
-    found = context.node.shared(Displays).get((context.client, number))
-    if found is None:
-        raise Refused(f"display is {number}, and this page shows no such one")
-    return found
-
-
-@operation("rviz_drawn")
-async def rviz_drawn(context: Context, display: int, frame: int) -> None:
-    """The page has drawn this frame of a display; Refused where there is no such display."""
-    _find(context, display).drawn(frame)
-
-
-@operation("rviz_change")
-async def rviz_change(context: Context, display: int, options: dict, frame: str) -> None:
-    """Other options or another fixed frame; Refused where those do not fit."""
-    _find(context, display).change(options, frame)

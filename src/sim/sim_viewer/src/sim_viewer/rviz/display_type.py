@@ -30,8 +30,8 @@ class View(Protocol):
     most_points: int  # that the page can take at once
     fixed_frame: str
 
-    def pose(self, frame: str, stamp: float = 0.0) -> Pose:
-        """Of a frame in the fixed frame at a time in s, 0: the newest. Raises NoTransform."""
+    def pose(self, frame: str, stamp: int = 0) -> Pose:
+        """Of a frame in the fixed frame at a time in ns, 0: the newest. Raises NoTransform."""
 
     def links(self, visuals: dict[str, tuple[Visual, ...]]) -> dict[str, Any]:
         """Fields of a part of the kind `links`, with meshes that the page can load."""
@@ -54,6 +54,7 @@ class Drawer(abc.ABC):
 
     statuses: Statuses
     namespaces: list[str] = []  # of markers
+    most_kept = 500  # messages, the newest, that there is room for
 
     def __init__(self, options: dict[str, Any]):
         self.options = options
@@ -69,6 +70,11 @@ class Drawer(abc.ABC):
 
         Problem where it cannot be shown.
         """
+
+    def place_anew(self) -> bool:
+        """Another fixed frame or time: whether it places what it has itself, and needs no messages
+        again."""
+        return False
 
     @abc.abstractmethod
     def draw(self, view: View) -> list[Part] | None:
@@ -89,6 +95,7 @@ class DisplayType:
     every: bool = False  # whether each message counts, not only the newest
     update_topic: str = ""  # what is behind the topic's name for changes of it, and
     update: str = ""  # their type
+    most_bytes: int = 16 << 20  # of a message: Python's objects are twenty times as large
     period: float = 0.0  # s between two looks without a message; 0: none needed
 
     def as_json(self) -> dict[str, Any]:
@@ -98,7 +105,7 @@ class DisplayType:
 
 
 class Simple(Drawer):
-    """Draws messages one by one by a function of message, options and most points."""
+    """Draws messages one by one by a function of message, options, most points and the pose."""
 
     def __init__(self, options: dict[str, Any], draw: Callable[..., list[Part]]):
         super().__init__(options)
@@ -110,26 +117,31 @@ class Simple(Drawer):
         self.changed = True
 
     def draw(self, view: View) -> list[Part] | None:
-        keep = int(self.options.get("Buffer Length", 1))
+        keep = int(self.options.get("Buffer Length", self.options.get("History Length", 1)))
         decay = self.options.get("Decay Time", 0.0)
         if decay:
             fresh = [one for one in self._kept if view.now - decay < one[0] <= view.now]
         else:
             fresh = self._kept[-keep:]
+        wanted, fresh = len(fresh), fresh[-self.most_kept:]
         if not self.changed and len(fresh) == len(self._kept):
             return None
         self._kept, self.changed = fresh, False
         parts = []
         for _, pose, message in fresh:
-            drawn, statuses = self._draw(message, self.options, view.most_points // len(fresh))
+            most = view.most_points // len(fresh)
+            drawn, statuses = self._draw(message, self.options, most, pose)
             self.statuses = statuses
             for part in drawn:
                 part.pose = pose * part.pose
             parts += drawn
+        if len(fresh) < wanted:
+            self.statuses = {**self.statuses, "Messages": (
+                WARNING, f"showing the last {len(fresh)}: there is no room for more")}
         return parts
 
 
 def simple(draw: Callable[..., tuple[list[Part], Statuses]]) -> Callable[[dict], Simple]:
-    """For DisplayType.make: `draw(message, options, most_points)` gives parts in the message's
-    frame, and statuses."""
+    """For DisplayType.make: `draw(message, options, most_points, pose)` gives parts in the frame of
+    the message, whose pose in the fixed frame that is, and statuses."""
     return lambda options: Simple(options, draw)

@@ -1,5 +1,6 @@
 """One display at work: messages in, parts and statuses out. Without ROS and threads of its own."""
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable
@@ -20,7 +21,9 @@ from sim_viewer.rviz.display_type import (
 from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.waiting import Waiting
 
-KEPT = 500  # messages that are shown again in another fixed frame, where each counts
+MOST_KEPT = 500  # messages that a display shows at once, and
+MOST_BYTES = 64 << 20  # how large they may be together
+JUMP = 2.0  # s that time goes back when it has begun anew
 PATIENCE = 0.5  # s that a message's transform may be late before that is an error
 Received = tuple[Any, str]  # a message, and its publisher
 
@@ -34,10 +37,13 @@ class Showing:
         self._options = options
         self._drawer = kind.make(options)
         self.waiting = Waiting(kind.every, read)
-        self._taken: deque[Any] = deque(maxlen=KEPT if kind.every else 1)  # raw
+        self._newest: list[Any] = []  # the last message that was shown, raw
+        self._sizes: deque[int] = deque(maxlen=MOST_KEPT)  # bytes, of those that are kept
         self._own: Statuses = {"Topic": (WARNING, "No messages received")} if kind.messages else {}
         self._problem: Statuses = {}
         self._late: float | None = None  # s, since when a transform is missing
+        self._now = -math.inf  # s, at the last look
+        self._misplaced = False  # whether what the page shows stands where it was before
 
     @property
     def statuses(self) -> Statuses:
@@ -54,8 +60,8 @@ class Showing:
         self._own[name] = (ERROR, text)
 
     def stumble(self, error: Exception) -> None:
-        """What nobody thought of, until the next look."""
-        self._problem["Error"] = (ERROR, f"{type(error).__name__}: {error}")
+        """What nobody thought of, until something can be drawn."""
+        self._problem = {"Error": (ERROR, f"{type(error).__name__}: {error}")}
 
     def change(self, options: dict[str, Any], fixed_frame: str) -> None:
         """Other options, or another fixed frame: what was shown is shown anew."""
@@ -64,23 +70,38 @@ class Showing:
             self._drawer.restyle(options)
         if fixed_frame != self._view.fixed_frame:
             self._view.fixed_frame = fixed_frame
-            self._drawer = self._kind.make(options)
-            self.waiting.put_back(list(self._taken))
-            self._taken.clear()
+            self._place_anew()
 
     def look(self) -> list[Part] | None:
         """Take what has come, and draw it; None where nothing has changed."""
-        self._problem = {}
+        before, self._now = self._now, self._view.now
+        if self._now < before - JUMP:
+            self._place_anew()
         self._take()
+        nothing = [] if self._misplaced else None
+        self._misplaced = False
         try:
-            return self._drawer.draw(self._view)
+            parts = self._drawer.draw(self._view)
         except NoTransform as problem:
-            self._problem["Transform"] = (ERROR, str(problem))
+            self._problem = {"Transform": (ERROR, str(problem))}
         except (Problem, SimulationError) as problem:
-            self._problem["Error"] = (ERROR, str(problem))
+            self._problem = {"Error": (ERROR, str(problem))}
         except Exception as error:  # of a message that somebody else made
             self.stumble(error)
-        return [] if self._kind.period else None
+        else:
+            if parts is not None:
+                self._problem = {}
+            return nothing if parts is None else parts
+        return [] if self._kind.period else nothing
+
+    def _place_anew(self) -> None:
+        """In another fixed frame, or after time has begun anew."""
+        if self._drawer.place_anew():
+            return
+        self._drawer = self._kind.make(self._options)
+        self.waiting.put_back(self._newest)
+        self._newest, self._problem, self._misplaced = [], {}, True
+        self._sizes.clear()
 
     def _take(self) -> None:
         if self._kind.every:
@@ -115,11 +136,15 @@ class Showing:
 
     def _place(self, received: Received) -> Pose:
         header = received[0].header
-        return self._view.pose(header.frame_id, header.stamp.to_sec())
+        return self._view.pose(header.frame_id, header.stamp.to_nsec())
 
     def _show(self, raw: Any, message: Any, publisher: str, pose: Pose | None) -> None:
+        self._sizes.append(len(raw._buff))
+        while sum(self._sizes) > MOST_BYTES and len(self._sizes) > 1:
+            self._sizes.popleft()
+        self._drawer.most_kept = len(self._sizes)
         self._drawer.take(message, pose, self._view.now)
-        self._taken.append(raw)
+        self._newest = [] if self._kind.every else [raw]
         self._own["Topic"] = (OK, f"{self.waiting.received} messages received")
 
 

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import rosgraph
 import rospy
 from geometry_msgs.msg import (
     Point,
@@ -23,6 +22,7 @@ from std_msgs.msg import Header
 from sim_viewer.context import Context, Node
 from sim_viewer.registry import Refused, operation
 from sim_viewer.tools.clock import SharedClock
+from sim_viewer.tools.names import is_topic
 
 POSITION_VARIANCE = 0.5 * 0.5  # m^2, as rviz has it
 YAW_VARIANCE = 0.06853891945200942  # rad^2: (pi / 12)^2
@@ -72,7 +72,7 @@ class Publishers:
         """Get ready to publish; Refused for what is no tool or no topic."""
         if tool not in TOOLS:
             raise Refused(f"there is no tool {tool!r:.40}; there are {', '.join(TOOLS)}")
-        if len(topic) > 256 or not rosgraph.names.is_legal_name(topic) or topic.startswith("~"):
+        if not is_topic(topic):
             raise Refused(f"{topic[:40]!r} is no name of a topic; /goal is one")
         key = tool, rospy.resolve_name(topic)
         with self._lock:
@@ -108,7 +108,9 @@ async def rviz_tool(context: Context, tool: str, topic: str) -> None:
 async def rviz_publish(context: Context, tool: str, topic: str, frame: str, x: float, y: float,
                        z: float = 0.0, yaw: float = 0.0) -> dict[str, int]:
     """Publish a pose or a point in the fixed frame, at the present time; answers with the number
-    of `listeners`. Refused as for `rviz_tool`, and for places that are far off."""
+    of `listeners`. Refused as for `rviz_tool`, without a frame, and for places that are far off."""
+    if not frame:
+        raise Refused("there is no fixed frame yet: choose one at the left")
     if max(map(abs, (x, y, z, yaw))) > FARTHEST:
         raise Refused(f"rviz_publish: {x:g}, {y:g}, {z:g} is farther than {FARTHEST:g} m")
     listeners = await context.run_in_thread(context.node.shared(Publishers).publish, tool, topic,

@@ -9,6 +9,7 @@ from sim_viewer.rviz.displays import (
     markers,
     occupancy,
     path,
+    point,
     poses,
     range,
     robot,
@@ -18,4 +19,4 @@ from sim_viewer.rviz.displays import (
 TYPES: dict[str, DisplayType] = {kind.name: kind for kind in (
     grid.GRID, grid.AXES, frames.TYPE, robot.TYPE, scan.TYPE, occupancy.TYPE, path.PATH,
     poses.ARRAY, poses.STAMPED, poses.ODOMETRY, poses.WITH_COVARIANCE, path.POLYGON,
-    markers.MARKER, markers.ARRAY, cloud.TYPE, range.TYPE, image.TYPE)}
+    markers.MARKER, markers.ARRAY, cloud.TYPE, point.TYPE, range.TYPE, image.TYPE)}

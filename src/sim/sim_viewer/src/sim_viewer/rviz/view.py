@@ -48,7 +48,7 @@ class RosView:
         """All frames and their parents."""
         return self._transforms.frames()
 
-    def pose(self, frame: str, stamp: float = 0.0) -> Pose:
+    def pose(self, frame: str, stamp: int = 0) -> Pose:
         """Of a frame in the fixed frame. NoTransform says why not, as rviz words it."""
         try:
             return self._transforms.pose(self.fixed_frame, frame, stamp)

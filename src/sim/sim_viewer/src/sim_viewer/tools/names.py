@@ -1,5 +1,7 @@
 """Every topic, service and parameter name that the tools use."""
 
+import rosgraph
+
 CLOCK = "/clock"
 ROSOUT = "/rosout_agg"
 TF = "/tf"
@@ -15,3 +17,11 @@ RESET_WORLD = "/reset_world"
 RESET_SIMULATION = "/reset_simulation"
 PHYSICS = "/get_physics_properties"
 WORLD = "/get_world_properties"
+
+LONGEST_TOPIC = 256  # characters
+
+
+def is_topic(name: str) -> bool:
+    """Whether a page may name a topic so; a node's private names are not for pages."""
+    return (len(name) <= LONGEST_TOPIC and rosgraph.names.is_legal_name(name)
+            and not name.startswith("~"))

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.display_type import DisplayType, Problem, Statuses, simple
 from sim_viewer.rviz.displays import point_style
 from sim_viewer.rviz.displays.point_style import colours_of, counted, evenly
@@ -13,21 +14,26 @@ from sim_viewer.rviz.options import Option
 # sensor_msgs/PointField's datatypes
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 COLOURS = ("rgb", "rgba")
+PACKED = "RGB8", "RGBF32"  # the Color Transformers that need them
 
 
-def cloud_points(message: Any, options: dict[str, Any],
-                 most: int) -> tuple[list[Part], Statuses]:
+def cloud_points(message: Any, options: dict[str, Any], most: int,
+                 pose: Pose) -> tuple[list[Part], Statuses]:
     """As many as the page takes, evenly from the whole cloud. Problem for sizes that do not fit."""
     table = records(message)
     chosen = table[evenly(len(table), most)]
     positions = np.stack([chosen[axis].astype(np.float32) for axis in "xyz"], axis=1)
     kind, names = options["Color Transformer"], chosen.dtype.names
     colour = next((name for name in COLOURS if name in names), None)
-    if kind in ("RGB8", "RGBF32") and colour:
+    channel = options["Channel Name"]
+    if kind in PACKED and colour:
         colours = packed_colours(chosen[colour])
     else:
-        channel = options["Channel Name"]
-        colours = colours_of(positions, chosen[channel] if channel in names else None, options)
+        if kind in PACKED:  # what rviz takes where a cloud has no colours
+            options = options | {"Color Transformer": "Intensity" if channel in names
+                                 else "AxisColor"}
+        values = chosen[channel] if channel in names else None
+        colours = colours_of(positions, values, options, pose)
     return [point_style.points(positions, colours, options)], counted(len(chosen), len(table))
 
 
@@ -65,7 +71,7 @@ def packed_colours(values: np.ndarray) -> np.ndarray:
 
 TYPE = DisplayType(
     "rviz/PointCloud2", simple(cloud_points), messages=("sensor_msgs/PointCloud2",),
-    topic="/camera/depth/points",
+    topic="/camera/depth/points", most_bytes=1 << 29,
     options=(Option("Color Transformer", "choice", "RGB8",
                     ("RGB8", "RGBF32", "Intensity", "AxisColor", "FlatColor")),
              *point_style.OPTIONS))

@@ -8,6 +8,7 @@ import numpy as np
 from bullet_sim.pose import IDENTITY
 from sim_viewer.rviz.colours import rgba
 from sim_viewer.rviz.display_type import DisplayType, Drawer, View
+from sim_viewer.rviz.displays.path import STYLES
 from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import axes, lines
 from sim_viewer.rviz.options import FIXED_FRAME, Option
@@ -45,7 +46,8 @@ def grid_lines(options: dict[str, Any]) -> list[Part]:
     first, second = PLANES[options["Plane"]]
     positions[:, first], positions[:, second] = flat[:, 0], flat[:, 1]
     positions += [options[f"Offset/{axis}"] for axis in "XYZ"]
-    return [lines(positions, rgba(options), options["Line Style/Line Width"])]
+    wide = options["Line Style/Value"] == "Billboards"
+    return [lines(positions, rgba(options), options["Line Style/Line Width"] if wide else 0.0)]
 
 
 def cross(options: dict[str, Any]) -> list[Part]:
@@ -59,7 +61,8 @@ GRID = DisplayType(
         FRAME, Option("Plane Cell Count", "integer", 10, low=1, high=1000),
         Option("Cell Size", "number", 1.0, low=1e-4), Option("Color", "color", "160; 160; 164"),
         Option("Alpha", "number", 0.5, high=1), Option("Plane", "choice", "XY", tuple(PLANES)),
-        Option("Line Style/Line Width", "number", 0.0, high=10),
+        Option("Line Style/Value", "choice", "Lines", STYLES),
+        Option("Line Style/Line Width", "number", 0.03, high=10),
         *(Option(f"Offset/{axis}", "number", 0.0, low=-1e6) for axis in "XYZ")))
 AXES = DisplayType(
     "rviz/Axes", lambda options: Fixed(options, cross), period=PERIOD, options=(

@@ -7,7 +7,14 @@ import numpy as np
 
 from bullet_sim.description import Material, Mesh, Visual
 from bullet_sim.pose import IDENTITY, Pose
-from sim_viewer.rviz.display_type import ERROR, DisplayType, Drawer, Problem, View
+from sim_viewer.rviz.display_type import (
+    ERROR,
+    WARNING,
+    DisplayType,
+    Drawer,
+    Problem,
+    View,
+)
 from sim_viewer.rviz.displays.marker_shapes import MESH, colour_of, marker_parts, scale_of
 from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import moved, pose_of
@@ -17,6 +24,7 @@ DELETE, DELETE_ALL = 2, 3
 MOST_MARKERS = 20_000
 MOST_STATUSES = 20
 MOST_NAMESPACES = 100
+JITTER = 1.0  # s that time may go back before a marker with a lifetime is gone
 Key = tuple[str, int]  # namespace and id
 
 
@@ -25,7 +33,8 @@ class Shown:
     """One marker; `place` is its frame in the fixed frame, once that is known."""
 
     marker: Any
-    ends: float  # s; infinite without a lifetime
+    begins: float  # s; of one without a lifetime always
+    ends: float  # s; or never
     pose: Pose = IDENTITY
     parts: list[Part] = field(default_factory=list)
     visuals: tuple[Visual, ...] = ()  # of a mesh
@@ -53,7 +62,7 @@ class Shown:
             return False
         header, before = self.marker.header, self.place
         try:
-            self.place = view.pose(header.frame_id, 0.0 if locked else header.stamp.to_sec())
+            self.place = view.pose(header.frame_id, 0 if locked else header.stamp.to_nsec())
             self.lost = ""
         except Problem as problem:
             self.lost = str(problem)
@@ -67,6 +76,7 @@ class Markers(Drawer):
         super().__init__(options)
         self._shown: dict[Key, Shown] = {}
         self._new: set[Key] = set()
+        self._full = False
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
         for marker in message.markers if hasattr(message, "markers") else [message]:
@@ -83,11 +93,22 @@ class Markers(Drawer):
             if marker.ns not in self.namespaces:
                 self.namespaces = [*self.namespaces, marker.ns][:MOST_NAMESPACES]
             life = marker.lifetime.to_sec()
-            self._shown[key] = Shown(marker, now + life if life > 0 else np.inf)
+            times = (now, now + life) if life > 0 else (-np.inf, np.inf)
+            self._shown[key] = Shown(marker, *times)
             self._new.add(key)
+        else:
+            self._full = True
+
+    def place_anew(self) -> bool:
+        """Each marker by its own frame and time."""
+        for one in self._shown.values():
+            one.place = None
+        self.changed = True
+        return True
 
     def draw(self, view: View) -> list[Part] | None:
-        for key in [key for key, one in self._shown.items() if one.ends <= view.now]:
+        for key in [key for key, one in self._shown.items()
+                    if not one.begins - JITTER <= view.now < one.ends]:
             del self._shown[key]
             self.changed = True
         new, self._new = self._new & set(self._shown), set()
@@ -97,6 +118,8 @@ class Markers(Drawer):
         wrong = [(key, one) for key, one in self._shown.items() if one.problem or one.lost]
         self.statuses = {f"{ns}/{number}": (ERROR, one.problem or one.lost)
                          for (ns, number), one in wrong[:MOST_STATUSES]}
+        if self._full and len(self._shown) == MOST_MARKERS:
+            self.statuses["Markers"] = WARNING, f"showing {MOST_MARKERS}: more are left out"
         if not self.changed and not any(moved):
             return None
         self.changed = False

@@ -45,6 +45,10 @@ class Map(Drawer):
             put(self._cells, message)
         self._part = None
 
+    def place_anew(self) -> bool:
+        """Each look does."""
+        return True
+
     def restyle(self, options: dict[str, Any]) -> None:
         super().restyle(options)
         self._part = None
@@ -107,6 +111,7 @@ def put(cells: np.ndarray, update: Any) -> None:
 
 TYPE = DisplayType(
     "rviz/Map", Map, messages=(MAP_TYPE,), topic="/map", at_stamp=False, every=True,
-    update_topic="_updates", update="map_msgs/OccupancyGridUpdate", period=0.1, options=(
+    update_topic="_updates", update="map_msgs/OccupancyGridUpdate", period=0.1,
+    most_bytes=1 << 29, options=(
         Option("Alpha", "number", 0.7, high=1), Option("Color Scheme", "choice", "map", SCHEMES),
         Option("Draw Behind", "switch", False)))

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.colours import rgba
 from sim_viewer.rviz.display_type import DisplayType, Statuses, simple
 from sim_viewer.rviz.drawing import Part
@@ -14,7 +15,8 @@ STYLES = ("Lines", "Billboards")
 HIDDEN, ARROWS, AXES = "None", "Arrows", "Axes"
 
 
-def path_lines(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+def path_lines(message: Any, options: dict[str, Any], most: int,
+               _pose: Pose) -> tuple[list[Part], Statuses]:
     """A line, and arrows or axes at each pose where they are wanted. Problem: no numbers."""
     chosen = message.poses[::max(1, -(-len(message.poses) // most))]
     positions = points([one.pose.position for one in chosen])
@@ -36,8 +38,8 @@ def _poses(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
                   rgba(options, "Pose Color"))
 
 
-def polygon_lines(message: Any, options: dict[str, Any],
-                  most: int) -> tuple[list[Part], Statuses]:
+def polygon_lines(message: Any, options: dict[str, Any], _most: int,
+                  _pose: Pose) -> tuple[list[Part], Statuses]:
     """The outline, closed; Problem for what are no numbers."""
     corners = points(message.polygon.points)
     return [strip(corners, rgba(options), 0.0, closed=True)], {}

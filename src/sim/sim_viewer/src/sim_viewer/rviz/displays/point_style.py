@@ -4,9 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.colours import between, rainbow, rgba, spread
 from sim_viewer.rviz.display_type import OK, Statuses
 from sim_viewer.rviz.drawing import Part
+from sim_viewer.rviz.geometry import turned
 from sim_viewer.rviz.options import Option
 
 STYLES = ("Points", "Squares", "Flat Squares", "Spheres", "Boxes")
@@ -24,7 +26,7 @@ OPTIONS = (
     Option("Autocompute Intensity Bounds", "switch", True),
     Option("Min Intensity", "number", 0.0, low=-1e9, high=1e9),
     Option("Max Intensity", "number", 4096.0, low=-1e9, high=1e9),
-    Option("Axis", "choice", "Z", tuple(AXIS)),
+    Option("Axis", "choice", "Z", tuple(AXIS)), Option("Use Fixed Frame", "switch", True),
     Option("Autocompute Value Bounds/Value", "switch", True),
     Option("Autocompute Value Bounds/Min Value", "number", -10.0, low=-1e6),
     Option("Autocompute Value Bounds/Max Value", "number", 10.0, low=-1e6),
@@ -43,14 +45,19 @@ def points(positions: np.ndarray, colours: Any, options: dict[str, Any]) -> Part
                  "unit": "px" if in_px else "m", "round": options["Style"] == "Spheres"})
 
 
-def colours_of(positions: np.ndarray, channel: np.ndarray | None,
-               options: dict[str, Any]) -> np.ndarray | tuple:
-    """By the option `Color Transformer`: of an axis, a channel of values (n,), or one for all."""
+def colours_of(positions: np.ndarray, channel: np.ndarray | None, options: dict[str, Any],
+               pose: Pose) -> np.ndarray | tuple:
+    """By the option `Color Transformer`: of an axis, a channel of values (n,), or one for all.
+
+    `pose` is that of the frame of `positions` in the fixed frame.
+    """
     kind = options["Color Transformer"]
     if kind == "AxisColor":
         own = options["Autocompute Value Bounds/Value"]
         bounds = None if own else (options["Autocompute Value Bounds/Min Value"],
                                    options["Autocompute Value Bounds/Max Value"])
+        if options["Use Fixed Frame"]:
+            positions = turned(np.array([pose.orientation]), positions) + pose.position
         return rainbow(spread(positions[:, AXIS[options["Axis"]]], bounds))
     if kind == "Intensity" and channel is not None:
         own = options["Autocompute Intensity Bounds"]

@@ -15,6 +15,7 @@ from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import arrows, axes, lines, moved, pose_rows, turned
 from sim_viewer.rviz.options import Option
 
+MOST_KEPT = 10_000  # poses of a trail
 FLAT, SOLID, AXES, ARROW = "Arrow (Flat)", "Arrow (3D)", "Axes", "Arrow"
 # A flat arrow of length 1: its shaft, and the two halves of its head.
 FLAT_ARROW = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 0), (0.75, 0.2, 0), (1, 0, 0), (0.75, -0.2, 0)])
@@ -40,7 +41,8 @@ def drawn(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
                   (options["Head Length"], 2 * options["Head Radius"]), rgba(options))
 
 
-def array(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+def array(message: Any, options: dict[str, Any], most: int,
+          _pose: Pose) -> tuple[list[Part], Statuses]:
     """All poses of a PoseArray, such as amcl's particles. Problem for what is no pose."""
     there = len(message.poses)
     rows = pose_rows(list(message.poses))[evenly(there, max(most // 10, 1))]
@@ -48,13 +50,14 @@ def array(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part],
         "Poses": (OK, f"showing {len(rows)} of {there} poses")}
 
 
-def stamped(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+def stamped(message: Any, options: dict[str, Any], _most: int,
+            _pose: Pose) -> tuple[list[Part], Statuses]:
     """A PoseStamped; Problem for what is no pose."""
     return drawn(pose_rows([message.pose]), options), {}
 
 
-def with_covariance(message: Any, options: dict[str, Any],
-                    most: int) -> tuple[list[Part], Statuses]:
+def with_covariance(message: Any, options: dict[str, Any], _most: int,
+                    _pose: Pose) -> tuple[list[Part], Statuses]:
     """A PoseWithCovarianceStamped, such as amcl_pose; Problem for what is no pose."""
     rows = pose_rows([message.pose.pose])
     return drawn(rows, options) + ellipsoid(rows[0], message.pose.covariance, options), {}
@@ -74,8 +77,8 @@ class Trail(Drawer):
         row = moved(own, pose)
         if len(self._rows) and not self._far(self._rows[-1], row[0]):
             return
-        keep = self.options["Keep"]
-        self._rows = np.concatenate([self._rows, row])[-keep if keep else 0:]
+        keep = self.options["Keep"] or MOST_KEPT  # 0: without a limit, in rviz
+        self._rows = np.concatenate([self._rows, row])[-keep:]
         self._newest, self.changed = (pose, own[0], message.pose.covariance), True
 
     def _far(self, last: np.ndarray, row: np.ndarray) -> bool:
@@ -113,4 +116,4 @@ WITH_COVARIANCE = DisplayType(
 ODOMETRY = DisplayType(
     "rviz/Odometry", Trail, messages=("nav_msgs/Odometry",), topic="/odom", options=(
         Option("Position Tolerance", "number", 0.1), Option("Angle Tolerance", "number", 0.1),
-        Option("Keep", "integer", 100, high=10_000), SHAPE, *BIG, *CROSS, *COVARIANCE))
+        Option("Keep", "integer", 100, high=MOST_KEPT), SHAPE, *BIG, *CROSS, *COVARIANCE))

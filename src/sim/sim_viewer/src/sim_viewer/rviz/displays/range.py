@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.colours import rgba
 from sim_viewer.rviz.display_type import DisplayType, Statuses, simple
 from sim_viewer.rviz.drawing import Part
@@ -11,7 +12,8 @@ from sim_viewer.rviz.geometry import bars, finite
 from sim_viewer.rviz.options import Option
 
 
-def cone(message: Any, options: dict[str, Any], most: int) -> tuple[list[Part], Statuses]:
+def cone(message: Any, options: dict[str, Any], _most: int,
+         _pose: Pose) -> tuple[list[Part], Statuses]:
     """From the sensor to what it has seen; nothing where that is outside of its limits.
 
     Problem for an angle that is no number.

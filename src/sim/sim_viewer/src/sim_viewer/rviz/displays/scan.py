@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from bullet_sim.pose import Pose
 from sim_viewer.rviz.display_type import DisplayType, Problem, Statuses, simple
 from sim_viewer.rviz.displays import point_style
 from sim_viewer.rviz.displays.point_style import colours_of, counted, evenly
@@ -11,8 +12,8 @@ from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.options import Option
 
 
-def scan_points(message: Any, options: dict[str, Any],
-                most: int) -> tuple[list[Part], Statuses]:
+def scan_points(message: Any, options: dict[str, Any], most: int,
+                pose: Pose) -> tuple[list[Part], Statuses]:
     """Of all beams with a range within the laser's own limits. Problem for angles that are none."""
     ranges = np.asarray(message.ranges, float)
     if not np.isfinite([message.angle_min, message.angle_increment]).all():
@@ -26,7 +27,7 @@ def scan_points(message: Any, options: dict[str, Any],
     positions[:, 1] = ranges[chosen] * np.sin(angles)
     strengths = np.asarray(message.intensities, float)
     channel = strengths[chosen] if len(strengths) == len(ranges) else None
-    colours = colours_of(positions, channel, options)
+    colours = colours_of(positions, channel, options, pose)
     return [point_style.points(positions, colours, options)], counted(len(chosen), len(hit))
 
 

@@ -1,0 +1,24 @@
+"""What a page says of a display that it shows: a frame is drawn, other options are wanted."""
+
+from sim_viewer.context import Context
+from sim_viewer.registry import Refused, operation
+from sim_viewer.rviz.display import Display, Displays
+
+
+def _find(context: Context, number: int) -> Display:
+    found = context.node.shared(Displays).get((context.client, number))
+    if found is None:
+        raise Refused(f"display is {number}, and this page shows no such one")
+    return found
+
+
+@operation("rviz_drawn")
+async def rviz_drawn(context: Context, display: int, frame: int) -> None:
+    """The page has drawn this frame of a display; Refused where there is no such display."""
+    _find(context, display).drawn(frame)
+
+
+@operation("rviz_change")
+async def rviz_change(context: Context, display: int, options: dict, frame: str) -> None:
+    """Other options or another fixed frame; Refused where those do not fit."""
+    _find(context, display).change(options, frame)
