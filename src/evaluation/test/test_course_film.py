@@ -19,6 +19,7 @@ from evaluation.session import encoders
 from evaluation.session.course_file import load_course
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
 
+pytestmark = pytest.mark.processes  # encoders, and limits of time
 TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"
 PICTURE = np.zeros((9, 16, 3), np.uint8).tobytes()
 
