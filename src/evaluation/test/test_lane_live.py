@@ -29,6 +29,6 @@ def test_people_walk_while_the_car_keeps_its_lane(tmp_path):
     report = json.loads((out / "report.json").read_text())
     assert report["frames_dropped"] == 0 and report["max_lateral_m"] < 0.1
     recording = read_recording(poses)
-    car, person = recording.moments[CAR], recording.moments["pedestrian_1"]
+    car, person = recording[CAR], recording["pedestrian_1"]
     assert car[-1].x > 1.0
     assert person[-1].y - person[0].y > 0.3  # from the right of the lane towards it
