@@ -10,8 +10,8 @@ from lane_keeping.world.scenery import load_crossings
 
 from evaluation.lane.comparison import LaneComparison
 from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
+from evaluation.lane.outcomes import encounter_table, from_report, lap_table
 from evaluation.lane.recording import CAR, Moment, last, line_of, read_recording
-from evaluation.lane.results import encounter_table, from_report, lap_table
 from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
 from evaluation.laps.disturbance import draw
 from evaluation.trial.report import write_json

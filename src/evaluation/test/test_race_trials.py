@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from evaluation.laps.disturbance import RACE, Disturbance, draw
-from evaluation.race_trials.pictures import write_path_sheet
-from evaluation.race_trials.results import (
+from evaluation.race_trials.outcomes import (
     Lap,
     summarize,
 )
+from evaluation.race_trials.pictures import write_path_sheet
 from evaluation.race_trials.trial import RaceTrial
 from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.trial.runner import run_trial

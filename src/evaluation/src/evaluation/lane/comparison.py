@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lane_keeping.world.timing import ms_a_frame
 
-from evaluation.lane.results import LaneDrive, lap_table
+from evaluation.lane.outcomes import LaneDrive, lap_table
 from evaluation.lane.trial import LaneCase, LaneDrives, known_methods, lane_case
 from evaluation.picture import chart
 from evaluation.trial.command_line import Parser, one_of

@@ -12,8 +12,8 @@ from lane_keeping.world.scenery import load_crossings
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.lane.encounters import judge, nearest_ever
+from evaluation.lane.outcomes import LaneDrive, encounter_table, from_report, lap_table
 from evaluation.lane.recording import read_recording
-from evaluation.lane.results import LaneDrive, encounter_table, from_report, lap_table
 from evaluation.laps.disturbance import Bounds, draw
 from evaluation.laps.lap_trial import LapTrial, Outing, Venue
 from evaluation.session.course_file import drivers, load_course

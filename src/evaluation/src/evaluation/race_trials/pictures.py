@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 
 from evaluation.picture import chart, write_tiles
-from evaluation.race_trials.results import Lap
+from evaluation.race_trials.outcomes import Lap
 from evaluation.trial.report import grouped
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")

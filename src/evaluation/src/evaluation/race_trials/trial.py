@@ -14,8 +14,8 @@ from racecar_description.track.wishes import Wishes
 
 from evaluation.laps.disturbance import RACE, draw
 from evaluation.laps.lap_trial import LapTrial, Outing, Venue, seen
+from evaluation.race_trials.outcomes import COLUMNS, Lap, summarize
 from evaluation.race_trials.pictures import write_chart, write_path_sheet
-from evaluation.race_trials.results import COLUMNS, Lap, summarize
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import Case
 from evaluation.trial.report import grouped, table_of
