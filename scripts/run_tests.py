@@ -128,7 +128,7 @@ def run_fast(slow: list[Path]) -> list[Result]:
             results += run_pytest(2 * BEGIN_WITHIN, [str(path) for path in group])
             ran += len(group)
     every = files_that_say(re.compile(""), "test_*.py") + files_that_say(re.compile(""), "*.test")
-    late = sum(result.skipped for result in results)
+    late = sum(result.late for result in results)
     print(f"FAST=1 left out {len(every) - ran} of {len(every)} files, with them all that start "
           f"processes, and {late} tests that had not begun after {BEGIN_WITHIN:.0f} s")
     return results
@@ -150,10 +150,10 @@ def main() -> int:
     print(results[0].line(), flush=True)
     slow = files_that_say(PROCESSES, "test_*.py")  # first: the longest of them take minutes
     results += run_fast(slow) if args.fast else run_whole(args, slow)
+    results = run_failed_again(results, args.limit)
     if processes.stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130
-    results = run_failed_again(results, args.limit)
     show_outputs(results)
     if not args.fast:
         show_conformance()

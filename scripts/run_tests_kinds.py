@@ -61,9 +61,8 @@ def run_pytest(limit: float, words: list[str], name: str = "pytest",
     code, left = run_marked([*pytest_command(cases), *words], log, limit, Progress(), low_priority)
     whole.seconds = time.monotonic() - began
     files = pytest_cases(cases)
-    failed = any(result.failures for result in files.values())
-    note_end(whole, code, failed, left)
-    if failed or whole.failures:
+    note_end(whole, code, files.values(), left)
+    if whole.failures or any(result.failures for result in files.values()):
         whole.output = log.read_text(errors="replace")
     for result in files.values():
         print(result.line())
@@ -89,9 +88,10 @@ def run_pytest_file(path: Path, limit: float, tests: list[str] | None = None) ->
     began = time.monotonic()
     what = [f"{name}::{test}" for test in tests] if tests else [name]
     code, left = run_marked([*pytest_command(cases), *what], log, limit, unseen)
-    result = pytest_cases(cases).get(name, result)
+    files = pytest_cases(cases)
+    result = files.get(name, result)
     result.seconds = time.monotonic() - began
-    note_end(result, code, bool(result.failures), left)
+    note_end(result, code, files.values(), left)
     if result.failures:
         result.output = log.read_text(errors="replace")
     return result

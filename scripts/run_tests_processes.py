@@ -42,7 +42,8 @@ def processes_marked(mark: str) -> list[int]:
 def command_line(pid: int) -> str:
     """What a process was started with, as far as it can still be read."""
     try:
-        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode().strip()
+        words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+        return b" ".join(words).decode(errors="replace").strip()
     except OSError:
         return f"process {pid}"
 

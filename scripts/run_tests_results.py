@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
 # What pytest and rostest say of a test that took too long.
 TIMED_OUT = re.compile(r"from pytest-timeout|max time \[[^]]*\] allotted")
 SLOWEST = 10
+LATE = "left for make test"  # as conftest.py skips
 
 
 @dataclass
@@ -20,6 +23,7 @@ class Result:
     seconds: float = 0.0
     passed: int = 0
     skipped: int = 0
+    late: int = 0  # of these, what `make test FAST=1` had no time for
     failures: list[str] = field(default_factory=list)
     failed_cases: list[str] = field(default_factory=list)  # names of the failures that are tests
     final: bool = False  # a process was left or a time limit reached: no second run mends that
@@ -35,8 +39,9 @@ class Result:
             self.failures.append(f"{self.name}: {case.get('name')}")
             said = "".join(ET.tostring(part, "unicode") for part in case)
             self.final = self.final or bool(TIMED_OUT.search(said))
-        elif case.find("skipped") is not None:
+        elif (skipped := case.find("skipped")) is not None:
             self.skipped += 1
+            self.late += skipped.get("message") == LATE
         else:
             self.passed += 1
 
@@ -47,20 +52,21 @@ class Result:
 
 
 def pytest_cases(cases: Path) -> dict[str, Result]:
-    """A result for each file that the report names."""
+    """A result for each file that the report names; none of a report that was cut off."""
     files: dict[str, Result] = {}
-    if cases.exists():
+    with contextlib.suppress(FileNotFoundError, ET.ParseError):
         for case in ET.parse(cases).iter("testcase"):
             name = case.get("file") or case.get("classname") or case.get("name") or "?"
             files.setdefault(name, Result(name)).add_case(case)
     return files
 
 
-def note_end(result: Result, code: int, failed: bool, left: list[str]) -> None:
-    """Count how pytest itself ended, where its cases do not say it already."""
+def note_end(result: Result, code: int, files: Collection[Result], left: list[str]) -> None:
+    """Count how pytest itself ended, where what the files came to does not say it already."""
+    failed = any(each.failures for each in files)
     if code == 124:
         result.failures.append(f"{result.name}: not done after {result.seconds:.0f} s")
-    elif code not in (0, 1) or (code == 1 and not failed):
+    elif code not in (0, 1) or not files or (code == 1 and not failed):
         result.failures.append(f"{result.name}: ended with exit code {code}")
     note_left(result, code, left)
 

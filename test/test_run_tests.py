@@ -1,6 +1,7 @@
 """The runner of the tests: what runs a second time, and what it then counts."""
 
 import os
+import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from datetime import date
@@ -126,6 +127,51 @@ def test_of_a_pytest_file_only_what_failed_runs_again(runner, monkeypatch, capsy
     assert asked == [(ROOT / name, ["test_a[b c]"])]
     assert (result.passed, result.skipped, result.failures) == (5, 1, [])
     assert result.first_failures == [f"{name}: test_a[b c]"]
+
+
+def test_pytest_that_ends_without_its_report_has_failed(runner, tmp_path, capsys):
+    """Killed while it wrote it, or ended by a test: nobody knows what passed."""
+    results = sys.modules["run_tests_results"]
+    (tmp_path / "cut.xml").write_text("<testsuites><testsuite><testcase name='a' file='f.py'")
+    for report in ("cut.xml", "none.xml"):
+        files = results.pytest_cases(tmp_path / report)
+        whole = runner.Result("pytest")
+        results.note_end(whole, 0, files.values(), [])
+        assert (files, whole.failures) == ({}, ["pytest: ended with exit code 0"])
+
+
+def test_only_what_was_left_for_want_of_time_counts_as_that(runner, monkeypatch, capsys):
+    case = "<testcase name='{0}' time='1'><skipped message='{0}'/></testcase>"
+    some = runner.Result("test/test_a.py")
+    for message in ("left for make test", "no GPU"):
+        some.add_case(ET.fromstring(case.format(message)))
+    monkeypatch.setattr(runner, "fast_groups", lambda slow: [[ROOT / QUICK]])
+    monkeypatch.setattr(runner, "run_pytest", lambda *_: [some])
+    monkeypatch.setenv(runner.UNTIL, "0")
+    runner.run_fast([])
+    assert "and 1 tests that had not begun" in capsys.readouterr().out and some.skipped == 2
+
+
+def test_interrupted_in_the_second_run_it_says_so_and_counts_nothing(
+        runner, monkeypatch, capsys, tmp_path):
+    def run_again(results, limit):
+        runner.processes.stop(2, None)
+        return results
+
+    for name, found in (("run_ruff", runner.Result("ruff check", passed=1)), ("run_whole", [])):
+        monkeypatch.setattr(runner, name, lambda *_, found=found: found)
+    monkeypatch.setattr(runner, "run_failed_again", run_again)
+    monkeypatch.setattr(runner, "show_conformance", lambda: None)
+    monkeypatch.setattr(runner.signal, "signal", lambda *_: None)
+    monkeypatch.setattr(sys, "argv", ["run_tests.py"])
+    assert runner.main() == 130
+    assert "passed" not in capsys.readouterr().out
+
+
+def test_a_process_is_named_whatever_its_words_are(runner):
+    waits = [sys.executable, "-c", "import sys; sys.stdin.read()", b"\xff"]
+    with subprocess.Popen(waits, stdin=subprocess.PIPE) as process:
+        assert runner.processes.command_line(process.pid).endswith("\N{REPLACEMENT CHARACTER}")
 
 
 def test_style_and_many_failures_are_no_accident(runner, monkeypatch):
