@@ -30,9 +30,14 @@ class Session:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._at_end.close()
-        self.family.stop()
-        self.progress.end()
+        try:
+            self._at_end.close()
+            self.family.stop()
+        except BaseException:  # the first Ctrl-C may come meanwhile; later ones disturb nothing
+            self.family.stop()
+            raise
+        finally:
+            self.progress.end()
 
     def at_end(self, act: Callable[[], object]) -> None:
         """Do this before the processes end."""
@@ -56,7 +61,7 @@ class DriveProcess:
 
     def __init__(self, family: Family, command: list[str], folder: Path,
                  environment: Mapping[str, str]):
-        self._report = folder / "report.json"
+        self._family, self._report = family, folder / "report.json"
         folder.mkdir(parents=True, exist_ok=True)
         self._report.unlink(missing_ok=True)
         self._child: Child = family.start("drive", command, environment, folder / "drive.log")
@@ -64,11 +69,12 @@ class DriveProcess:
     def report(self, limit: float, what: str) -> dict:
         """Its report.json; RunError if it does not end within `limit`, s, wall, or did not drive.
 
-        Half a drive leaves no report: it must not be taken for one by --resume.
+        Half a drive leaves no process, and no report: it must not be taken for one by --resume.
         """
         try:
             self._child.process.wait(limit)
         except BaseException as early:
+            self._family.end(self._child)  # it reports what it has seen
             self._report.unlink(missing_ok=True)
             if isinstance(early, subprocess.TimeoutExpired):
                 late = f"{what}: the drive did not end within {limit:.0f} s"

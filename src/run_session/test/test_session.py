@@ -1,0 +1,69 @@
+"""A session ends what it has started, and half a drive is none."""
+
+import os
+import signal
+import threading
+import time
+
+import psutil
+import pytest
+
+from run_session.failure import RunError
+from run_session.session import Session
+
+pytestmark = pytest.mark.processes
+# As course_run: told to end, it reports what it has seen.
+DRIVE = """
+import os, signal, time
+def end(*_):
+    open("report.json", "w").write("{}")
+    raise SystemExit(1)
+signal.signal(signal.SIGINT, end)
+print("drives", os.getpid(), flush=True)
+time.sleep(1000)
+"""
+STUBBORN = ["sh", "-c", "trap '' INT; echo started; while :; do sleep 0.1; done"]
+
+
+def wait_for(path, text):
+    until = time.monotonic() + 20.0
+    while not (path.exists() and text in path.read_text()):
+        assert time.monotonic() < until, f"no {text!r} in {path}"
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def drive(tmp_path, monkeypatch):
+    """A session and a drive in it that goes on until it is told to end."""
+    monkeypatch.chdir(tmp_path)
+    with Session(tmp_path) as session:
+        started = session.start_drive(["python3", "-c", DRIVE], tmp_path)
+        wait_for(tmp_path / "drive.log", "drives")
+        yield session, started
+
+
+def test_a_drive_that_takes_too_long_ends_and_leaves_no_report(drive, tmp_path):
+    _, started = drive
+    with pytest.raises(RunError, match="a lap: the drive did not end within 0 s"):
+        started.report(0.2, "a lap")
+    assert not psutil.pid_exists(int((tmp_path / "drive.log").read_text().split()[1]))
+    assert not (tmp_path / "report.json").exists()
+
+
+def test_an_interrupted_drive_leaves_no_report(drive, tmp_path):
+    session, started = drive
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        started.report(20.0, "a lap")
+    session.family.stop()
+    assert not (tmp_path / "report.json").exists()
+
+
+def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path):
+    session = Session(tmp_path)
+    child = session.family.start("stubborn", STUBBORN, os.environ, tmp_path / "log")
+    wait_for(tmp_path / "log", "started")
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt), session:
+        pass
+    assert child.process.poll() is not None
