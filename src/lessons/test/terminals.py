@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import contextlib
 import fcntl
 import os
 import pty
@@ -34,6 +35,7 @@ except ChildProcessError:
     sys.exit(code if code >= 0 else 128 - code)
 """
 COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\]2;[^\x07]*\x07|\r")
+CUT_OFF = re.compile(r"\x1b(\[[0-9;]*|\](2(;[^\x07]*)?)?)?$")  # the beginning of a COLOUR
 
 
 def free_port() -> int:
@@ -66,12 +68,14 @@ class Terminal:
 
     def _read(self) -> None:
         """Adds what the command writes, until the other end is closed."""
-        decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
-        try:
-            while text := os.read(self._keyboard, 65536):
-                self.shown += COLOUR.sub("", decoder.decode(text))
-        except OSError:  # Linux says so when the last process of the terminal has ended
-            pass
+        decoder, rest = codecs.getincrementaldecoder("utf-8")(errors="replace"), ""
+        # Linux makes an error of it when the last process of the terminal has ended.
+        with contextlib.suppress(OSError):
+            while data := os.read(self._keyboard, 65536):
+                text = rest + decoder.decode(data)
+                cut = CUT_OFF.search(text)
+                text, rest = (text[:cut.start()], cut[0]) if cut else (text, "")
+                self.shown += COLOUR.sub("", text)
 
     def wait_until_shown(self, pattern: str, limit: float = LIMIT) -> str | None:
         """What is wrong, or None once the pattern has been shown."""
@@ -102,7 +106,7 @@ class Terminal:
         return True
 
     def close(self, limit: float = 20.0) -> None:
-        """Ctrl-C, and what does not mind it is killed; nothing of its session is left."""
+        """Ctrl-C, and what does not mind it is killed; nothing of its group is left."""
         # Nobody is quicker; a signal that meets rospy in the midst of a log line blocks it.
         time.sleep(0.4)
         end = time.monotonic() + limit
@@ -117,4 +121,5 @@ class Terminal:
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
         self._reader.join(IMPATIENCE)
-        os.close(self._keyboard)
+        if not self._reader.is_alive():  # else the number might be another's when it reads again
+            os.close(self._keyboard)

@@ -37,3 +37,25 @@ def test_letters_of_several_bytes_stay_whole(tmp_path):
         assert terminal.wait_until_shown("你", limit=10.0) is None
     finally:
         terminal.close()
+
+
+def test_a_colour_that_comes_in_two_parts_is_none_of_the_text(tmp_path):
+    terminal = terminals.Terminal(
+        "printf 'a\\033[3'; sleep 0.3; printf '1mb\\033]2;ti'; sleep 0.3; printf 'tle\\007c\\n'",
+        tmp_path, dict(os.environ)
+    )
+    try:
+        assert terminal.wait_until_shown("abc", limit=10.0) is None
+    finally:
+        terminal.close()
+
+
+def test_a_terminal_that_is_still_read_keeps_its_file(tmp_path, monkeypatch):
+    """Else the reader takes what comes to the next file of that number."""
+    monkeypatch.setattr(terminals, "IMPATIENCE", 0.1)
+    stays = ("import os, time; os.setsid(); print('in a session of its own', flush=True);"
+             " time.sleep(3)")
+    terminal = terminals.Terminal(f'python3 -c "{stays}" &', tmp_path, dict(os.environ))
+    assert terminal.wait_until_shown("its own", limit=10.0) is None
+    terminal.close(limit=0.2)
+    os.fstat(terminal._keyboard)  # an OSError of one that is closed
