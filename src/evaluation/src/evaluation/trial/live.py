@@ -129,21 +129,24 @@ def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
 def run_live(drive: LiveDrive) -> int:
     """From beginning to end; returns the exit code, or raises what ended it early."""
     _make_room(drive)
-    early = None
-    with Session(drive.out) as session:
-        launched = session.launched(drive.vehicle, drive.driver)
-        try:
-            drive.progress.status("starting roscore")
-            launched.start_roscore()
-            drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
-            drive.bring_up(launched)
-            outcome = drive.watch(launched)
-        except (KeyboardInterrupt, RunError) as ended:
-            early, outcome = ended, ("ended early", str(ended) or "interrupted")
-        if drive.film is not None:
-            drive.film.stop()
-        session.family.spared = drive.film.process_id if drive.film else None
-        drive.end()
+    early, outcome = None, ("ended early", "interrupted")
+    try:
+        with Session(drive.out) as session:
+            launched = session.launched(drive.vehicle, drive.driver)
+            try:
+                drive.progress.status("starting roscore")
+                launched.start_roscore()
+                drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+                drive.bring_up(launched)
+                outcome = drive.watch(launched)
+            except (KeyboardInterrupt, RunError) as ended:
+                early, outcome = ended, ("ended early", str(ended) or "interrupted")
+            if drive.film is not None:
+                drive.film.stop()
+            session.family.spared = drive.film.process_id if drive.film else None
+            drive.end()
+    except KeyboardInterrupt as ended:  # while all ended: what was seen is reported
+        early = ended
     found = _report(drive, outcome, launched.log_folder) if drive.was_seen else None
     with interruptible():
         _finish_film(drive, found)
