@@ -18,7 +18,7 @@ from evaluation.house.watch import Watch
 from evaluation.navigation.score import Result
 from evaluation.picture import legend, map_sheet, pixels
 from evaluation.plan import Plan
-from evaluation.session.film import FilmFile, fit, side_by_side
+from evaluation.session.film import LONGEST_GAP, FilmFile, fit, side_by_side
 from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
 from trial_worlds.ground import Ground
@@ -67,13 +67,14 @@ class Film(FilmFile):
             records = self._watch.records
             if records is not self._records:
                 self._records, self._number = records, -1
-            number = int(records.now / PERIOD)
-            if records.truth and number > self._number:
+            number, last = int(records.now / PERIOD), self._number
+            if records.truth and number > last:
                 self._number = number
                 # One picture: while somebody subscribes, the camera draws thirty a second.
                 with contextlib.suppress(rospy.ROSException):
                     self._view = rospy.wait_for_message(CAMERA, Image, VIEW_TIME)
-                self._add(self._page(records))
+                # The film keeps simulated time even where pictures are missing.
+                self._add(self._page(records), 1 if last < 0 else min(number - last, LONGEST_GAP))
 
     def _page(self, records: Records) -> np.ndarray:
         view = self._view and fit(CvBridge().imgmsg_to_cv2(self._view, "bgr8"))
@@ -84,13 +85,14 @@ class Film(FilmFile):
     def _plan(self, records: Records) -> np.ndarray:
         """The map as it is now, on it what the robot sees, wants and has done."""
         watch, plan, there = self._watch, self._floor.copy(), self._result.map_in_world
-        if watch.map is not None:
-            _lay_cells(plan, watch.map, there)
+        grid, hits = watch.map, watch.hits  # as they are now: they may be forgotten at any moment
+        if grid is not None:
+            _lay_cells(plan, grid, there)
         plan.line(np.array(records.truth).reshape(-1, 4)[:, 1:3], DRIVEN, 2)
         plan.line(transform_points(there, watch.plan), PLANNED, 2)
-        if watch.hits is not None and records.believed:
+        if hits is not None and records.believed:
             laser = compose(compose(there, records.believed_pose), LASER)
-            plan.dots(transform_points(laser, watch.hits), SCAN)
+            plan.dots(transform_points(laser, hits), SCAN)
         plan.arrow(records.true_pose, 0.38, CAR)
         return plan.image
 

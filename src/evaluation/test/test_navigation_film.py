@@ -1,0 +1,59 @@
+"""The film of a navigation run, with made-up records and no camera."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import rospy
+
+from evaluation.house.house_file import load_house
+from evaluation.house.records import Records
+from evaluation.navigation import pictures
+from evaluation.navigation.score import Result
+
+
+class Forgetful:
+    """A watch that begins anew whenever its map or scan has been looked at."""
+
+    def __init__(self, grid):
+        self.grids, self.scans = [grid, None], [np.ones((5, 2)), None]
+        self.plan = np.empty((0, 2))
+        self.records = Records(truth=[(0.0, 0.0, 0.0, 0.0)], believed=[(0.0, 0.0, 0.0, 0.0)])
+
+    @property
+    def map(self):
+        return self.grids.pop(0)
+
+    @property
+    def hits(self):
+        return self.scans.pop(0)
+
+
+@pytest.fixture
+def film(tmp_path):
+    ground = load_house("house").ground()
+    return pictures.Film(tmp_path / "run.mp4", ground, Forgetful(ground.walls), Result())
+
+
+def test_a_part_that_begins_anew_while_a_page_is_drawn_ends_no_film(film):
+    assert film._plan(film._watch.records).any()
+
+
+def test_the_film_keeps_simulated_time_where_pictures_are_missing(film, monkeypatch):
+    def wait_for_message(*_):
+        raise rospy.ROSException("no camera")
+
+    monkeypatch.setattr(pictures.rospy, "wait_for_message", wait_for_message)
+    added, times = [], [3.2, 3.4, 4.1, 6.0, 99.0]
+    film._add = lambda _page, count=1: added.append(count)
+    film._page = lambda _records: None
+
+    def wait(_period):
+        if times:
+            film._watch.records.truth.append((times.pop(0), 0.0, 0.0, 0.0))
+            return False
+        return True
+
+    film._ended = SimpleNamespace(wait=wait)
+    film._film()
+    assert added == [1, 1, 2, pictures.LONGEST_GAP]
