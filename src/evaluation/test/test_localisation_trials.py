@@ -2,11 +2,14 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sensor_msgs.msg import LaserScan
 
 from evaluation.house.records import Records
+from evaluation.localisation import trials
 from evaluation.localisation.outcomes import (
     FINDING,
     KIDNAPS,
@@ -157,6 +160,22 @@ def test_it_turns_where_it_may_not_go_on():
     steering, ranges = Steering(0), np.full(360, 3.5)
     assert steering.choose(ranges, BEARINGS, may_go_on=False) == (0.0, -0.8)
     assert steering.choose(ranges, BEARINGS)[0] == SPEED
+
+
+def test_a_scan_that_comes_late_does_not_set_it_going_again(monkeypatch):
+    """The callback may be at work when nobody listens any more."""
+    takes, speeds = [], []
+    publisher = SimpleNamespace(publish=lambda command: speeds.append(command.linear.x))
+    monkeypatch.setattr(trials.rospy, "Publisher", lambda *_, **__: publisher)
+    monkeypatch.setattr(trials.rospy, "Subscriber", lambda _topic, _kind, take, **_: (
+        takes.append(take), SimpleNamespace(unregister=lambda: None))[1])
+    scan = LaserScan(angle_min=0.0, angle_increment=np.radians(1.0), range_min=0.1, range_max=3.5,
+                     ranges=[3.0] * 360)
+    with trials.wandering(0, lambda: True):
+        takes[0](scan)
+    assert speeds == [SPEED, 0.0]
+    takes[0](scan)
+    assert speeds[-1] == 0.0
 
 
 def test_nothing_to_try_names_all_four():

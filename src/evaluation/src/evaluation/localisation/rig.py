@@ -26,9 +26,7 @@ from trial_worlds.ground import Ground
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall
 FENCE = 0.8  # m ahead of the robot
-TRUE, ENCODER = ("<odometrySource>world<", "<odometrySource>encoder<")
-
-
+TRUE, ENCODER = "<odometrySource>world<", "<odometrySource>encoder<"
 call_service = partial(simulator.call, wait=STILL_LIMIT)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 import time
 from collections.abc import Callable, Iterator
 
@@ -149,6 +150,7 @@ class Steering:
 def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
     """A command for each scan meanwhile; `may_go_on` says whether straight ahead it may go."""
     steering, commands = Steering(seed), rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+    ended = threading.Event()
 
     def take(message: LaserScan) -> None:
         ranges = np.array(message.ranges)
@@ -159,10 +161,13 @@ def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
             np.minimum(ranges, message.range_max), (bearings + np.pi) % (2 * np.pi) - np.pi,
             may_go_on())
         commands.publish(command)
+        if ended.is_set():  # meanwhile: the robot stood already
+            commands.publish(Twist())
 
     scans = rospy.Subscriber("/scan", LaserScan, take, queue_size=1)
     try:
         yield
     finally:
         scans.unregister()
+        ended.set()
         commands.publish(Twist())

@@ -79,22 +79,13 @@ def drive(rig: Rig, task: Task, judge: Judge) -> Drive:
     if outcome == outcomes.NOT_THERE:
         ended = f"from {judge.off(task.goal):.2f} m away"
     return Drive(
-        set=task.case.set,
-        seed=task.case.seed,
-        repeat=task.case.repeat,
-        outcome=outcome,
-        why=None if ended == outcomes.REACHED else ended,
-        time=round(judge.time, 2),
-        distance=round(judge.distance, 3),
-        straight_time=round(straight / ROBOT_SPEED, 2),
+        set=task.case.set, seed=task.case.seed, repeat=task.case.repeat, outcome=outcome,
+        why=None if ended == outcomes.REACHED else ended, time=round(judge.time, 2),
+        distance=round(judge.distance, 3), straight_time=round(straight / ROBOT_SPEED, 2),
         shortest_time=round(task.shortest / ROBOT_SPEED, 2),
-        to_obstacles=_known(judge.to_obstacles),
-        to_person=_known(judge.to_person),
-        recoveries=list(rig.recoveries),
-        slow_cycles=rig.slow_cycles,
-        real_time_factor=round(pace, 2),
-        drawn=task.drawn,
-    )
+        to_obstacles=_known(judge.to_obstacles), to_person=_known(judge.to_person),
+        recoveries=list(rig.recoveries), slow_cycles=rig.slow_cycles,
+        real_time_factor=round(pace, 2), drawn=task.drawn)
 
 
 def _watch(rig: Rig, judge: Judge, task: Task) -> tuple[str, float]:
