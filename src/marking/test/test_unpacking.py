@@ -1,11 +1,13 @@
 """Archives of strangers: what is unpacked, and what is refused in one line."""
 
+import os
 import zipfile
+from hashlib import sha256
 
 import made_up
 import pytest
 from marking.submissions import digest, find_submissions, prepare
-from marking.unpacking import UnpackError, unpack
+from marking.unpacking import MOST_BYTES, UnpackError, unpack
 
 PATTERNS = ("follower.py", "*follow*.py", "main.py")
 REFUSED = [name for name, (_, row, *_) in made_up.ARCHIVES.items() if row]
@@ -57,11 +59,33 @@ def test_a_link_in_a_folder_is_refused(tmp_path):
         prepare(submission, tmp_path / "out", PATTERNS)
 
 
-def test_a_file_that_is_too_large_is_not_read_for_the_digest(tmp_path, monkeypatch):
+def test_what_is_more_than_can_be_unpacked_is_not_read_for_the_digest(tmp_path, monkeypatch):
     monkeypatch.setattr("hashlib.file_digest", lambda *_: pytest.fail("it was read"))
     with (tmp_path / "a.zip").open("wb") as file:
         file.truncate(2**36)  # takes no room on the disk
     assert digest(tmp_path / "a.zip")
+
+
+def test_of_many_files_no_more_is_read_than_can_be_unpacked(tmp_path, monkeypatch):
+    read = []
+    monkeypatch.setattr("hashlib.file_digest", lambda file, _: read.append(file.name) or sha256())
+    for name in "abc":
+        with (tmp_path / name).open("wb") as file:
+            file.truncate(MOST_BYTES // 2)
+    assert digest(tmp_path) and len(read) == 2
+
+
+def test_a_large_submission_that_has_changed_has_another_digest(tmp_path):
+    """A tar of the same size: its files may be few enough to be unpacked."""
+    tar = tmp_path / "a.tar"
+    with tar.open("wb") as file:
+        file.truncate(MOST_BYTES + 10240)
+    before = digest(tar)
+    assert digest(tar) == before
+    with tar.open("r+b") as file:
+        file.write(b"another")
+    os.utime(tar, ns=(0, tar.stat().st_mtime_ns + 1))
+    assert digest(tar) != before
 
 
 def test_a_changed_submission_has_another_digest(tmp_path):

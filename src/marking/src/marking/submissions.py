@@ -48,19 +48,22 @@ def find_submissions(folder: Path) -> list[Submission]:
 
 def digest(source: Path) -> str:
     """SHA-256 over the names and bytes of a submission's files; links count by where they lead,
-    files that are too large to be unpacked by their size."""
-    sums = hashlib.sha256()
+    what is more than can be unpacked by size and time of change."""
+    sums, left = hashlib.sha256(), MOST_BYTES
     paths = [] if source.is_symlink() else sorted(source.rglob("*"))
     for path in [source, *paths]:
         sums.update(os.fsencode(path.relative_to(source)) + b"\0")
         with contextlib.suppress(OSError):  # what cannot be read is said when it is unpacked
             if path.is_symlink():
                 sums.update(os.fsencode(os.readlink(path)))
-            elif path.is_file() and (size := path.stat().st_size) > MOST_BYTES:
-                sums.update(str(size).encode())
             elif path.is_file():
-                with path.open("rb") as file:
-                    sums.update(hashlib.file_digest(file, "sha256").digest())
+                there = path.stat()
+                left -= there.st_size
+                if left < 0:
+                    sums.update(f"{there.st_size} {there.st_mtime_ns}".encode())
+                else:
+                    with path.open("rb") as file:
+                        sums.update(hashlib.file_digest(file, "sha256").digest())
     return sums.hexdigest()
 
 
