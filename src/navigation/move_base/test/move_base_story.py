@@ -21,7 +21,7 @@ from move_base_msgs.msg import MoveBaseAction, RecoveryStatus
 from nav_msgs.msg import Path
 from nav_msgs.srv import GetPlan
 from rosgraph_msgs.msg import Log
-from running import address, alive, goal_at, pid_of, wait_until
+from running import address, alive, goal_at, pid_of, sends_to_us, wait_until
 from std_srvs.srv import Empty
 
 START, NEAR, FAR = (0.7, 0.7, 0.0), (1.3, 0.7, 0.0), (3.2, 1.0, 1.0)
@@ -55,6 +55,11 @@ class Story(unittest.TestCase):
         self.client.send_goal(goal_at(place))
         wait_until(lambda: self.robot.velocity[0] > 0.1, "driving")
 
+    def wait_for_links(self, *topics):
+        """What move_base says comes to these subscribers from now on."""
+        names = {topic.resolved_name for topic in topics}
+        wait_until(lambda: sends_to_us("move_base", names), f"links of {names}")
+
     def ended(self, limit=30.0):
         """(state, text) of the goal."""
         self.assertTrue(self.client.wait_for_result(rospy.Duration(limit)), "no result")
@@ -67,7 +72,7 @@ class Story(unittest.TestCase):
                   for topic in ("NavfnROS/plan", "DWAPlannerROS/global_plan",
                                 "DWAPlannerROS/local_plan")]
         topics.append(rospy.Subscriber("move_base/current_goal", PoseStamped, current.append))
-        wait_until(lambda: all(topic.get_num_connections() for topic in topics), "its topics")
+        self.wait_for_links(*topics)
         self.client.send_goal(goal_at(NEAR))
         self.assertEqual(self.ended(), (GoalStatus.SUCCEEDED, "Goal reached."))
         self.assertLess(np.hypot(*(self.robot.pose[:2] - NEAR[:2])), 0.1)
@@ -86,7 +91,8 @@ class Story(unittest.TestCase):
     def test_unreachable_goal(self):
         """Each recovery is tried, then upstream's text."""
         tried = []
-        rospy.Subscriber("move_base/recovery_status", RecoveryStatus, tried.append)
+        self.wait_for_links(
+            rospy.Subscriber("move_base/recovery_status", RecoveryStatus, tried.append))
         self.client.send_goal(goal_at(CHAMBER))
         self.assertEqual(self.ended(40.0), (
             GoalStatus.ABORTED,

@@ -40,6 +40,13 @@ def address(node: str) -> str | None:
         return None
 
 
+def sends_to_us(node: str, topics: set[str]) -> bool:
+    """Whether it has made its side of the links, too: a subscriber may count one before that."""
+    links = xmlrpc.client.ServerProxy(address(node)).getBusInfo("/story")[2]
+    return topics <= {topic for _, caller, direction, _, topic, is_open, *_ in links
+                      if direction == "o" and is_open and caller == rospy.get_name()}
+
+
 def pid_of(node: str) -> int:
     """The process of a node that answers."""
     return xmlrpc.client.ServerProxy(address(node)).getPid("/story")[2]
