@@ -7,6 +7,7 @@ import contextlib
 import fcntl
 import os
 import pty
+import random
 import re
 import signal
 import socket
@@ -39,9 +40,12 @@ CUT_OFF = re.compile(r"\x1b(\[[0-9;]*|\](2(;[^\x07]*)?)?)?$")  # the beginning o
 
 
 def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
+    """None that Linux gives to a socket which asks for any, before a roscore has taken it."""
+    while True:
+        port = random.randrange(20000, 32768)
+        with socket.socket() as probe, contextlib.suppress(OSError):  # it is in use
+            probe.bind(("localhost", port))
+            return port
 
 
 def _take_terminal() -> None:

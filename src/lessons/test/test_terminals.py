@@ -13,6 +13,11 @@ terminals = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(terminals)
 
 
+def test_a_port_for_a_master_is_none_that_a_socket_may_be_given():
+    first = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+    assert all(1024 < terminals.free_port() < first for _ in range(20))
+
+
 def test_a_terminal_is_read_while_nobody_waits_for_it(tmp_path):
     """As a real one: otherwise a command blocks as soon as the kernel's buffer is full."""
     writes = "for i in $(seq 20000); do echo a line of some length; done; echo > done; echo end"
