@@ -33,6 +33,15 @@ def wait_for(path, text):
 
 
 @pytest.fixture
+def type_ctrl_c():
+    """A moment from now; it counts also where the tests run in a shell's background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    yield timer.start
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
 def drive(tmp_path, monkeypatch):
     """A session and a drive in it that goes on until it is told to end."""
     monkeypatch.chdir(tmp_path)
@@ -50,20 +59,20 @@ def test_a_drive_that_takes_too_long_ends_and_leaves_no_report(drive, tmp_path):
     assert not (tmp_path / "report.json").exists()
 
 
-def test_an_interrupted_drive_leaves_no_report(drive, tmp_path):
+def test_an_interrupted_drive_leaves_no_report(drive, tmp_path, type_ctrl_c):
     session, started = drive
-    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    type_ctrl_c()
     with pytest.raises(KeyboardInterrupt):
         started.report(20.0, "a lap")
     session.family.stop()
     assert not (tmp_path / "report.json").exists()
 
 
-def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path):
+def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):
     session = Session(tmp_path)
     child = session.family.start("stubborn", STUBBORN, os.environ, tmp_path / "log")
     wait_for(tmp_path / "log", "started")
-    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    type_ctrl_c()
     with pytest.raises(KeyboardInterrupt), session:
         pass
     assert child.process.poll() is not None
