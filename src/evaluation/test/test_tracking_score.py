@@ -159,6 +159,19 @@ def test_trials_go_on_from_what_is_there_and_count(tmp_path, capsys, good, code)
     assert json.loads((tmp_path / "report.json").read_text())["summaries"][0]["cases"] == 2
 
 
+def test_half_a_drive_is_none_to_go_on_from(tmp_path):
+    """A program that is killed leaves its drive's report, of what was seen by then."""
+    scorer = TrackScorer(Task(STANDS, (), WANTED))
+    scorer.add(Sample(0.0, 0.0, 0.0, 0.0))
+    for seed, outcome in ((0, "not reached"), (1, scorer.outcome)):
+        folder = tmp_path / "stand" / str(seed)
+        folder.mkdir(parents=True)
+        (folder / "report.json").write_text(json.dumps({**report(seed, False), "outcome": outcome}))
+    trial = TrackTrial()
+    options = trial.parse(["--sets", "stand", "--seeds", "2", "--resume", "--out", str(tmp_path)])
+    assert [each.name for each in trial.earlier(options)] == ["stand/0"]
+
+
 def test_a_damaged_report_of_a_drive_is_one_line(tmp_path, capsys):
     folder = tmp_path / "stand" / "0"
     folder.mkdir(parents=True)

@@ -25,6 +25,7 @@ FIND_TIME = 10.0      # s from the hood's rising
 SETTLED = 3.0         # s
 REACHED_GAP = 0.1     # m between car and cylinder: it is there, and sees nothing else any more
 STANDING_TIME = 5.0   # s that the distance to a standing cylinder has to be kept
+EARLY = "ended early"  # outcome of half a drive
 CAMERA_X, HALF_FOV = 0.12, 0.6981317  # m before the axle, rad
 # Of the car about the middle of its axle, m: half the length, half the width.
 PARTS = np.array([(0.15, 0.11), (0.06, 0.15)])  # body, both wheels
@@ -143,14 +144,14 @@ class TrackScorer:
     @property
     def outcome(self) -> str:
         """In words."""
+        if not self.over:
+            return EARLY
         if self.approach is None:
             return "not reached"
         if any(h.found_after is None or h.found_after > FIND_TIME for h in self.hidings):
             return "not found again"
         if self.left_at is not None:
             return "distance not kept"
-        if not self.over:
-            return "ended early"
         return "reached" if self.task.wanted is None else "kept"
 
     def judged_errors(self, after: float = 0.0) -> np.ndarray:

@@ -13,7 +13,7 @@ from pathlib import Path
 from ai_robot_tracking.scenes.scene import DISTRACTORS, HIDDEN_AT, LIGHT, MOVING, OCCLUSION, STATIC
 
 from evaluation.tracking.run import PAGE, PID
-from evaluation.tracking.score import FIND_TIME
+from evaluation.tracking.score import EARLY, FIND_TIME
 from evaluation.trial.command_line import Parser
 from evaluation.trial.protocol import REPORT, Case, Trial
 from evaluation.trial.report import cell, mean, table_of
@@ -110,9 +110,11 @@ class TrackTrial(Trial):
                 for seed in range(first, first + math.ceil(options.seeds / kind.cases))]
 
     def earlier(self, options: argparse.Namespace) -> list[Drive]:
-        """The drives whose reports there are; none is no mistake."""
-        found = [(case, options.out / case.name / REPORT) for case in self.cases(options)]
-        return [Drive(case.name, case.set, _read(path)) for case, path in found if path.exists()]
+        """The whole drives whose reports there are; none is no mistake."""
+        found = [(case, _read(path)) for case in self.cases(options)
+                 if (path := options.out / case.name / REPORT).exists()]
+        return [Drive(case.name, case.set, report) for case, report in found
+                if report["outcome"] != EARLY]
 
     def setup(self, session: Session, case: TrackCase) -> None:
         self._case, kind = case, SETS[case.set]

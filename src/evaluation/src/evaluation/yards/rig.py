@@ -27,7 +27,6 @@ START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
 FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 10 Hz
 PERSON = "person"
 UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
-
 SLOW = "missed its desired rate"  # move_base's own words
 LOOK_PERIOD = 0.02  # s, wall
 call_service = partial(call, wait=ANSWER_LIMIT)
