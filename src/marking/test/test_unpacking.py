@@ -59,6 +59,12 @@ def test_a_link_in_a_folder_is_refused(tmp_path):
         prepare(submission, tmp_path / "out", PATTERNS)
 
 
+def test_a_pipe_that_is_called_an_archive_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "a.zip")
+    with pytest.raises(UnpackError, match=r"a\.zip: is no file"):
+        unpack(tmp_path / "a.zip", tmp_path / "out")
+
+
 def test_what_is_more_than_can_be_unpacked_is_not_read_for_the_digest(tmp_path, monkeypatch):
     monkeypatch.setattr("hashlib.file_digest", lambda *_: pytest.fail("it was read"))
     with (tmp_path / "a.zip").open("wb") as file:
