@@ -68,6 +68,13 @@ def test_an_interrupted_drive_leaves_no_report(drive, tmp_path, type_ctrl_c):
     assert not (tmp_path / "report.json").exists()
 
 
+def test_a_drive_that_broke_off_leaves_no_report(tmp_path):
+    breaks = f"open('{tmp_path}/report.json', 'w').write('{{}}'); raise SystemExit(2)"
+    with Session(tmp_path) as session, pytest.raises(RunError, match="a lap: exit code 2"):
+        session.start_drive(["python3", "-c", breaks], tmp_path).report(20.0, "a lap")
+    assert not (tmp_path / "report.json").exists()
+
+
 def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):
     session = Session(tmp_path)
     child = session.family.start("stubborn", STUBBORN, os.environ, tmp_path / "log")

@@ -82,6 +82,7 @@ class DriveProcess:
             raise
         code = self._child.process.returncode
         if code not in DRIVEN or not self._report.exists():
+            self._report.unlink(missing_ok=True)
             *details, why = self._child.last_lines().splitlines() or [f"exit code {code}"]
             raise RunError(f"{what}: {why}", "\n".join(details))
         return json.loads(self._report.read_text(encoding="utf-8"))
