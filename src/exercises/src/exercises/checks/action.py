@@ -31,12 +31,8 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
             until(lambda: client.get_state() in OVER, limits["seconds"])
             state, wanted = client.get_state(), GoalStatus.ABORTED
             if number >= least:
-                wanted, total, given = GoalStatus.SUCCEEDED, sum(range(1, number + 1)), _result(client)
+                wanted, total = GoalStatus.SUCCEEDED, sum(range(1, number + 1))
+                given = getattr(client.get_result(), "result", None)
                 yield holds(f"sum for the goal {number}", str(given), str(total), given == total)
             yield holds(f"end of the goal {number}", GoalStatus.to_string(state),
                         GoalStatus.to_string(wanted), state == wanted)
-
-
-def _result(client: actionlib.SimpleActionClient) -> int | None:
-    result = client.get_result()
-    return result and result.result
