@@ -1,6 +1,8 @@
 """What the tests of all exercises share."""
 
+import io
 import subprocess
+import tarfile
 
 import pytest
 
@@ -22,11 +24,12 @@ def pytest_generate_tests(metafunc):
 def begun(tmp_path):
     """Copies a starting file as git has it: a learner may have solved it in place. None: no git."""
     def copied(exercise):
-        done = subprocess.run(["git", "show", f"HEAD:./{exercise.start.name}"],
-                              cwd=exercise.start.parent, capture_output=True)
+        name = exercise.start.name
+        done = subprocess.run(["git", "archive", "HEAD", name], cwd=exercise.start.parent,
+                              capture_output=True)
         if done.returncode:
             return None
-        file = tmp_path / exercise.start.name
-        file.write_bytes(done.stdout)
-        return file
+        with tarfile.open(fileobj=io.BytesIO(done.stdout)) as archive:
+            archive.extract(name, tmp_path)
+        return tmp_path / name
     return copied
