@@ -13,6 +13,7 @@ from exercises.finding import Finding, near
 from exercises.node import START, running
 
 TOPIC, NAME = "/turtle1/cmd_vel", "speed"
+TOLERANCE = 0.001  # m/s
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
@@ -25,8 +26,8 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
         parameter = f"{commands[0]._connection_header['callerid']}/{NAME}"
 
         def driven(when: str, wanted: float) -> Finding:
-            until(lambda: commands[-1].linear.x == wanted, limits["seconds"])
-            return near(f"speed {when}", commands[-1].linear.x, wanted, 0.0, " m/s")
+            until(lambda: abs(commands[-1].linear.x - wanted) < TOLERANCE, limits["seconds"])
+            return near(f"speed {when}", commands[-1].linear.x, wanted, TOLERANCE, " m/s")
 
         yield driven("before anybody has set it", limits["default"])
         rospy.set_param(parameter, limits["other"])
