@@ -30,7 +30,7 @@ def test_a_good_file(tmp_path):
     ({"title": ...}, "mine: missing key 'title'"),
     ({"title": 5}, "mine: title: must be a text, is 5"),
     ({"start": "c.py"}, "mine: start: no file "),
-    ({"check": "look"}, "mine: check: no check 'look'; there are: bag, "),
+    ({"check": "look"}, "mine: check: no check 'look'; there are: action, "),
     ({"limits": {"second": 1}}, "mine: limits: unknown key 'second'; there are: seconds"),
     ({"limits": {}}, "mine: limits: missing key 'seconds'"),
     ({"limits": {"seconds": True}}, "mine: limits: seconds: must be a number, is True"),

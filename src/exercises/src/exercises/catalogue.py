@@ -16,13 +16,18 @@ from exercises.errors import CannotCheck
 FILE = "exercises.yaml"
 KEYS = ("title", "start", "solution", "check", "limits")
 CHECKS = {  # module of exercises.checks -> its limits, in SI units unless the name says otherwise
+    "action": ("least", "seconds"),
     "bag": ("messages", "period", "tolerance"),
     "chase": ("distance", "tolerance", "seconds"),
+    "ending": ("seconds",),
     "halls": ("halls", "seconds"),
+    "lamp": ("pictures",),
     "lane": ("places", "aside", "right_share"),
     "lap": ("speed", "rms", "off_course"),
     "line": ("pictures", "error_px"),
+    "link": ("x", "y", "z", "yaw", "tolerance"),
     "mask": ("kept_share", "taken_share"),
+    "parameter": ("default", "other", "seconds"),
     "pid": ("left_px", "swing_px"),
     "planner": ("cost", "way_share"),
     "radar": ("x", "y", "z", "tolerance"),

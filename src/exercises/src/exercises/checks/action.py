@@ -1,0 +1,38 @@
+"""An action server that refuses: addInts, learning_action/AddInts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from learning_action.msg import AddIntsAction, AddIntsGoal
+
+from exercises.errors import Mistake
+from exercises.finding import Finding, holds
+from exercises.node import START, running
+
+NAME = "addInts"
+OVER = GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.REJECTED, GoalStatus.PREEMPTED
+BESIDE = -3, -1, 0, 3  # goals, beside the least one that makes sense
+
+
+def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
+    """What is too small ends as aborted, all else with its sum."""
+    least = round(limits["least"])
+    with running(file) as until:
+        client = actionlib.SimpleActionClient(NAME, AddIntsAction)
+        if not until(lambda: client.wait_for_server(rospy.Duration(0.1)), START):
+            raise Mistake(f"{file}: offers no action {NAME} of type learning_action/AddInts")
+        for number in (least + beside for beside in BESIDE):
+            client.send_goal(AddIntsGoal(num=number))
+            until(lambda: client.get_state() in OVER, limits["seconds"])
+            state, wanted = client.get_state(), GoalStatus.ABORTED
+            if number >= least:
+                wanted, total = GoalStatus.SUCCEEDED, sum(range(1, number + 1))
+                given = getattr(client.get_result(), "result", None)
+                yield holds(f"sum for the goal {number}", str(given), str(total), given == total)
+            yield holds(f"end of the goal {number}", GoalStatus.to_string(state),
+                        GoalStatus.to_string(wanted), state == wanted)

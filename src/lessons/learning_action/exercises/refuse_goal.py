@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""Exercise refuse_goal: no sum of fewer than one number.  练习：拒绝小于 1 的目标。"""
+
+import actionlib
+import rospy
+from learning_action.msg import AddIntsAction, AddIntsFeedback, AddIntsResult
+
+RATE_HZ = 10
+
+
+class AddInts:
+    def __init__(self):
+        self.server = actionlib.SimpleActionServer(
+            "addInts", AddIntsAction, self.execute, auto_start=False)
+        self.server.start()
+
+    def execute(self, goal):
+        """Runs in a thread of its own, for one goal at a time.  每次只执行一个目标。"""
+        # Yours: a goal below 1 ends as aborted.  请补充：小于 1 的目标以 aborted 结束
+        total = 0
+        rate = rospy.Rate(RATE_HZ)
+        for number in range(1, goal.num + 1):
+            if self.server.is_preempt_requested():
+                self.server.set_preempted(AddIntsResult(total))
+                return
+            total += number
+            self.server.publish_feedback(AddIntsFeedback(number / goal.num))
+            rate.sleep()
+        self.server.set_succeeded(AddIntsResult(total))
+
+
+if __name__ == "__main__":
+    rospy.init_node("action_server")
+    AddInts()
+    rospy.spin()
