@@ -8,8 +8,11 @@ from pathlib import Path
 
 import hypothesis
 from hypothesis import HealthCheck, Phase, settings
+from hypothesis.configuration import set_hypothesis_home_dir
 from sandbox import Sandbox
 from target import ROOT, Target
+
+set_hypothesis_home_dir(ROOT / "out" / "fuzz" / ".hypothesis")  # else in the folder of the caller
 
 
 class Report:
@@ -32,8 +35,8 @@ class Report:
         file = self._out / f"{seed}-{self.inputs}-{self.target.file}"
         file.write_bytes(content)
         shown = file.relative_to(ROOT) if file.is_relative_to(ROOT) else file
-        self.findings[kind] = (
-            f"{self.target.name}: {fault}; again: make fuzz TARGET={self.target.name} INPUT={shown}")
+        self.findings[kind] = (f"{self.target.name}: {fault}; again: make fuzz "
+                               f"TARGET={self.target.name} INPUT={shown}")
         print(self.findings[kind], flush=True)
 
     def row(self) -> str:

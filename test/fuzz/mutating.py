@@ -12,10 +12,10 @@ from pathlib import Path
 from hypothesis import strategies as st
 from target import ROOT
 
-WORDS = (b"nan", b"-inf", b"1e308", b"-0", b"", b"0", b"-1", b"4294967295", b"99999999999999999999",
-         b"1e-320", b"[", b"{", b"]", b"}", b"\0", b"\n", b"\xff\xfe", "名".encode(), b"null", b"1 2",
-         b"'", b'"', b"&a", b"*a", b"<", b"/>", b"x" * 5000, b"9 " * 5000, b"[" * 3000, b"9" * 5000,
-         b"2020-13-45")
+WORDS = (b"nan", b"-inf", b"1e308", b"-0", b"", b"0", b"-1", b"4294967295",
+         b"99999999999999999999", b"1e-320", b"[", b"{", b"]", b"}", b"\0", b"\n", b"\xff\xfe",
+         "名".encode(), b"null", b"1 2", b"'", b'"', b"&a", b"*a", b"<", b"/>", b"x" * 5000,
+         b"9 " * 5000, b"[" * 3000, b"9" * 5000, b"2020-13-45")
 NUMBERS = (0, 1, -1, 127, 255, 32767, 65535, 100_000, 2**31 - 1, -(2**31), 2**32 - 1)
 FORMS = ("<b", "<h", "<i", ">h", ">i")
 MOST_CHANGES = 4

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import logging
 import os
@@ -112,11 +113,12 @@ class _Lines(logging.Handler):
         if record.exc_info:
             self.wrong = f"logs a traceback: {_one_line(record.getMessage())}"
         elif not _is_line(text := record.getMessage()):
-            self.wrong = f"logs more than one line: {_one_line(text)}"
+            self.wrong = f"logs more than a line: {_one_line(text)}"
 
 
 def _serve(target: Target, file: Path, asked: int, answer: int) -> None:
     """In the child: an answer for each question; never returns."""
+    faulthandler.disable()  # pytest's would fill the log with what is asked for here
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
@@ -144,7 +146,7 @@ def _try(target: Target, file: Path) -> str | None:
         target.read(file)
     except target.refusals as error:
         if not _is_line(str(error)):
-            return f"{type(error).__name__} of more than one line: {_one_line(str(error))}"
+            return f"{type(error).__name__} of more than a line: {_one_line(str(error))}"
     except BaseException as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
         ours = [frame for frame in traceback.extract_tb(error.__traceback__)
