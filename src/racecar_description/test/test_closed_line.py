@@ -133,6 +133,14 @@ def test_a_track_file_that_is_no_text_is_named(tmp_path):
         load_track(tmp_path / "picture.yaml")
 
 
+@pytest.mark.parametrize("text", ["[" * 3000, "name: 2020-13-45", "size: " + "9" * 5000])
+def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
+    (tmp_path / "track.yaml").write_text(text)
+    with pytest.raises(TrackError, match=r"track\.yaml: no YAML: ") as caught:
+        load_track(tmp_path / "track.yaml")
+    assert len(str(caught.value)) < 1000
+
+
 @pytest.mark.parametrize("key", ["name", "size", "start"])
 def test_a_list_of_aliases_is_named_and_not_spelt_out(tmp_path, key):
     bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))

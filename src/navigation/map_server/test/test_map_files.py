@@ -250,3 +250,9 @@ def test_a_list_of_aliases_is_named_and_not_spelt_out(tmp_path):
     with pytest.raises(MapMetadataError, match=r"resolution is .*, but must be a number"):
         read_map(write(tmp_path, greys(GREYS), resolution=f"[{bomb}]"))
     assert time.process_time() - began < 2
+
+
+def test_a_name_of_thousands_of_letters_is_not_spelt_out(tmp_path):
+    with pytest.raises(MapMetadataError, match="has more than 1024 characters") as caught:
+        read_map(write(tmp_path, greys(GREYS), image="x" * 5000))
+    assert len(str(caught.value)) < 500

@@ -122,6 +122,16 @@ def test_missing_texture_is_one_warning_with_folders(tmp_path, caplog):
     assert "texture gone.png not found" in caplog.text and str(tmp_path) in caplog.text
 
 
+@pytest.mark.parametrize("script", [TEXTURED.format("a", "x" * 5000),
+                                    f"import * from {'x' * 5000}\n" + TEXTURED.format("a", "b")])
+def test_a_name_too_long_for_a_file_is_one_short_warning(tmp_path, caplog, script):
+    (tmp_path / "a.material").write_text(script)
+    material = visual_with(f"<script><uri>file://{tmp_path}</uri><name>a</name></script>")
+    assert material.texture is None
+    (record,) = caplog.records
+    assert "not found" in record.getMessage() and len(record.getMessage()) < 1000
+
+
 def test_missing_script_folder_is_in_the_warning(tmp_path, caplog):
     uri = f"model://gone/{tmp_path.name}"
     visual_with(f"<script><uri>{uri}</uri><name>a</name></script>", Resources([tmp_path]))

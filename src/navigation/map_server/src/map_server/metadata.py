@@ -17,6 +17,7 @@ from map_server.files import read_file
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
+LONGEST_NAME = 1024  # characters; Linux opens no path of more than 4096 bytes
 FINEST, COARSEST = 1e-6, 1000.0  # m a pixel; a message's 32 bits make 0 of 1e-46, inf of 4e38
 FARTHEST = 1e9  # m from 0; near 1e300 what is reckoned with it is inf
 IMAGE = re.compile(rb"P[1-6]\s|\x89PNG|\xff\xd8\xff|BM|GIF8")  # how files of images begin
@@ -113,6 +114,8 @@ class _Keys:
         value = self._value(key)
         if not isinstance(value, str) or not value or "\0" in value:
             raise self.wrong(key, "must be text")
+        if len(value) > LONGEST_NAME:
+            raise self.wrong(key, f"has more than {LONGEST_NAME} characters")
         return value
 
     def number(self, key: str) -> float:

@@ -34,8 +34,8 @@ def load_track_file(path: str | Path) -> TrackFile:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "no text file"
         raise TrackError(f"{path}: {reason}") from error
-    except yaml.YAMLError as error:
-        raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except (yaml.YAMLError, RecursionError, ValueError) as error:  # ValueError: month 13
+        raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     try:
         return _track_file(values)
     except TrackError as error:

@@ -9,6 +9,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import ModelDescription
+from bullet_sim.errors import shortened
 from bullet_sim.formats.resources import Resources
 
 logger = logging.getLogger(__name__)
@@ -35,7 +36,7 @@ class Source:
         key = about or message
         if key not in self.warned:
             self.warned.add(key)
-            logger.warning(message)
+            logger.warning("%s", shortened(message))
 
     def of_root(self, root: Element) -> Source:
         """This source with the version that an `<sdf>` or `<gazebo>` root states."""

@@ -1,5 +1,6 @@
 """Reads SDF `<material>`: colours, named materials and OGRE scripts found through their URIs."""
 
+import os.path
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -120,7 +121,8 @@ def _scripts_in(places: list[Path]) -> list[Path]:
 def _imports(script: Path, source: Source) -> list[Path]:
     """Scripts that a script names in `import … from FILE`, beside it."""
     names = {name for material in _parsed(script, source).values() for name in material.imports}
-    return [script.parent / name for name in sorted(names) if (script.parent / name).is_file()]
+    return [script.parent / name for name in sorted(names)
+            if os.path.isfile(script.parent / name)]
 
 
 def _parsed(script: Path, source: Source) -> dict[str, ScriptMaterial]:
@@ -137,7 +139,7 @@ def _parsed(script: Path, source: Source) -> dict[str, ScriptMaterial]:
 
 def _texture(file: str, folders: list[Path], name: str, source: Source) -> str | None:
     for folder in folders:
-        if (folder / file).is_file():
+        if os.path.isfile(folder / file):  # Path.is_file raises for a name that is too long
             return str((folder / file).resolve())
     searched = ", ".join(dict.fromkeys(str(folder) for folder in folders))
     source.warn_once(f"material {name!r}: texture {file} not found (searched: {searched})")

@@ -1,0 +1,77 @@
+"""A little of `make fuzz`, with fixed seeds; and what its command refuses."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.processes
+FUZZ = Path(__file__).parent / "fuzz"
+SEED, EXAMPLES = 1, 100  # of each target: half a minute of processor time in all
+
+
+@pytest.fixture(scope="module")
+def fuzz():
+    """The modules of fuzz/, which find each other by name."""
+    sys.path.insert(0, str(FUZZ))
+    try:
+        import campaign
+        import targets
+    finally:
+        sys.path.remove(str(FUZZ))
+    return campaign, targets.TARGETS
+
+
+@pytest.mark.parametrize("name", [
+    "urdf", "sdf", "world", "xacro", "ogre", "stl", "obj", "collada", "map", "track"])
+def test_spoilt_files_are_read_or_refused_by_one_line(fuzz, tmp_path, name):
+    campaign, targets = fuzz
+    report = campaign.Report(targets[name], tmp_path)
+    try:
+        campaign.run(report, SEED, EXAMPLES)
+    finally:
+        report.close()
+    assert report.inputs > EXAMPLES // 2
+    assert not report.findings, "\n".join(report.findings.values())
+
+
+def test_every_target_has_its_turn_here(fuzz):
+    (marks,) = (mark for mark in test_spoilt_files_are_read_or_refused_by_one_line.pytestmark
+                if mark.name == "parametrize")
+    assert set(marks.args[1]) == set(fuzz[1])
+
+
+@pytest.mark.parametrize("read, fault", [
+    ("lambda path: 1 / 0", "ZeroDivisionError"), ("lambda path: os.abort()", "crashes: SIGABRT"),
+    ("lambda path: [0] * 2**30", "MemoryError"), ("lambda path: spin()", "hangs"),
+    ("lambda path: refuse('a\\nb')", "more than a line"), ("lambda path: refuse('a')", None),
+    ("lambda path: None", None)])
+def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
+    import os
+    from dataclasses import replace
+
+    def refuse(text):
+        raise KeyboardInterrupt(text)
+
+    def spin():
+        while True:
+            pass
+
+    campaign, targets = fuzz
+    spoilt = replace(targets["ogre"], refusals=(KeyboardInterrupt,),
+                     read=eval(read, {"os": os, "spin": spin, "refuse": refuse}))
+    found = campaign.replay(spoilt, b"x")
+    assert found is None if fault is None else fault in found
+
+
+@pytest.mark.parametrize("words, said", [
+    (["--target", "none"], "no target 'none'; there are: urdf, "),
+    (["--minutes", "soon"], "'soon' is not a number of minutes"),
+    (["--minutes", "-1"], "'-1' is not a number of minutes"),
+    (["--input", "nowhere"], "INPUT= needs the TARGET="),
+    (["--target", "stl", "--input", "nowhere"], "nowhere cannot be read")])
+def test_a_mistake_is_one_line(words, said):
+    done = subprocess.run([sys.executable, FUZZ / "fuzz.py", *words], capture_output=True,
+                          text=True, timeout=120)
+    assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1
