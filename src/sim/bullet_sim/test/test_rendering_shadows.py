@@ -22,8 +22,9 @@ from bullet_sim.description import (
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.rectangles import inside_and_around
 from bullet_sim.rendering.scene import Scene
-from bullet_sim.rendering.shadow_reach import Beam, inside_and_around
+from bullet_sim.rendering.shadow_reach import Beam, Cone
 from bullet_sim.rendering.shadows import Shadows
 
 DARK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
@@ -44,6 +45,12 @@ def sun(direction=(0.5, 0.2, -1.0), name="sun", level=1.0, **kwargs):
     given = {"specular": (0.0, 0.0, 0.0, 1.0), "cast_shadows": True} | kwargs
     return LightDescription(name, "directional", diffuse=(level, level, level, 1.0),
                             direction=direction, **given)
+
+
+def spot(at, towards=(0.0, 0.0, -1.0), **kwargs):
+    given = {"inner_angle": 1.2, "outer_angle": 1.4, "range": 8.0, "linear": 0.0,
+             "cast_shadows": True, "specular": (0.0, 0.0, 0.0, 1.0)} | kwargs
+    return LightDescription("spot", "spot", Pose(at), direction=towards, **given)
 
 
 def floor(material=Material(), size=100.0, **kwargs):
@@ -119,7 +126,28 @@ def test_a_box_darkens_the_floor_where_it_hides_the_sun(renderer, view, material
     assert np.abs(level[free & ~within(dark, 1)] - full).max() <= 2
 
 
+@pytest.mark.parametrize("at, towards", [
+    ((0.0, 0.0, 3.0), (0.0, 0.0, -1.0)), ((-1.0, 0.8, 2.5), (0.5, -0.3, -1.0))])
+def test_a_box_darkens_the_floor_where_it_hides_a_spot_light(renderer, at, towards):
+    scene, view = stage(spot(at, towards)), from_above((0.6, 0.3, 6.0))
+    scene.set_pose(BOX, Pose((0.0, 0.0, 0.6)))
+    level = renderer.draw(scene, view).rgb[..., 0].astype(int)
+    points = floor_in_view(view)
+    size, pose = (1.0, 0.6, 0.8), Pose((0.0, 0.0, 0.6))
+    box = hidden_by_box(points, np.array(view.pose.position) - points, size, pose)
+    gap = np.array(at) - points
+    dark = hidden_by_box(points, gap, size, pose)
+    gap /= np.linalg.norm(gap, axis=-1, keepdims=True)
+    lit = -gap @ np.array(towards) / np.linalg.norm(towards) > np.cos(0.58)
+    free = ~within(box, 2) & lit
+    assert np.count_nonzero(dark & free) > 1000
+    assert (level[free & ~within(~dark, 1)] == 0).all()
+    bright = free & ~within(dark, 1)
+    assert np.abs(level - 255 * gap[..., 2])[bright].max() <= 2
+
+
 @pytest.mark.parametrize("changed", [
+    lambda: stage(replace(spot((0, 0, 3)), outer_angle=0.0)),
     lambda: stage(description=replace(DARK, shadows=False)),
     lambda: stage(sun(cast_shadows=False)),
     lambda: stage(box=Visual("box", Box((1.0, 0.6, 0.8)), cast_shadows=False)),
@@ -177,11 +205,12 @@ def test_what_sees_the_sun_has_no_stripes_of_its_own_shadow(renderer, shape, mat
                        Pose.from_xyz_rpy((0, 0, 0.5), (0.2, -0.3, 0.1)))
         return renderer.draw(scene, slanting()).rgb.astype(int)
 
-    for direction in ((0.5, 0.2, -1.0), (1.0, 0.9, -0.3), (0.3, 1.0, -0.1)):
-        plain = picture(False, sun(direction))
+    for light in (sun((0.5, 0.2, -1.0)), sun((1.0, 0.9, -0.3)), sun((0.3, 1.0, -0.1)),
+                  spot((-0.5, 0.3, 2.5)), spot((-2.0, -0.5, 1.0), (0.8, 0.1, 0.2))):
+        plain = picture(False, light)
         facing = plain[..., 0] > 40  # not the last facets before the shade
         assert np.count_nonzero(facing) > 1000
-        assert np.abs(picture(True, sun(direction)) - plain)[facing].max() <= 1
+        assert np.abs(picture(True, light) - plain)[facing].max() <= 1
 
 
 def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkeypatch):
@@ -209,6 +238,7 @@ def crowd(seed):
     random = np.random.default_rng(seed)
     scene = stage(sun(tuple(random.uniform((-1, -1, -1), (1, 1, -0.1)))),
                   sun(tuple(random.uniform(-1, 1, 3)), "other", 0.5),
+                  spot(tuple(random.uniform((-3, -3, 1), (3, 3, 4)))),
                   ground=floor((Material(), GLOSSY)[seed % 2]),
                   description=SceneDescription(fog=Fog("linear") if seed % 3 == 0 else Fog()))
     shapes = [Box((0.5, 0.3, 0.9)), Sphere(0.3), Cylinder(0.2, 0.6),
@@ -226,8 +256,9 @@ def test_what_is_left_out_for_speed_is_not_missed(renderer, monkeypatch, seed):
     scene, view = crowd(seed)
     quick = renderer.draw(scene, view).rgb.astype(int)
     everywhere = np.array([[-1.0, -1.0], [1.0, 1.0]])
-    monkeypatch.setattr(Beam, "seen_on", lambda self, low, high, clip_world: np.tile(
-        everywhere, (len(low), 1, 1)))
+    for light in Beam, Cone:
+        monkeypatch.setattr(light, "seen_on", lambda self, boxes, clip_world: np.tile(
+            everywhere, (len(boxes[0]), 1, 1)))
     whole = renderer.draw(scene, view).rgb.astype(int)
     assert np.abs(whole - quick).max() <= 1  # one rounds in the corner, one in the pixel
 

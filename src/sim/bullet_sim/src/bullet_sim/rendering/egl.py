@@ -36,8 +36,8 @@ from bullet_sim.rendering.projection import (
     projection_matrix,
     view_matrix,
 )
+from bullet_sim.rendering.rectangles import NOWHERE, Scissor, inside_and_around, is_empty
 from bullet_sim.rendering.scene import Node, SceneState
-from bullet_sim.rendering.shadow_reach import NOWHERE, Scissor, inside_and_around
 from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
 from bullet_sim.rendering.visibility import Outlines, Visibility
@@ -60,7 +60,7 @@ class _Item:
     shaded: Drawing | None  # where shadows fall
 
 
-_Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, and in which part of the picture
+_Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the picture
 
 
 @dataclass(eq=False)
@@ -266,14 +266,14 @@ def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
     if shadows is None:
         return [[NOWHERE] * len(parts) for parts in seen.parts]
     places = shadows.seen_on(nodes, outlines.boxes(nodes), clip_world)
-    if np.any((places[:, 0] < places[:, 1]).all(axis=1) & np.concatenate(seen.parts)):
+    if np.any(~is_empty(places) & np.concatenate(seen.parts)):
         shadows.use()
     return outlines.by_node(places)
 
 
 def _pieces(item: _Item, shadows: np.ndarray, view: CameraView) -> list[_Piece]:
     """How to draw a surface that can have shadows in a rectangle of the picture."""
-    if item.shaded is None or (shadows[0] >= shadows[1]).any():
+    if item.shaded is None or is_empty(shadows):
         return [(item, item.plain, None)]
     if not item.surface.flat:
         return [(item, item.shaded, None)]

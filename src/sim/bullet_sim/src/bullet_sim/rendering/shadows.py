@@ -1,8 +1,8 @@
 """Shadows: how far each light that casts them sees, drawn into maps side by side in one texture.
 
 A map is as large as what casts needs, not as the scene: what is outside it lies in no shadow. It is
-drawn again when something that casts has moved, and only if a shadow can be in the picture. Shadows'
-edges are smoothed over two texels.
+drawn again when something that casts has moved, and only if a shadow can be in the picture. The
+edges of shadows are smoothed over two texels.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ import numpy as np
 from bullet_sim.description import LightDescription
 from bullet_sim.rendering.gpu_surfaces import SHADOWS_BINDING, SHADOWS_UNIT, Surface
 from bullet_sim.rendering.own_memory import own_blocks
+from bullet_sim.rendering.rectangles import NOWHERE, is_empty
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shaders import MAX_LIGHTS, shader
-from bullet_sim.rendering.shadow_reach import NOWHERE, Beam
+from bullet_sim.rendering.shadow_reach import Beam, Boxes, Cone
 from bullet_sim.rendering.visibility import box_corners
 
 log = logging.getLogger(__name__)
@@ -34,12 +35,17 @@ def casting_lights(scene: SceneState) -> list[LightDescription]:
     """The lights that cast shadows, at most MAX_SHADOWS."""
     if not scene.description.shadows:
         return []
-    casting = [light for light in list(scene.lights.values())[:MAX_LIGHTS]
-               if light.cast_shadows and light.type == "directional"]
+    casting = [light for light in list(scene.lights.values())[:MAX_LIGHTS] if _casts(light)]
     if len(casting) > MAX_SHADOWS:
         left_out = ", ".join(light.name for light in casting[MAX_SHADOWS:])
         log.warning("more than %d lights cast shadows; these do not: %s", MAX_SHADOWS, left_out)
     return casting[:MAX_SHADOWS]
+
+
+def _casts(light: LightDescription) -> bool:
+    """Lights that shine all round cast none, as in Gazebo."""
+    return light.cast_shadows and (
+        light.type == "directional" or (light.type == "spot" and light.outer_angle > 0))
 
 
 @dataclass(eq=False)
@@ -90,15 +96,15 @@ class Shadows:
         self._block = drawing.context.buffer(reserve=80 * len(lights), dynamic=True)
         self._side = 0
         self._standing: list[Node] = []  # the casters' nodes as the beams have them
-        self._beams: list[Beam] = []
+        self._beams: list[Beam | Cone] = []
         self._drawn = False
 
-    def seen_on(self, nodes: Sequence[Node], boxes: tuple[np.ndarray, np.ndarray],
+    def seen_on(self, nodes: Sequence[Node], boxes: Boxes,
                 clip_world: np.ndarray) -> np.ndarray:
-        """(n, 2, 2): where in the picture shadows can be on what is in boxes; see `Beam.seen_on`."""
+        """(n, 2, 2): rectangles of the picture that no shadow on what is in the boxes leaves."""
         self._follow([nodes[caster.node] for caster in self._casters])
-        places = np.array([beam.seen_on(*boxes, clip_world) for beam in self._beams])
-        places[(places[:, :, 0] >= places[:, :, 1]).any(axis=2)] = NOWHERE
+        places = np.array([beam.seen_on(boxes, clip_world) for beam in self._beams])
+        places[is_empty(places)] = NOWHERE
         return np.stack([places[:, :, 0].min(axis=0), places[:, :, 1].max(axis=0)], axis=1)
 
     def use(self) -> None:
@@ -118,7 +124,8 @@ class Shadows:
         fitted = [box for box, caster in zip(corners, self._casters, strict=True)
                   if not caster.ground]
         every = np.hstack(corners)
-        self._beams = [Beam(light, every, np.hstack(fitted) if fitted else every)
+        near = np.hstack(fitted) if fitted else every
+        self._beams = [Cone(light, every) if light.type == "spot" else Beam(light, every, near)
                        for light in self.lights]
         self._standing, self._drawn = standing, False
 

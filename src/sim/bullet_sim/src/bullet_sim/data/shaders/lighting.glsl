@@ -22,7 +22,7 @@ layout(std140) uniform Surface {
 #ifdef SHADOWS
 struct Shadow {
     mat4 map_world;  // to 0..1 in the light's map
-    vec4 grain;      // m, of a texel
+    vec4 grain;      // m, of a texel; of a spot light at a depth of 1 m
 };
 layout(std140) uniform Shadows {
     Shadow shadows[SHADOWS];
@@ -31,7 +31,8 @@ uniform sampler2DShadow shadow_maps;  // side by side
 // A place in a light's map. Smoothing looks a texel away along both axes: a surface stands out by
 // more than that, so as to lie in no shadow of its own.
 vec4 in_map(int shadow, vec3 position, vec3 normal) {
-    vec3 raised = position + 1.5 * shadows[shadow].grain.x * normal;
+    float depth = (shadows[shadow].map_world * vec4(position, 1.0)).w;  // 1 in a directional light
+    vec3 raised = position + 1.5 * shadows[shadow].grain.x * depth * normal;
     return shadows[shadow].map_world * vec4(raised, 1.0);
 }
 #ifndef PER_PIXEL
