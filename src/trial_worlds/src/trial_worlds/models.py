@@ -48,6 +48,7 @@ def world(model: str) -> str:
     """A world file of one model's SDF on the ground."""
     inner = model.removeprefix('<sdf version="1.6">').removesuffix("</sdf>")
     return ('<?xml version="1.0"?>\n<sdf version="1.6"><world name="default">\n'
+            "<scene><shadows>0</shadows></scene>\n"
             "<include><uri>model://sun</uri></include>\n"
             "<include><uri>model://ground_plane</uri></include>\n"
             f"{inner}\n</world></sdf>\n")

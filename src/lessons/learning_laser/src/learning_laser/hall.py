@@ -82,6 +82,7 @@ def world(seed: int) -> str:
     return ('<?xml version="1.0"?>\n'
             f"<!-- Made by: rosrun learning_laser make_hall.py {seed} -->\n"
             '<sdf version="1.6">\n<world name="default">\n'
+            "<scene><shadows>0</shadows></scene>\n"
             "<include><uri>model://sun</uri></include>\n"
             "<include><uri>model://ground_plane</uri></include>\n"
             f'<model name="hall">\n<static>true</static>\n<link name="hall">\n{boxes}{rounds}'

@@ -36,7 +36,7 @@ WORLD = """<?xml version="1.0"?>
     <scene>
       <ambient>0.4 0.4 0.4 1</ambient>
       <background>0.62 0.75 0.88 1</background>
-      <shadows>true</shadows>
+      <shadows>false</shadows>
     </scene>
     <include>
       <uri>model://sun</uri>

@@ -106,6 +106,24 @@ def test_where_a_light_is_and_where_it_points(dark):
     assert bright > 0 and colour(dark).max() == 0
 
 
+def test_whether_a_light_casts_shadows(dark):
+    # conforms: /gazebo/set_light_properties/cast_shadows
+    roof = """<sdf version='1.6'><model name='roof'><static>true</static><link name='l'>
+      <pose>0 0 0.5 0 0 0</pose><visual name='v'><geometry><box><size>1 0.4 0.1</size></box>
+      </geometry></visual></link></model></sdf>"""
+    assert dark.call("/gazebo/spawn_sdf_model", model_name="roof", model_xml=roof).success
+    spot = SPOT.format("spot", "<spot><inner_angle>1.2</inner_angle>"
+                               "<outer_angle>1.4</outer_angle></spot>")
+    assert dark.call("/gazebo/spawn_sdf_model", model_name="spot", model_xml=spot).success
+    set_light(dark, diffuse=ColorRGBA(0, 0, 0, 1))
+    levels = []
+    for cast in False, True:
+        set_light(dark, light_name="spot", cast_shadows=cast, direction=Vector3(0, 1.5, -2),
+                  pose=Pose(Point(0, -1.5, 2), Quaternion(0, 0, 0, 0)))
+        levels.append(colour(dark).mean())
+    assert 0 < levels[1] < 0.95 * levels[0]
+
+
 def test_light_numbers_that_are_none_are_refused(dark):
     # conforms: /gazebo/set_light_properties/diffuse
     assert "finite" in set_light(dark, diffuse=ColorRGBA(float("nan"), 0, 0, 1)).status_message

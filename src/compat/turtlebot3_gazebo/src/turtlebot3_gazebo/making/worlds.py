@@ -28,8 +28,9 @@ PHYSICS = """  <physics type="ode">
 STAGE_SCENE = """  <scene>
     <ambient>0.4 0.4 0.4 1</ambient>
     <background>0.7 0.7 0.7 1</background>
-    <shadows>1</shadows>
+    <shadows>0</shadows>
   </scene>"""
+UNSHADED = "  <scene><shadows>0</shadows></scene>"
 CORNERS = ((0.6, 0.6), (0.6, -0.6), (-0.6, 0.6), (-0.6, -0.6))  # m, of stages 2 and 3
 CORNER_INERTIAL = ("<inertial><pose>0 0 0.25 0 0 0</pose><mass>20</mass><inertia><ixx>8</ixx>"
                    "<iyy>8</iyy><izz>15</izz></inertia></inertial>")  # four columns, as one body
@@ -63,9 +64,9 @@ def worlds() -> dict[str, bytes]:
     ground = include("ground_plane"), include("sun")
     square, plaza = include("turtlebot3_square"), include("turtlebot3_plaza")
     made = {
-        "empty": world(*ground),
-        "turtlebot3_world": world(*ground, include("turtlebot3_world")),
-        "turtlebot3_house": world(*ground, include("turtlebot3_house")),
+        "empty": world(UNSHADED, *ground),
+        "turtlebot3_world": world(UNSHADED, *ground, include("turtlebot3_world")),
+        "turtlebot3_house": world(UNSHADED, *ground, include("turtlebot3_house")),
         "turtlebot3_stage_1": world(STAGE_SCENE, *ground, square),
         "turtlebot3_stage_2": world(STAGE_SCENE, *ground, square, columns(static=1)),
         "turtlebot3_stage_3": world(STAGE_SCENE, *ground, square, columns(static=0)),

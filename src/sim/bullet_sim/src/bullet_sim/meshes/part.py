@@ -17,6 +17,7 @@ class MeshPart:
     uv: np.ndarray | None  # (n, 2) float32, (0, 0) is the lower left corner of the image
     faces: np.ndarray  # (m, 3) uint32
     material: Material | None = None  # None: the file names none
+    casts_shadows: bool = True
 
 
 NamedPart = tuple[str, MeshPart]  # name of the submesh it belongs to, and the part
@@ -44,7 +45,7 @@ def flat_shaded(
 
 
 def join_parts(parts: Sequence[MeshPart]) -> MeshPart:
-    """All triangles as one part, in order, with the first one's material."""
+    """All triangles as one part, in order, with what else the first one has."""
     if len(parts) == 1:
         return parts[0]
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
@@ -63,6 +64,7 @@ def join_parts(parts: Sequence[MeshPart]) -> MeshPart:
         uv=uv,
         faces=np.concatenate(faces),
         material=parts[0].material,
+        casts_shadows=parts[0].casts_shadows,
     )
 
 

@@ -2,15 +2,16 @@
 
 Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
 once, faces that look away and links outside the picture not drawn, near things first, light per
-corner where that is enough; no MSAA, no anisotropic filtering, no shadows. Back faces are
-not drawn, so that a camera inside its own housing sees out.
+corner where that is enough; no MSAA, no anisotropic filtering. Shadows are a pass of their own,
+only where something casts them (`shadows`). Back faces are not drawn, so that a camera inside its
+own housing sees out.
 """
 
 from __future__ import annotations
 
 import ctypes
 import ctypes.util
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -21,9 +22,11 @@ from bullet_sim.profiler import Profiler
 from bullet_sim.rendering import lights
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.gpu_surfaces import (
+    IMAGE_UNIT,
     LIGHTS_BINDING,
     SURFACE_BINDING,
-    Program,
+    Drawing,
+    Kind,
     Surface,
     SurfaceStore,
 )
@@ -33,9 +36,11 @@ from bullet_sim.rendering.projection import (
     projection_matrix,
     view_matrix,
 )
+from bullet_sim.rendering.rectangles import NOWHERE, Scissor, inside_and_around, is_empty
 from bullet_sim.rendering.scene import Node, SceneState
+from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
-from bullet_sim.rendering.visibility import Outlines
+from bullet_sim.rendering.visibility import Outlines, Visibility
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
@@ -51,8 +56,11 @@ _RECESS = 10.0
 @dataclass(eq=False)
 class _Item:
     surface: Surface
-    program: Program
-    array: moderngl.VertexArray
+    plain: Drawing
+    shaded: Drawing | None  # where shadows fall
+
+
+_Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the picture
 
 
 @dataclass(eq=False)
@@ -63,6 +71,7 @@ class _Prepared:
     items: list[list[_Item]]  # of each node's parts, in the nodes' order
     outlines: Outlines
     recess: dict[float, float]  # by size of plane, how far back in the depth buffer it is drawn
+    shadows: Shadows | None
 
 
 class EglRenderer:
@@ -79,6 +88,7 @@ class EglRenderer:
                                   *info["GL_MAX_VIEWPORT_DIMS"])
             self._store = SurfaceStore(self._context)
             self._sky = Sky(self._context)
+            self._shadow_pass = ShadowPass(self._context)
             self._smallest = _Target(self._context, (1, 1))
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int], _Target] = {}
@@ -136,16 +146,21 @@ class EglRenderer:
         near_lights = lights.needs_pixels(scene)
         shine = lights.strongest_highlight(scene)
         fog = None if scene.description.fog.type == "none" else scene.description.fog
-        items = []
-        for node in scene.nodes.values():
-            surfaces = self._store.of(node.shape)
-            per_pixel = [near_lights or s.highlight * shine > _VISIBLE for s in surfaces]
-            items.append([_Item(surface, *self._store.array(surface, lit, fog))
-                          for surface, lit in zip(surfaces, per_pixel, strict=True)])
+        surfaces = [self._store.of(node.shape) for node in scene.nodes.values()]
+        shadows = self._shadow_pass.of(scene, surfaces)
+        casting = shadows.lights if shadows else []
+
+        def item(surface: Surface) -> _Item:
+            per_pixel = near_lights or surface.highlight * shine > _VISIBLE
+            plain, shaded = Kind(per_pixel, fog), Kind(per_pixel, fog, len(casting))
+            return _Item(surface, self._store.drawing(surface, plain),
+                         self._store.drawing(surface, shaded) if casting else None)
+
         outlines = Outlines([node.shape for node in scene.nodes.values()])
-        block = self._context.buffer(lights.lights_block(scene), dynamic=True)
+        block = self._context.buffer(lights.lights_block(scene, casting), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
-        return _Prepared(block, items, outlines, recess)
+        items = [[item(surface) for surface in own] for own in surfaces]
+        return _Prepared(block, items, outlines, recess, shadows)
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
                 target: _Target) -> None:
@@ -153,25 +168,28 @@ class EglRenderer:
         eye = np.array([*view.pose.position, 1.0], np.float32)
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
         prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
-        target.start(self._context, scene.description.background)
         nodes = list(scene.nodes.values())
         seen = prepared.outlines.seen(nodes, clip_world, eye[:3])
+        places = _shadow_places(prepared, nodes, seen, clip_world)
+        target.start(self._context, scene.description.background)
         see_through = []
         for index in seen.order:
             node, clip_node = nodes[index], seen.clip_node[index]
-            items = [item for item, visible in
-                     zip(prepared.items[index], seen.parts[index], strict=True) if visible]
+            pieces = [
+                piece for item, visible, place in
+                zip(prepared.items[index], seen.parts[index], places[index], strict=True) if visible
+                for piece in _pieces(item, place, view)]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
-            _render(node, [item for item in items if item.surface.opaque], clip_node)
-            see_through.append((node, [i for i in items if not i.surface.opaque], clip_node))
+            target.render(node, [p for p in pieces if p[0].surface.opaque], clip_node)
+            see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))
         if scene.description.sky:
             self._context.polygon_offset = (0.0, 0.0)
             self._sky.draw(view)
-        if any(items for _, items, _ in see_through):
+        if any(pieces for _, pieces, _ in see_through):
             target.blend(self._context)
             self._context.polygon_offset = (0.0, 0.0)
             for what in reversed(see_through):
-                _render(*what)
+                target.render(*what)
 
 
 class _Target:
@@ -197,6 +215,24 @@ class _Target:
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         self._framebuffer.depth_mask = False
 
+    def render(self, node: Node, pieces: list[_Piece], clip_node: np.ndarray) -> None:
+        """Draw surfaces of one node."""
+        if not pieces:
+            return
+        model = node.matrix.T.astype(np.float32).tobytes()
+        projection_model = clip_node.T.astype(np.float32).tobytes()
+        for item, (program, array), scissor in pieces:
+            program.model.write(model)
+            program.projection_model.write(projection_model)
+            item.surface.material.bind_to_uniform_block(SURFACE_BINDING)
+            if item.surface.texture is not None:
+                item.surface.texture.use(IMAGE_UNIT)
+            if scissor is not None:
+                self._framebuffer.scissor = scissor
+            array.render()
+            if scissor is not None:
+                self._framebuffer.scissor = None
+
     def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
         """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if wanted."""
         self._framebuffer.read_into(self._rgba, components=4, alignment=1)
@@ -220,18 +256,29 @@ def _open_context() -> moderngl.Context:
     raise refusals[0]
 
 
-def _render(node: Node, items: list[_Item], clip_node: np.ndarray) -> None:
-    if not items:
-        return
-    model = node.matrix.T.astype(np.float32).tobytes()
-    projection_model = clip_node.T.astype(np.float32).tobytes()
-    for item in items:
-        item.program.model.write(model)
-        item.program.projection_model.write(projection_model)
-        item.surface.material.bind_to_uniform_block(SURFACE_BINDING)
-        if item.surface.texture is not None:
-            item.surface.texture.use(0)
-        item.array.render()
+def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
+                   clip_world: np.ndarray) -> Sequence[Sequence[np.ndarray]]:
+    """For each part of each node, the rectangle of the picture in which there can be shadows on it.
+
+    Those that are in the picture are ready to be drawn.
+    """
+    outlines, shadows = prepared.outlines, prepared.shadows
+    if shadows is None:
+        return [[NOWHERE] * len(parts) for parts in seen.parts]
+    places = shadows.seen_on(nodes, outlines.boxes(nodes), clip_world)
+    if np.any(~is_empty(places) & np.concatenate(seen.parts)):
+        shadows.use()
+    return outlines.by_node(places)
+
+
+def _pieces(item: _Item, shadows: np.ndarray, view: CameraView) -> list[_Piece]:
+    """How to draw a surface that can have shadows in a rectangle of the picture."""
+    if item.shaded is None or is_empty(shadows):
+        return [(item, item.plain, None)]
+    if not item.surface.flat:
+        return [(item, item.shaded, None)]
+    inside, around = inside_and_around(shadows, view.width, view.height)
+    return [(item, item.shaded, inside), *((item, item.plain, one) for one in around)]
 
 
 def _finish_without_gil() -> Callable[[], None] | None:

@@ -14,10 +14,20 @@ from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
 from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
 
-LIGHTS_BINDING, SURFACE_BINDING = 0, 1
+LIGHTS_BINDING, SURFACE_BINDING, SHADOWS_BINDING = 0, 1, 2
+IMAGE_UNIT, SHADOWS_UNIT = 0, 1
+_FEW = 100
 _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
 
-Kind = tuple[bool, Fog | None]  # of drawing: whether lit per pixel, and in what fog
+
+@dataclass(frozen=True)
+class Kind:
+    """Of drawing a surface."""
+
+    per_pixel: bool  # or lit per corner
+    fog: Fog | None = None
+    shadows: int = 0  # how many lights cast them
+
 
 
 @dataclass(eq=False)
@@ -27,6 +37,9 @@ class Program:
     program: moderngl.Program
     projection_model: moderngl.Uniform
     model: moderngl.Uniform
+
+
+Drawing = tuple[Program, moderngl.VertexArray]
 
 
 @dataclass(eq=False)
@@ -39,7 +52,9 @@ class Surface:
     texture: moderngl.Texture | None
     opaque: bool
     highlight: float  # brightest specular channel, 0..1
-    arrays: dict[Kind, tuple[Program, moderngl.VertexArray]]
+    casts_shadows: bool
+    flat: bool  # few triangles of one direction, as planes have
+    drawings: dict[Kind, Drawing]
 
 
 class SurfaceStore:
@@ -50,7 +65,7 @@ class SurfaceStore:
         self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
         self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
         self._unreadable: set[str] = set()  # images that were warned about
-        self._programs: dict[tuple[bool, bool, Fog | None], Program] = {}
+        self._programs: dict[tuple[Kind, bool], Program] = {}
         self._images: Mapping[str, np.ndarray] = {}
         self._shown: dict[str, np.ndarray] = {}  # of the images, which is on the card
 
@@ -73,32 +88,36 @@ class SurfaceStore:
             surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]
         return surfaces
 
-    def array(self, surface: Surface, per_pixel: bool,
-              fog: Fog | None = None) -> tuple[Program, moderngl.VertexArray]:
-        """How to draw a surface, lit per pixel or per corner."""
-        found = surface.arrays.get((per_pixel, fog))
+    def drawing(self, surface: Surface, kind: Kind) -> Drawing:
+        """How to draw a surface."""
+        found = surface.drawings.get(kind)
         if found is None:
-            program = self._program(per_pixel, surface.texture is not None, fog)
+            program = self._program(kind, surface.texture is not None)
             layout = "3f 3f 2f" if surface.texture is not None else "3f 3f 2x4"
             names = ["in_position", "in_normal", "in_uv"][:3 if surface.texture is not None else 2]
             array = self._context.vertex_array(
                 program.program, [(surface.vertices, layout, *names)], surface.indices
             )
-            found = surface.arrays[per_pixel, fog] = (program, array)
+            found = surface.drawings[kind] = (program, array)
         return found
 
-    def _program(self, per_pixel: bool, textured: bool, fog: Fog | None) -> Program:
-        kind = (per_pixel, textured, fog)
-        if kind not in self._programs:
-            program = self._context.program(**sources(per_pixel, textured, fog is not None))
+    def _program(self, kind: Kind, textured: bool) -> Program:
+        if (kind, textured) not in self._programs:
+            fog = kind.fog
+            program = self._context.program(
+                **sources(kind.per_pixel, textured, fog is not None, kind.shadows))
+            if kind.shadows:
+                program["shadow_maps"] = SHADOWS_UNIT
+                program["Shadows"].binding = SHADOWS_BINDING
             if fog is not None:
                 program["fog_colour"] = fog.colour[:3]
                 program["fog_kind"] = _FOGS[fog.type]
                 program["fog_shape"] = fog.start, fog.end, fog.density
             program["Lights"].binding = LIGHTS_BINDING
             program["Surface"].binding = SURFACE_BINDING
-            self._programs[kind] = Program(program, program["projection_model"], program["model"])
-        return self._programs[kind]
+            self._programs[kind, textured] = Program(
+                program, program["projection_model"], program["model"])
+        return self._programs[kind, textured]
 
     def _upload(self, part: MeshPart) -> Surface:
         material = part.material
@@ -114,7 +133,9 @@ class SurfaceStore:
             texture=texture,
             opaque=material.diffuse[3] >= 1,
             highlight=max(material.specular[:3]) if material.shininess > 0 else 0.0,
-            arrays={},
+            casts_shadows=part.casts_shadows and material.diffuse[3] >= 1,
+            flat=len(part.faces) <= _FEW and not np.ptp(part.normals, axis=0).any(),
+            drawings={},
         )
 
     def _texture(self, path: str) -> moderngl.Texture | None:

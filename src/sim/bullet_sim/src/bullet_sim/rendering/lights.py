@@ -2,6 +2,7 @@
 
 import logging
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,8 +17,11 @@ _KINDS = {"directional": DIRECTIONAL, "point": POINT, "spot": SPOT}
 EYE_OFFSET = 16  # bytes, of the camera's position in the block
 
 
-def lights_block(scene: SceneState) -> bytes:
-    """All but the camera's position; lights beyond the eighth are left out."""
+def lights_block(scene: SceneState, casting: Sequence[LightDescription] = ()) -> bytes:
+    """All but the camera's position; lights beyond the eighth are left out.
+
+    `casting` are the lights with a shadow map, in the order of the maps.
+    """
     lights = list(scene.lights.values())
     if len(lights) > MAX_LIGHTS:
         left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])
@@ -27,6 +31,8 @@ def lights_block(scene: SceneState) -> bytes:
     block[2].view(np.int32)[0] = min(len(lights), MAX_LIGHTS)
     for index, light in enumerate(lights[:MAX_LIGHTS]):
         block[3 + 6 * index:9 + 6 * index] = _rows(light)
+        if light in casting:
+            block[8 + 6 * index, 3] = 1 + casting.index(light)
     return block.tobytes()
 
 
@@ -40,13 +46,17 @@ def strongest_highlight(scene: SceneState) -> float:
     return max((max(light.specular[:3]) for light in scene.lights.values()), default=0.0)
 
 
-def _rows(light: LightDescription) -> np.ndarray:
+def light_direction(light: LightDescription) -> np.ndarray:
+    """(3,) unit vector in the world along which it shines; down if the light has none."""
     direction = np.array(rotate(light.pose.orientation, light.direction))
     length = np.linalg.norm(direction)
-    direction = direction / length if length > 0 else np.array([0.0, 0.0, -1.0])
+    return direction / length if length > 0 else np.array([0.0, 0.0, -1.0])
+
+
+def _rows(light: LightDescription) -> np.ndarray:
     return np.array([
         (*light.pose.position, _KINDS.get(light.type, POINT)),
-        (*direction, light.range),
+        (*light_direction(light), light.range),
         light.diffuse,
         light.specular,
         (light.constant, light.linear, light.quadratic, 0.0),

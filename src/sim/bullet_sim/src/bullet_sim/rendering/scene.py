@@ -35,7 +35,7 @@ DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7
 class LinkShape:
     """Everything that links with equal visuals look like; shared by them, compared by identity."""
 
-    parts: tuple[MeshPart, ...]  # in the link frame, each with a material, one per material
+    parts: tuple[MeshPart, ...]  # in the link frame, of one material each
     centre: np.ndarray  # (3,) m, of a sphere around all parts, in the link frame
     radius: float  # m
     plane_size: float = 0.0  # m, longest side if it is all planes; 0 if not
@@ -155,12 +155,12 @@ class Scene(SceneState):
 
 
 def link_shape(visuals: Sequence[Visual]) -> LinkShape:
-    """All visuals of a link in the link frame, with parts of equal material joined into one."""
-    by_material: dict[Material, list[MeshPart]] = {}
+    """All visuals of a link in the link frame, with parts that look alike joined into one."""
+    alike: dict[tuple[Material, bool], list[MeshPart]] = {}
     for visual in visuals:
         for part in _visual_parts(visual):
-            by_material.setdefault(part.material, []).append(part)
-    parts = tuple(join_parts(parts) for parts in by_material.values())
+            alike.setdefault((part.material, part.casts_shadows), []).append(part)
+    parts = tuple(join_parts(parts) for parts in alike.values())
     if not parts:
         return LinkShape((), np.zeros(3), 0.0)
     low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
@@ -207,6 +207,7 @@ def _placed(part: MeshPart, visual: Visual) -> MeshPart:
         vertices=vertices.astype(np.float32),
         normals=normals.astype(np.float32),
         material=material,
+        casts_shadows=visual.cast_shadows,
     )
     return join_parts([placed, _turned_over(placed)]) if material.double_sided else placed
 

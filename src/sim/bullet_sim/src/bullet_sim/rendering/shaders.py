@@ -3,7 +3,8 @@
 The fixed pipeline's arithmetic (OpenGL 2.1, 2.14.1): emissive + ambient * scene ambient + sum over
 lights of diffuse and specular, clamped to 1, times the texture. No gamma. A surface without
 highlight under directional lights only is lit per corner, which is the same on flat faces and
-leaves little to do for each pixel.
+leaves little to do for each pixel. Of a light that casts shadows, a pixel then takes the share that
+its map lets through.
 """
 
 from pathlib import Path
@@ -20,11 +21,14 @@ def shader(name: str) -> str:
     return (_FOLDER / name).read_text(encoding="utf-8")
 
 
-def sources(per_pixel: bool, textured: bool, fog: bool = False) -> dict[str, str]:
-    """Arguments of moderngl's `program` for one kind of surface, with or without fog."""
+def sources(per_pixel: bool, textured: bool, fog: bool = False,
+            shadows: int = 0) -> dict[str, str]:
+    """Arguments of moderngl's `program` for one kind of surface; `shadows` is how many cast."""
     defined = {"MAX_LIGHTS": MAX_LIGHTS, "POINT": POINT, "SPOT": SPOT}
     if fog:
         defined |= {"FOG": "", "LINEAR": LINEAR, "EXP": EXP}
+    if shadows:
+        defined["SHADOWS"] = shadows
     if per_pixel:
         defined["PER_PIXEL"] = ""
     if textured:

@@ -22,7 +22,7 @@ class Outlines:
     """Boxes around the parts of all nodes, tested against a view in one go."""
 
     def __init__(self, shapes: Sequence[LinkShape]):
-        boxes = [_corners(part) for shape in shapes for part in shape.parts]
+        boxes = [box_corners(part) for shape in shapes for part in shape.parts]
         self._corners = np.array(boxes).reshape(-1, 4, 8)
         counts = [len(shape.parts) for shape in shapes]
         self._owner = np.repeat(np.arange(len(shapes)), counts)
@@ -38,14 +38,24 @@ class Outlines:
         axes, w = clip[:, :3], clip[:, 3:]
         # Outside if all corners are beyond one and the same side of the view.
         outside = (axes < -w).all(axis=2) | (axes > w).all(axis=2)
-        parts = np.split(~outside.any(axis=1), self._ends)
+        parts = self.by_node(~outside.any(axis=1))
         centres = (world_node @ self._centres)[:, :3, 0]
         gaps = np.maximum(0.0, np.linalg.norm(centres - eye, axis=1) - self._radii)
         order = np.lexsort((self._radii, gaps)).tolist()
         return Visibility(clip_node, parts, [index for index in order if parts[index].any()])
 
+    def boxes(self, nodes: Sequence[Node]) -> tuple[np.ndarray, np.ndarray]:
+        """Low and high corners (n, 3), along the world's axes, of every part of every node."""
+        world_node = np.array([node.matrix for node in nodes]).reshape(-1, 4, 4)
+        corners = (world_node[self._owner] @ self._corners)[:, :3]
+        return corners.min(axis=2), corners.max(axis=2)
 
-def _corners(part: MeshPart) -> np.ndarray:
+    def by_node(self, of_parts: np.ndarray) -> list[np.ndarray]:
+        """What there is one of for each part, as an array for each node."""
+        return np.split(of_parts, self._ends)
+
+
+def box_corners(part: MeshPart) -> np.ndarray:
     """(4, 8) homogeneous corners of the box around a part, in the node's frame."""
     bounds = np.array([part.vertices.min(axis=0), part.vertices.max(axis=0)], float)
     picks = np.indices((2, 2, 2)).reshape(3, 8)

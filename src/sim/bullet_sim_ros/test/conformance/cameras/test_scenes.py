@@ -54,3 +54,23 @@ def test_sky(make_bench):
     bench.delete("eye")
     down = up.replace("-1.57", "1.57")
     np.testing.assert_allclose(look(bench, down), np.array(HORIZON) * 255, atol=2)
+
+
+SUN = """<light name="sun" type="directional"><cast_shadows>{light}</cast_shadows>
+  <diffuse>1 1 1 1</diffuse><direction>1 0 -1</direction></light>
+  <model name="stage"><static>true</static><link name="l">
+  <visual name="wall"><cast_shadows>0</cast_shadows><pose>2 0 0 0 0 0</pose><geometry><box>
+    <size>0.1 4 4</size></box></geometry><material><ambient>0 0 0 1</ambient>
+    <diffuse>1 0 0 1</diffuse></material></visual>
+  <visual name="roof"><cast_shadows>{visual}</cast_shadows><pose>1 0 1 0 0 0</pose><geometry><box>
+    <size>0.5 1 0.1</size></box></geometry></visual></link></model>"""
+
+
+@pytest.mark.parametrize("scene, light, visual, dark", [
+    ("<shadows>1</shadows>", 1, 1, True), ("", "true", "true", True),
+    ("<shadows>0</shadows>", 1, 1, False), ("", 0, 1, False), ("", 1, "false", False)])
+def test_shadows(make_bench, scene, light, visual, dark):
+    # conforms: sdf scene/shadows, sdf light/cast_shadows, sdf visual/cast_shadows
+    text = world(scene).replace("</world>", SUN.format(light=light, visual=visual) + "</world>")
+    red = look(make_bench(text))[0]
+    assert red == (0 if dark else pytest.approx(255 * np.sqrt(0.5), abs=1))

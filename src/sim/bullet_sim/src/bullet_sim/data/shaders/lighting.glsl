@@ -4,7 +4,7 @@ struct Light {
     vec4 diffuse;
     vec4 specular;
     vec4 attenuation;  // constant, linear, quadratic
-    vec4 cone;         // cos(inner / 2), cos(outer / 2), falloff
+    vec4 cone;         // cos(inner / 2), cos(outer / 2), falloff, number of its shadow or 0
 };
 layout(std140) uniform Lights {
     vec4 scene_ambient;
@@ -19,7 +19,35 @@ layout(std140) uniform Surface {
     vec4 emissive;     // w: 1 where light counts
     vec4 texture_map;  // scale, offset
 };
+#ifdef SHADOWS
+struct Shadow {
+    mat4 map_world;  // to 0..1 in the light's map
+    vec4 grain;      // m, of a texel; of a spot light at a depth of 1 m
+};
+layout(std140) uniform Shadows {
+    Shadow shadows[SHADOWS];
+};
+uniform sampler2DShadow shadow_maps;  // side by side
+// A place in a light's map. Smoothing looks a texel away along both axes: a surface stands out by
+// more than that, so as to lie in no shadow of its own.
+vec4 in_map(int shadow, vec3 position, vec3 normal) {
+    float depth = (shadows[shadow].map_world * vec4(position, 1.0)).w;  // 1 in a directional light
+    vec3 raised = position + 1.5 * shadows[shadow].grain.x * depth * normal;
+    return shadows[shadow].map_world * vec4(raised, 1.0);
+}
+#ifndef PER_PIXEL
+vec3 interceptable[SHADOWS];  // what each of these lights adds, left out of what lit() returns
+#endif
+float arriving(int shadow, vec3 at) {
+    if (any(notEqual(at.xy, clamp(at.xy, 0.0, 1.0)))) return 1.0;
+    vec2 place = vec2((at.x + float(shadow)) / float(SHADOWS), at.y);
+    return texture(shadow_maps, vec3(place, min(at.z, 1.0)));
+}
+#endif
 vec3 lit(vec3 position, vec3 normal) {
+#if defined(SHADOWS) && !defined(PER_PIXEL)
+    for (int i = 0; i < SHADOWS; ++i) interceptable[i] = vec3(0.0);
+#endif
     if (emissive.w == 0.0) return min(diffuse.rgb + emissive.rgb, 1.0);
     vec3 colour = emissive.rgb + ambient.rgb * scene_ambient.rgb;
     for (int i = 0; i < light_count.x; ++i) {
@@ -41,6 +69,17 @@ vec3 lit(vec3 position, vec3 normal) {
             }
         }
         float facing = dot(normal, towards);
+#ifdef SHADOWS
+        int shadow = int(light.cone.w) - 1;
+#ifdef PER_PIXEL
+        if (shadow >= 0 && strength > 0.0 && facing > 0.0) {
+            vec4 at = in_map(shadow, position, normal);
+            strength *= arriving(shadow, at.xyz / at.w);
+        }
+#else
+        vec3 before = colour;
+#endif
+#endif
         if (facing > 0.0) {
             colour += strength * facing * diffuse.rgb * light.diffuse.rgb;
             if (specular.w > 0.0) {
@@ -49,6 +88,15 @@ vec3 lit(vec3 position, vec3 normal) {
                 colour += strength * shine * specular.rgb * light.specular.rgb;
             }
         }
+#if defined(SHADOWS) && !defined(PER_PIXEL)
+        if (shadow >= 0) {
+            interceptable[shadow] = colour - before;
+            colour = before;
+        }
+    }
+    return colour;  // clamped when all has come together
+#else
     }
     return min(colour, 1.0);
+#endif
 }

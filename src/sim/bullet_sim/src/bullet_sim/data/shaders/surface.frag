@@ -2,7 +2,13 @@
 in vec3 position;
 in vec3 normal;
 #else
+#ifdef SHADOWS
+in vec3 corner_light;
+in vec3 may_arrive[SHADOWS];
+in vec3 map_place[SHADOWS];
+#else
 in vec3 light;
+#endif
 #endif
 #ifdef TEXTURED
 in vec2 uv;
@@ -24,6 +30,10 @@ out vec4 colour;
 void main() {
 #ifdef PER_PIXEL
     vec3 light = lit(position, normalize(normal));
+#elif defined(SHADOWS)
+    vec3 light = corner_light;
+    for (int i = 0; i < SHADOWS; ++i) light += may_arrive[i] * arriving(i, map_place[i]);
+    light = min(light, 1.0);
 #endif
 #ifdef TEXTURED
     colour = vec4(light * texture(image, uv).rgb, diffuse.a);

@@ -1,0 +1,293 @@
+"""Shadows in pictures against what the geometry says, and that they cost nothing where none are."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bullet_sim.description import (
+    Box,
+    Cylinder,
+    Fog,
+    LightDescription,
+    Material,
+    Plane,
+    SceneDescription,
+    Sphere,
+    Visual,
+)
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.egl import EglRenderer
+from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.rectangles import inside_and_around
+from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.shadow_reach import Beam, Cone
+from bullet_sim.rendering.shadows import Shadows
+
+DARK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
+# Straight down, top of the picture towards +y, right towards +x.
+DOWN = (0.5, -0.5, -0.5, -0.5)
+GLOSSY = Material(specular=(0.1, 0.1, 0.1, 1.0), shininess=9.0)  # lit per pixel
+BOX = ("box", "link")
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    opened = EglRenderer()
+    yield opened
+    opened.close()
+
+
+def sun(direction=(0.5, 0.2, -1.0), name="sun", level=1.0, **kwargs):
+    given = {"specular": (0.0, 0.0, 0.0, 1.0), "cast_shadows": True} | kwargs
+    return LightDescription(name, "directional", diffuse=(level, level, level, 1.0),
+                            direction=direction, **given)
+
+
+def spot(at, towards=(0.0, 0.0, -1.0), **kwargs):
+    given = {"inner_angle": 1.2, "outer_angle": 1.4, "range": 8.0, "linear": 0.0,
+             "cast_shadows": True, "specular": (0.0, 0.0, 0.0, 1.0)} | kwargs
+    return LightDescription("spot", "spot", Pose(at), direction=towards, **given)
+
+
+def floor(material=Material(), size=100.0, **kwargs):
+    return Visual("floor", Plane((0.0, 0.0, 1.0), (size, size)), material=material,
+                  **({"cast_shadows": False} | kwargs))
+
+
+def stage(*lights, box=Visual("box", Box((1.0, 0.6, 0.8))), ground=floor(), at=Pose((0, 0, 0.4)),
+          description=DARK):
+    """A floor with a box on it."""
+    scene = Scene(description)
+    for light in lights or [sun()]:
+        scene.add_light(light)
+    scene.add_link(("ground", "link"), [ground], Pose())
+    scene.add_link(BOX, [box], at)
+    return scene
+
+
+def from_above(at=(0.6, 0.3, 4.0)):
+    return CameraView(640, 480, 1.0, 0.05, 50.0, Pose(at, DOWN))
+
+
+def slanting():
+    return CameraView(640, 480, 1.0, 0.05, 50.0, Pose.from_xyz_rpy((-2, -1.5, 2), (0, 0.65, 0.55)))
+
+
+def floor_in_view(view):
+    """(h, w, 3) the floor's point, in the world, in the middle of each pixel."""
+    columns, rows = np.meshgrid(np.arange(view.width), np.arange(view.height))
+    focal = view.focal_length_px
+    rays = np.stack([np.ones_like(columns, float), ((view.width - 1) / 2 - columns) / focal,
+                     ((view.height - 1) / 2 - rows) / focal], -1) @ view.pose.matrix()[:3, :3].T
+    return view.pose.position - view.pose.position[2] * rays / rays[..., 2:]
+
+
+def hidden_by_box(points, towards, size, pose):
+    """Which points (..., 3) see the box when they look along `towards`."""
+    matrix = pose.inverse().matrix()
+    points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    towards = towards @ matrix[:3, :3].T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        both = np.stack([-points - np.array(size) / 2, np.array(size) / 2 - points]) / towards
+    enter, leave = both.min(axis=0).max(axis=-1), both.max(axis=0).min(axis=-1)
+    return (enter < leave) & (leave > 0)
+
+
+def within(mask, steps):
+    """The mask widened by so many pixels."""
+    for _ in range(steps):
+        around = np.pad(mask, 1)
+        mask = mask | around[2:, 1:-1] | around[:-2, 1:-1] | around[1:-1, 2:] | around[1:-1, :-2]
+    return mask
+
+
+@pytest.mark.parametrize("view", [from_above(), slanting()])
+@pytest.mark.parametrize("material", [Material(), GLOSSY])
+@pytest.mark.parametrize("pose, direction", [
+    (Pose((0, 0, 0.4)), (-0.5, -0.4, -0.8)),
+    (Pose((0, 0, 0.4)), (-1.0, 0.7, -0.7)),
+    (Pose.from_xyz_rpy((0.2, 0.1, 0.9), (0.5, 0.3, 0.8)), (0.3, 0.1, -1.0)),
+    (Pose.from_xyz_rpy((-0.5, 0, 0.9), (0.0, 0.3, 0.2)), (0.0, 0.0, -1.0)),
+])
+def test_a_box_darkens_the_floor_where_it_hides_the_sun(renderer, view, material, pose, direction):
+    scene = stage(sun(direction), ground=floor(material), at=pose)
+    level = renderer.draw(scene, view).rgb[..., 0].astype(int)
+    points, towards = floor_in_view(view), -np.array(direction)
+    box = hidden_by_box(points, np.array(view.pose.position) - points, (1.0, 0.6, 0.8), pose)
+    dark = hidden_by_box(points, towards, (1.0, 0.6, 0.8), pose)
+    free = ~within(box, 2)
+    full = 255 * towards[2] / np.linalg.norm(towards)
+    assert np.count_nonzero(dark & free) > 1000
+    assert (level[free & ~within(~dark, 1)] == 0).all()
+    assert np.abs(level[free & ~within(dark, 1)] - full).max() <= 2
+
+
+@pytest.mark.parametrize("at, towards", [
+    ((0.0, 0.0, 3.0), (0.0, 0.0, -1.0)), ((-1.0, 0.8, 2.5), (0.5, -0.3, -1.0))])
+def test_a_box_darkens_the_floor_where_it_hides_a_spot_light(renderer, at, towards):
+    scene, view = stage(spot(at, towards)), from_above((0.6, 0.3, 6.0))
+    scene.set_pose(BOX, Pose((0.0, 0.0, 0.6)))
+    level = renderer.draw(scene, view).rgb[..., 0].astype(int)
+    points = floor_in_view(view)
+    size, pose = (1.0, 0.6, 0.8), Pose((0.0, 0.0, 0.6))
+    box = hidden_by_box(points, np.array(view.pose.position) - points, size, pose)
+    gap = np.array(at) - points
+    dark = hidden_by_box(points, gap, size, pose)
+    gap /= np.linalg.norm(gap, axis=-1, keepdims=True)
+    lit = -gap @ np.array(towards) / np.linalg.norm(towards) > np.cos(0.58)
+    free = ~within(box, 2) & lit
+    assert np.count_nonzero(dark & free) > 1000
+    assert (level[free & ~within(~dark, 1)] == 0).all()
+    bright = free & ~within(dark, 1)
+    assert np.abs(level - 255 * gap[..., 2])[bright].max() <= 2
+
+
+@pytest.mark.parametrize("changed", [
+    lambda: stage(replace(spot((0, 0, 3)), outer_angle=0.0)),
+    lambda: stage(description=replace(DARK, shadows=False)),
+    lambda: stage(sun(cast_shadows=False)),
+    lambda: stage(box=Visual("box", Box((1.0, 0.6, 0.8)), cast_shadows=False)),
+    lambda: stage(replace(sun(), type="point", pose=Pose((0, 0, 9)), range=99.0)),
+])
+def test_nothing_is_drawn_otherwise_where_nothing_casts(renderer, changed, monkeypatch):
+    scene = changed()
+    picture = renderer.draw(scene, slanting()).rgb
+    bare = Scene(scene.description)
+    for light in scene.lights.values():
+        bare.add_light(replace(light, cast_shadows=False))
+    for key, visuals in scene.visuals.items():
+        bare.add_link(key, [replace(one, cast_shadows=False) for one in visuals],
+                      scene.nodes[key].pose)
+    monkeypatch.setattr(Shadows, "use", None)
+    assert np.array_equal(renderer.draw(bare, slanting()).rgb, picture)
+
+
+def test_glass_casts_no_shadow_and_takes_one(renderer):
+    pane = Visual("pane", Box((1.0, 0.6, 0.8)), transparency=0.5)
+    bright = renderer.draw(stage(sun(level=0.5), box=pane), from_above((0.9, 0.1, 4.0))).rgb
+    assert bright[240, 320, 0] > 100
+    under = stage(ground=floor(transparency=0.5), description=replace(
+        DARK, background=(1.0, 1.0, 1.0, 1.0)))
+    picture = renderer.draw(under, from_above((0.65, 0.1, 4.0))).rgb
+    np.testing.assert_allclose(picture[240, 320], 127.5, atol=1)
+    assert picture[240, 20, 0] > 200
+
+
+def test_a_shadow_takes_a_light_and_leaves_the_others(renderer):
+    lit = Material(ambient=(0.2, 0.2, 0.2, 1.0), emissive=(0.1, 0.1, 0.1, 1.0))
+    scene = stage(sun(level=0.3), sun((0.0, 0.0, -1.0), "noon", 0.4, cast_shadows=False),
+                  ground=floor(lit), description=replace(DARK, ambient=(1.0, 1.0, 1.0, 1.0)))
+    picture = renderer.draw(scene, from_above((0.65, 0.1, 4.0))).rgb
+    np.testing.assert_allclose(picture[240, 320], 255 * (0.2 + 0.1 + 0.4), atol=1)
+
+
+def test_two_suns_cast_two_shadows(renderer):
+    scene = stage(sun((0.5, 0.0, -1.0), level=0.5), sun((-0.5, 0.0, -1.0), "other", 0.25))
+    picture = renderer.draw(scene, from_above((0.0, 0.0, 4.0))).rgb
+    slope, focal = 1 / np.sqrt(1.25), from_above().focal_length_px
+    for x, level in ((0.7, 0.25), (-0.7, 0.5), (1.3, 0.75)):
+        found = picture[240, round(319.5 + focal * x / 4.0), 0]
+        np.testing.assert_allclose(found, 255 * slope * level, atol=1)
+
+
+@pytest.mark.parametrize("shape", [
+    Box((1.0, 0.6, 0.8)), Sphere(0.5), Cylinder(0.3, 0.8), Plane((0.0, 0.0, 1.0), (1.0, 1.0))])
+@pytest.mark.parametrize("material", [Material(), GLOSSY])
+def test_what_sees_the_sun_has_no_stripes_of_its_own_shadow(renderer, shape, material):
+    def picture(shadows, light):
+        scene = Scene(replace(DARK, shadows=shadows))
+        scene.add_light(light)
+        scene.add_link(BOX, [Visual("v", shape, material=material)],
+                       Pose.from_xyz_rpy((0, 0, 0.5), (0.2, -0.3, 0.1)))
+        return renderer.draw(scene, slanting()).rgb.astype(int)
+
+    for light in (sun((0.5, 0.2, -1.0)), sun((1.0, 0.9, -0.3)), sun((0.3, 1.0, -0.1)),
+                  spot((-0.5, 0.3, 2.5)), spot((-2.0, -0.5, 1.0), (0.8, 0.1, 0.2))):
+        plain = picture(False, light)
+        facing = plain[..., 0] > 40  # not the last facets before the shade
+        assert np.count_nonzero(facing) > 1000
+        assert np.abs(picture(True, light) - plain)[facing].max() <= 1
+
+
+def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkeypatch):
+    drawn = []
+    draw = Shadows._draw
+    monkeypatch.setattr(Shadows, "_draw", lambda self: drawn.append(1) or draw(self))
+    scene = stage()
+    first = renderer.draw(scene, from_above()).rgb
+    renderer.draw(scene, slanting())
+    assert np.array_equal(renderer.draw(scene, from_above()).rgb, first) and len(drawn) == 1
+    scene.set_pose(BOX, Pose((0.5, 0, 0.4)))
+    assert not np.array_equal(renderer.draw(scene, from_above()).rgb, first) and len(drawn) == 2
+    renderer.draw(scene, from_above((20.0, 0.0, 4.0)))  # no shadow there
+    scene.set_pose(BOX, Pose((0.6, 0, 0.4)))
+    renderer.draw(scene, from_above((20.0, 0.0, 4.0)))
+    assert len(drawn) == 2
+    scene.set_pose(BOX, Pose((0, 0, 0.4)))
+    assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+    renderer.trim()
+    assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+
+
+def crowd(seed):
+    """Things of all kinds in shadow of one another, and a view of them."""
+    random = np.random.default_rng(seed)
+    scene = stage(sun(tuple(random.uniform((-1, -1, -1), (1, 1, -0.1)))),
+                  sun(tuple(random.uniform(-1, 1, 3)), "other", 0.5),
+                  spot(tuple(random.uniform((-3, -3, 1), (3, 3, 4)))),
+                  ground=floor((Material(), GLOSSY)[seed % 2]),
+                  description=SceneDescription(fog=Fog("linear") if seed % 3 == 0 else Fog()))
+    shapes = [Box((0.5, 0.3, 0.9)), Sphere(0.3), Cylinder(0.2, 0.6),
+              Plane((0.0, 1.0, 0.3), (3.0, 1.0))]
+    for number in range(8):
+        pose = Pose.from_xyz_rpy(random.uniform((-3, -3, 0), (3, 3, 1.5)), random.uniform(-3, 3, 3))
+        scene.add_link((f"thing{number}", "link"), [
+            Visual("v", shapes[number % 4], transparency=0.4 * (number % 5 == 0))], pose)
+    return scene, CameraView(320, 240, 1.2, 0.05, 50.0, Pose.from_xyz_rpy(
+        random.uniform((-3, -3, 0.1), (3, 3, 2)), random.uniform((0, -0.3, -3), (0, 0.8, 3))))
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_what_is_left_out_for_speed_is_not_missed(renderer, monkeypatch, seed):
+    scene, view = crowd(seed)
+    quick = renderer.draw(scene, view).rgb.astype(int)
+    everywhere = np.array([[-1.0, -1.0], [1.0, 1.0]])
+    for light in Beam, Cone:
+        monkeypatch.setattr(light, "seen_on", lambda self, boxes, clip_world: np.tile(
+            everywhere, (len(boxes[0]), 1, 1)))
+    whole = renderer.draw(scene, view).rgb.astype(int)
+    assert np.abs(whole - quick).max() <= 1  # one rounds in the corner, one in the pixel
+
+
+def test_the_same_scene_gives_the_same_bytes(renderer):
+    scene, view = crowd(1)
+    other = EglRenderer()
+    pictures = [drawing.draw(state, view).rgb
+                for drawing, state in ((renderer, scene), (renderer, crowd(1)[0]),
+                                       (other, crowd(1)[0]), (other, scene.frozen()))]
+    other.close()
+    assert all(np.array_equal(pictures[0], one) for one in pictures[1:])
+
+
+def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):
+    suns = [sun(name=f"sun{number}", level=0.1) for number in range(6)]
+    with caplog.at_level(logging.WARNING, logger="bullet_sim"):
+        picture = renderer.draw(stage(*suns), from_above((0.65, 0.1, 4.0))).rgb
+    assert "more than 4 lights cast shadows; these do not: sun4, sun5" in caplog.text
+    slope = 1 / np.linalg.norm((0.5, 0.2, 1.0))
+    np.testing.assert_allclose(picture[240, 320], 255 * 0.2 * slope, atol=1)
+
+
+@pytest.mark.parametrize("place", [
+    [[-0.5, -0.25], [0.5, 0.75]], [[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 0.3], [-0.999, 1.0]]])
+def test_a_rectangle_and_what_is_around_it_are_the_picture_once(place):
+    inside, around = inside_and_around(np.array(place), 64, 48)
+    count = np.zeros((48, 64), int)
+    for left, first, width, height in (inside, *around):
+        assert width > 0 and height > 0
+        count[first:first + height, left:left + width] += 1
+    assert (count == 1).all()
