@@ -144,7 +144,7 @@ class TrackScorer:
     @property
     def outcome(self) -> str:
         """In words."""
-        if not self.over:
+        if not self.over and self.left_at is None:
             return EARLY
         if self.approach is None:
             return "not reached"
