@@ -169,8 +169,9 @@ def test_interrupted_in_the_second_run_it_says_so_and_counts_nothing(
 
 
 def test_a_process_is_named_whatever_its_words_are(runner):
-    waits = [sys.executable, "-c", "import sys; sys.stdin.read()", b"\xff"]
-    with subprocess.Popen(waits, stdin=subprocess.PIPE) as process:
+    waits = [sys.executable, "-c", "import sys; print(flush=True); sys.stdin.read()", b"\xff"]
+    with subprocess.Popen(waits, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout.readline()  # it runs: until then it may have no words
         assert runner.processes.command_line(process.pid).endswith("\N{REPLACEMENT CHARACTER}")
 
 
