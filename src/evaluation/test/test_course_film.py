@@ -48,6 +48,11 @@ def test_a_gap_is_filled(tmp_path):
     assert film_of(tmp_path / "run.mp4", 0.8, np.array([0.0, 0.8, 4.8, 5.6])) == 8
 
 
+def test_a_drive_at_fifteen_times_the_speed_loses_no_second_in_which_the_machine_was_busy(tmp_path):
+    stamps = np.array([0.0, 0.2, 15.2, 15.4])
+    assert film_of(tmp_path / "run.mp4", FILM_PERIOD, stamps) == 78
+
+
 @pytest.mark.parametrize("size_px, view_px", [
     ((1920, 1080), VIEW_PX), ((640, 480), (480, 360)), ((100, 10), (640, 64))])
 def test_the_camera_keeps_its_proportions(size_px, view_px):

@@ -44,7 +44,7 @@ def test_the_film_keeps_simulated_time_where_pictures_are_missing(film, monkeypa
         raise rospy.ROSException("no camera")
 
     monkeypatch.setattr(pictures.rospy, "wait_for_message", wait_for_message)
-    added, times = [], [3.2, 3.4, 4.1, 6.0, 99.0]
+    added, times = [], [3.2, 3.4, 4.1, 6.0, 999.0]
     film._add = lambda _page, count=1: added.append(count)
     film._page = lambda _records: None
 

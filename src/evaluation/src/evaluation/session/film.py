@@ -25,7 +25,7 @@ FILM_PERIOD = 0.2
 FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
 VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
 BAR_PX = 44  # of text, above
-LONGEST_GAP = 25  # pictures that a pause in the camera may add to the film
+LONGEST_GAP = 30 * FILM_RATE_HZ  # pictures that a pause in the camera may add to the film
 LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
 
 
