@@ -170,7 +170,7 @@ def turtlebot3_slam(stage: Stage) -> None:
     with stage.launch("turtlebot3_gazebo", "turtlebot3_world"):
         stage.wait_for_robot()
         with stage.launch("turtlebot3_slam", "turtlebot3_slam", "slam_methods:=gmapping",
-                          shows="/map"):  # fmt: skip
+                          shows="/map"):
             stage.drive((-0.55, -0.55), (-0.55, 0.55), (0.55, 0.55))
             stage.picture("turtlebot3_slam", "slam")
 
@@ -181,7 +181,7 @@ def turtlebot3_navigation(stage: Stage) -> None:
     with stage.launch("turtlebot3_gazebo", "turtlebot3_world"):
         stage.wait_for_robot()
         with stage.launch("turtlebot3_navigation", "turtlebot3_navigation", *start,
-                          shows="/move_base/current_goal"):  # fmt: skip
+                          shows="/move_base/current_goal"):
             sent = stage.drive_to(0.5, 1.7, 0, left=1.5)
             stage.picture("turtlebot3_navigation", "navigation")
             stage.end(sent)
@@ -191,7 +191,7 @@ def racecar(stage: Stage) -> None:
     """The road between two walls: a map of it, and a goal on that map."""
     package = rospkg.RosPack().get_path("racecar_description")
     stage.run("rosrun", "racecar_description", "make_track", f"{package}/tracks/racetrack.yaml",
-              "--walls", "--name", "walled", "--out", str(stage.scratch))  # fmt: skip
+              "--walls", "--name", "walled", "--out", str(stage.scratch))
     world = [f"world_name:={stage.scratch}/worlds/walled.world", "gui:=false"]
     with stage.launch("racecar_description", "mapping", "keyboard:=false", *world, shows="/map"):
         stage.wait_for_robot()
@@ -201,7 +201,7 @@ def racecar(stage: Stage) -> None:
         stage.end(follower)
     drawn = f"map_file:={stage.scratch}/maps/walled.yaml"
     with stage.launch("racecar_description", "navigation", drawn, *world,
-                      shows="/move_base/current_goal"):  # fmt: skip
+                      shows="/move_base/current_goal"):
         stage.wait_for_robot()
         sent = stage.drive_to(6.0, 3.0, 90, left=4.0)
         stage.picture("racecar_description", "navigating")

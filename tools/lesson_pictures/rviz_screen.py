@@ -29,7 +29,7 @@ class Screen:
         reader, writer = os.pipe()
         size = f"{WIDTH_PX}x{HEIGHT_PX}x24"
         command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nocursor",
-                   "-nolisten", "tcp", "-fbdir", self._folder.name]  # fmt: skip
+                   "-nolisten", "tcp", "-fbdir", self._folder.name]
         try:
             self._process = subprocess.Popen(command, pass_fds=[writer], stderr=subprocess.DEVNULL)
         except OSError as error:
@@ -48,7 +48,7 @@ class Screen:
     def environment(self) -> dict[str, str]:
         """What a program needs to draw there, by the processor and so everywhere alike."""
         return {"DISPLAY": self._display, "LIBGL_ALWAYS_SOFTWARE": "1", "QT_X11_NO_MITSHM": "1",
-                "XDG_RUNTIME_DIR": self._folder.name}  # fmt: skip
+                "XDG_RUNTIME_DIR": self._folder.name}
 
     def picture(self) -> np.ndarray:
         """What is on it now: (HEIGHT_PX, WIDTH_PX, 3) uint8, BGR."""

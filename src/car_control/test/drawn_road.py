@@ -10,7 +10,7 @@ from racecar_description.track.track_file import TrackFile
 
 LAWN, ASPHALT, WHITE, YELLOW, SKY = (
     (60, 110, 64), (56, 53, 52), (235, 235, 235), (20, 205, 250), (225, 190, 158),
-)  # fmt: skip
+)
 ROAD, EDGE, EDGE_WIDTH = 0.9, 0.4, 0.03  # m
 STEP = 0.04  # m between two points of a line
 NEAR, FAR = 0.1, 5.0  # m from the camera: what is drawn
@@ -64,7 +64,7 @@ class Road:
         return (
             (-ROAD / 2, ROAD / 2, ASPHALT), (-line, line, YELLOW),
             (*edges, WHITE), (-edges[1], -edges[0], WHITE),
-        )  # fmt: skip
+        )
 
     def _paint(self, image, pose, low, high, colour):
         corners = np.stack([self.points + low * self.left, self.points + high * self.left], axis=1)
@@ -72,7 +72,7 @@ class Road:
         following, on = np.roll(pixels, -1, axis=0), np.roll(visible, -1)
         quads = np.stack([pixels[:, 0], pixels[:, 1], following[:, 1], following[:, 0]], axis=1)
         cv2.fillPoly(image, list(np.rint(quads[visible & on] * 16).astype(np.int32)), colour,
-                     shift=4)  # fmt: skip
+                     shift=4)
 
     def _project(self, ground, pose):
         """Pixels (n, 2, 2) of ground points, and which pairs (n,) lie before the camera."""
@@ -87,7 +87,7 @@ class Road:
         visible = ((depth > NEAR) & (np.hypot(ahead, left) < FAR)).all(axis=1)
         depth = np.where(depth > NEAR, depth, 1.0)
         pixels = np.stack([self.size[0] / 2 - self.focal * left / depth,
-                           self.size[1] / 2 - self.focal * up / depth], axis=-1)  # fmt: skip
+                           self.size[1] / 2 - self.focal * up / depth], axis=-1)
         return np.clip(pixels, -1e5, 1e5), visible
 
 

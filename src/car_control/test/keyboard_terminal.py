@@ -36,7 +36,7 @@ class KeyboardTerminal(unittest.TestCase):
         self.node = start_node(
             "--terminal", stdin=self.terminal, stdout=self.terminal, stderr=subprocess.PIPE,
             text=True, preexec_fn=take_terminal,
-        )  # fmt: skip
+        )
         self.shown = ""
         threading.Thread(target=self.read, daemon=True).start()
         wait_until(self.sent.subscriber.get_num_connections, "the node's publisher")
@@ -120,7 +120,7 @@ class KeyboardTerminal(unittest.TestCase):
 
     def test_without_a_terminal_one_line(self):
         done = subprocess.run([*NODE, "--terminal"], stdin=subprocess.DEVNULL, text=True,
-                              capture_output=True, timeout=LIMIT, check=False)  # fmt: skip
+                              capture_output=True, timeout=LIMIT, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("no terminal to read keys from", done.stderr)

@@ -24,7 +24,7 @@ def start_screen():
     screen = subprocess.Popen(
         ["Xvfb", "-displayfd", str(writer), "-screen", "0", "800x600x24", "-nolisten", "tcp"],
         pass_fds=[writer], stderr=subprocess.DEVNULL,
-    )  # fmt: skip
+    )
     os.close(writer)
     with os.fdopen(reader) as answer:
         return screen, f":{answer.readline().strip()}"
@@ -148,7 +148,7 @@ class KeyboardAlone(unittest.TestCase):
             if display:
                 environment["DISPLAY"] = display
             done = subprocess.run(NODE, env=environment, capture_output=True, text=True,
-                                  timeout=LIMIT, check=False)  # fmt: skip
+                                  timeout=LIMIT, check=False)
             self.assertEqual(done.returncode, 1)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
             self.assertIn("no screen to open a window on", done.stderr)
@@ -158,16 +158,16 @@ class KeyboardAlone(unittest.TestCase):
         with socket.create_server(("localhost", 0)) as free:
             port = free.getsockname()[1]
         master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)],
-                                  stdout=subprocess.DEVNULL)  # fmt: skip
+                                  stdout=subprocess.DEVNULL)
         screen, display = start_screen()
         uri = f"http://localhost:{port}"
         node = start_node(stderr=subprocess.PIPE, text=True,
-                          env=os.environ | {"ROS_MASTER_URI": uri, "DISPLAY": display})  # fmt: skip
+                          env=os.environ | {"ROS_MASTER_URI": uri, "DISPLAY": display})
         try:
             window = ["xdotool", "search", "--name", "^key_control$"]
             environment = os.environ | {"DISPLAY": display}
             wait_until(lambda: subprocess.run(window, env=environment, capture_output=True).stdout,
-                       "a window")  # fmt: skip
+                       "a window")
             time.sleep(1.0)  # the window is up, the node is looking at its master
             master.kill()
             self.assertEqual(node.wait(LIMIT), 1)

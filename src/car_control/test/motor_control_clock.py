@@ -47,7 +47,7 @@ class MotorControlClock(unittest.TestCase):
         self.car.told.clear()
         # On the wall more than the time-out passes, on the clock nothing does.
         wait_until(lambda: self.car.told and self.car.told[-1][0] - self.car.told[0][0] > 1.0,
-                   "commands repeated while the clock stands")  # fmt: skip
+                   "commands repeated while the clock stands")
         self.assertFalse(self.car.stand())
         self.run_clock(0.3)
         self.assertFalse(self.car.stand())

@@ -100,7 +100,7 @@ class MotorControlStory(unittest.TestCase):
     def test_it_stops_at_once_when_the_sender_is_killed(self):
         self.settings.update_configuration({"timeout": 10.0})
         command = ["rostopic", "pub", "-r", "20", "/motor_output", "geometry_msgs/Twist",
-                   "{linear: {x: 1.0}}"]  # fmt: skip
+                   "{linear: {x: 1.0}}"]
         publisher = self.twists.publisher
         publisher.unregister()  # else there would be another sender
         sender = subprocess.Popen(command, stdout=subprocess.DEVNULL)
@@ -157,7 +157,7 @@ class MotorControlStory(unittest.TestCase):
     def test_ctrl_c_leaves_the_car_standing(self):
         other = FakeControllers("/other")
         command = [*NODE, "__name:=other", "_namespace:=/other", "_ackermann:=true",
-                   "_rate_hz:=0", "_timeout:=10"]  # fmt: skip
+                   "_rate_hz:=0", "_timeout:=10"]
         node = subprocess.Popen(command)
         try:
             wait_until(lambda: other.subscribers[0].get_num_connections(), "the other node")
@@ -171,7 +171,7 @@ class MotorControlStory(unittest.TestCase):
 
     def test_a_wrong_parameter_is_one_line(self):
         done = subprocess.run([*NODE, "_timeout:=-1"], capture_output=True, text=True,
-                              timeout=LIMIT, check=False)  # fmt: skip
+                              timeout=LIMIT, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("'timeout' must be a number from 0.02 to 10, not -1", done.stderr)

@@ -18,7 +18,7 @@ from car_control.keys import (
 @pytest.mark.parametrize(("keys", "speed", "angle"), [
     ("", 0, 0), ("w", 2, 0), ("s", -2, 0), ("a", 0, 0.34), ("d", 0, -0.34), ("wa", 2, 0.34),
     ("sd", -2, -0.34), ("ws", 0, 0), ("wad", 2, 0), ("wasd", 0, 0),
-])  # fmt: skip
+])
 def test_what_the_keys_drive(keys, speed, angle):
     assert command(set(keys), 2.0, 0.34) == (speed, angle)
 
@@ -74,7 +74,7 @@ def test_the_second_key_keeps_the_first_alive():
 @pytest.mark.parametrize(("text", "keys"), [
     ("wW", "ww"), ("\x1b[A\x1b[D", "wa"), ("\x1bOB", "s"), ("\x1b[1;5C", "d"), ("\x1b[3~w", "w"),
     ("\x1b", ""), ("q ", "q "),
-])  # fmt: skip
+])
 def test_arrows_are_keys_and_other_sequences_are_not(text, keys):
     assert keys_in(text) == keys
 

@@ -24,7 +24,7 @@ def test_people_walk_while_the_car_keeps_its_lane(tmp_path):
          "--launch-arg", f"record:={poses}", "--launch-arg", "lockstep_timeout:=20",
          "--startup-timeout", "120"],
         capture_output=True, text=True, timeout=LIMIT,
-    )  # fmt: skip
+    )
     assert done.returncode == 1 and "simulated s are over" in done.stderr, done.stdout + done.stderr
     report = json.loads((out / "report.json").read_text())
     assert report["frames_dropped"] == 0 and report["max_lateral_m"] < 0.1

@@ -123,7 +123,7 @@ REPORT = {
     "outcome": "closed", "why": None, "laps_wanted": 1, "laps_closed": 1, "simulated_s": 63.0,
     "distance_m": 40.5, "rms_lateral_m": 0.03, "max_lateral_m": 0.05, "frames_dropped": 0,
     "laps": [{"time_s": 60.0, "distance_m": 39.0}],
-}  # fmt: skip
+}
 
 
 def test_speed_is_that_of_closed_laps_and_the_limits_hold():
@@ -160,10 +160,11 @@ def test_who_was_touched_outside_of_encounters_counts_too(nearest, clear):
 
 def test_going_on_with_another_method_is_refused(tmp_path, capsys):
     drove = from_report(REPORT, "skeleton", 0, draw(0, BOUNDS), people=False)
-    write_json(LaneTrial().values([drove]), tmp_path / "report.json")
+    write_json({**LaneTrial().values([drove]), "options": {"method": "skeleton"}},
+               tmp_path / "report.json")
     arguments = ["--seeds", "1", "--crossings", "0", "--resume", "--out", str(tmp_path)]
     assert run_trial(LaneTrial(), arguments) == 2
-    assert "report.json: is of METHOD=skeleton" in capsys.readouterr().err
+    assert "report.json: is of --method skeleton;" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("arguments, said", [

@@ -55,7 +55,7 @@ def test_what_is_tried_by_default_and_when_asked_for():
     (["--real-time-factor", "0"], "--real-time-factor (PACE=) must be"),
     (["--house", "none"], "no house 'none'"),
     (["--out", "/proc/none"], "--out /proc/none: No such file or directory"),
-])  # fmt: skip
+])
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     assert run_trial(LocalisationTrial(), arguments) == NOT_RUN
     (line,) = capsys.readouterr().err.strip().splitlines()
@@ -73,7 +73,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said, capsys):
     ([*TRIALS, replace(TRACKING, off_deg=2.1), LOAD], False),
     ([*TRIALS, TRACKING, replace(LOAD, percent=31.0)], False),
     ([LOAD], True),
-])  # fmt: skip
+])
 def test_limits(results, passes):
     assert LocalisationTrial().passed(results) is passes
 

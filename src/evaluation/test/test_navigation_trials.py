@@ -21,7 +21,7 @@ from trial_worlds.yard import draw_yard
 def made(seed=0, repeat=0, **changes) -> Drive:
     """A good drive through a yard, or one that differs in this."""
     usual = Drive(YARDS, seed, repeat, "reached", None, 20.0, 4.5, 16.0, 17.0, 0.05, None, [], 0,
-                  1.0, asdict(draw_yard(seed).difficulty))  # fmt: skip
+                  1.0, asdict(draw_yard(seed).difficulty))
     return replace(usual, **changes)
 
 

@@ -30,7 +30,7 @@ def test_a_yard_is_crossed_and_a_person_comes_close(tmp_path):
     done = subprocess.run(
         [sys.executable, str(SCRIPT), "--yards", "1", "--first-yard", "4", "--repeats", "1",
          "--crossings", "1", "--first-crossing", "1", "--real-time-factor", "2",
-         "--out", str(out)], capture_output=True, text=True, timeout=LIMIT)  # fmt: skip
+         "--out", str(out)], capture_output=True, text=True, timeout=LIMIT)
     assert (out / "report.json").exists(), done.stdout + done.stderr
     yard, crossing = json.loads((out / "report.json").read_text())["drives"]
     assert yard["outcome"] == "reached", done.stdout

@@ -83,7 +83,7 @@ def test_limits(changes, good):
 def test_a_summary_is_of_one_follower_on_one_set():
     left = lap(2, outcome="left the course", time=None, rms_lateral=0.005, mean_speed=9.0)
     laps = [lap(0, rms_lateral=0.04), lap(1, mean_speed=1.0), left, lap(3, "lane_follow_p.py"),
-            lap(101, set="random tracks")]  # fmt: skip
+            lap(101, set="random tracks")]
     ours, other_set, plain = sorted(
         summarize(laps), key=lambda each: (each["follower"], -each["laps"]))
     assert [ours[key] for key in ("laps", "closed", "within_limits", "worst_seed")] == [3, 2, 1, 2]
@@ -176,7 +176,7 @@ def test_a_run_goes_on_where_it_ended(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(("text", "said"), [(None, "nothing to go on with"), ("{}", "no report"),
-                                            ('{"laps": [{}]}', "no report")])  # fmt: skip
+                                            ('{"laps": [{}]}', "no report")])
 def test_no_report_to_go_on_with_is_said(tmp_path, monkeypatch, capsys, text, said):
     (tmp_path / "out").mkdir()
     if text:

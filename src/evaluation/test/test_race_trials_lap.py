@@ -36,7 +36,7 @@ def test_a_seed_is_always_the_same_disturbance():
 def test_disturbances_fill_their_bounds():
     found = [draw(seed, RACE) for seed in range(400)]
     bounds = {"sideways": (-0.2, 0.2), "along": (-0.2, 0.2), "camera_noise": RACE.camera_noise,
-              "light": RACE.light, "turn": (-math.radians(10), math.radians(10))}  # fmt: skip
+              "light": RACE.light, "turn": (-math.radians(10), math.radians(10))}
     for name, (low, high) in bounds.items():
         values = [getattr(each, name) for each in found]
         tenth = (high - low) / 10
@@ -72,7 +72,7 @@ def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know
 
 def test_the_launch_file_hands_the_noise_to_the_camera():
     command = ["roslaunch", "--dump-params", "racecar_description", "race.launch",
-               "camera_noise:=0.0123"]  # fmt: skip
+               "camera_noise:=0.0123"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
     assert "<stddev>0.0123</stddev>" in done.stdout
 
@@ -104,7 +104,7 @@ REPORT = {
     "simulated_s": 20.0, "rms_lateral_m": 0.02, "max_lateral_m": 0.2,
     "frames_dropped": 0,
     "laps": [{"time_s": 18.0, "distance_m": 36.0, "rms_lateral_m": 0.01, "max_lateral_m": 0.1}],
-}  # fmt: skip
+}
 
 
 def test_a_lap_is_what_course_run_reports(tmp_path, monkeypatch):

@@ -73,7 +73,7 @@ def test_reaching_is_10_cm_before_it():
     ((5.0, 0.15 + 0.2 + 0.4), 0.0, 0.4),           # a wheel
     ((5 - 0.15 - 0.3, -0.11 - 0.4), 0.0, 0.3),     # a corner, 0.5 m from the axis
     ((5 - 0.15 - 0.2 - 0.5, 0.0), math.pi, 0.5),
-])  # fmt: skip
+])
 def test_the_gap_is_that_of_the_cars_outline(place, yaw, gap):
     scorer = TrackScorer(Task(STANDS, (), WANTED))
     scorer.add(Sample(0.0, *place, yaw))
@@ -114,7 +114,7 @@ def test_near_but_turned_away_is_not_found():
     (["--scene", "dark"], KINDS[0]), (["--tracker", "mine.py"], "visual_tracker.py"),
     (["--seed", "-1"], "whole number"), (["--seed", "x"], "whole number"),
     (["--keep", "0"], "seconds"), (["--speed", "1"], "--help"),
-])  # fmt: skip
+])
 def test_mistakes_are_one_line_that_says_what_to_type(words, said):
     with pytest.raises(RunError, match=said) as raised:
         TrackRun.parse(words)

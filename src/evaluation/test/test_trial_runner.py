@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import pytest
 
 from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.trial.protocol import Case, ReportedTrial
+from evaluation.trial.protocol import Case, ReportedTrial, from_json
 from evaluation.trial.report import cell, table
 from evaluation.trial.runner import run_trial
 from run_session.failure import RunError
@@ -28,12 +28,14 @@ class Squares(ReportedTrial):
     does = "Square numbers."
     good = "no square is large"
     writes = "report.json"
+    shared = ("of",)
 
     def __init__(self, fails=None, most=9):
         self.fails, self.most, self.tried = fails, most, []
 
     def add_options(self, parser):
         parser.add_whole("--numbers", 3, "how many", variable="NUMBERS")
+        parser.add_argument("--of", default="numbers")
 
     def check(self, options):
         if options.numbers == 7:
@@ -68,7 +70,7 @@ class Squares(ReportedTrial):
         return {"squares": [asdict(each) for each in results]}
 
     def from_values(self, values):
-        return [Square(**each) for each in values["squares"]]
+        return [from_json(Square, each) for each in values["squares"]]
 
     def pictures(self, results, out):
         (out / "a&b.png").write_bytes(b"")
@@ -119,7 +121,20 @@ def test_a_mistake_is_one_line(tmp_path, capsys, words, said):
     assert said in line
 
 
-@pytest.mark.parametrize("text", ["{}", "[", '{"squares": [{}]}'])
+def test_results_of_other_options_are_not_mixed_with_those_that_there_are(tmp_path, capsys):
+    words = ["--out", str(tmp_path)]
+    assert run_trial(Squares(), [*words, "--numbers", "1", "--of", "primes"]) == PASSED
+    before = (tmp_path / "report.json").read_text()
+    assert run_trial(Squares(), [*words, "--resume"]) == NOT_RUN
+    said = f"squares: {tmp_path}/report.json: is of --of primes; give that again, or another --out"
+    assert capsys.readouterr().err.strip() == said
+    assert (tmp_path / "report.json").read_text() == before
+    assert run_trial(Squares(), [*words, "--resume", "--of", "primes"]) == PASSED
+
+
+@pytest.mark.parametrize("text", [
+    "{}", "[", "[]", '{"options": []}', '{"options": {"other": ""}}', '{"squares": [{}]}',
+    '{"squares": [{"name": "1", "value": "one"}]}'])
 def test_a_report_of_something_else_is_refused(tmp_path, capsys, text):
     (tmp_path / "report.json").write_text(text)
     assert run_trial(Squares(), ["--resume", "--out", str(tmp_path)]) == NOT_RUN

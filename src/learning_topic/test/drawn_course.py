@@ -13,7 +13,7 @@ TOP = 800  # px; rows above it are never drawn, no lesson looks there
 CORNERS = (  # x, y, radius in m; driven in this order, clockwise
     (-1.5, 1.5, 0.8), (0.2, 1.5, 0.6), (0.2, 0.3, 0.5),
     (1.5, 0.3, 1.1), (1.5, -1.5, 0.6), (-1.5, -1.5, 0.7),
-)  # fmt: skip
+)
 STEP = 0.01  # m between two points of the line
 WHEEL_DISTANCE = 0.287  # m
 WHEEL_ACCELERATION = 1.0  # m/s²
@@ -66,7 +66,7 @@ class Course:
         seen = (floor[:, :, 0] > 0.1).all(axis=1) & (floor[:, 0, 0] < 0.6)
         ahead, left = np.where(seen[:, None, None], floor, 1.0).transpose(2, 0, 1)
         pixels = np.stack([WIDTH / 2 - FOCAL * left / ahead,
-                           HEIGHT / 2 + FOCAL * CAMERA[2] / ahead], axis=2)  # fmt: skip
+                           HEIGHT / 2 + FOCAL * CAMERA[2] / ahead], axis=2)
         following = np.roll(pixels, -1, axis=0)
         quads = np.stack([pixels[:, 0], pixels[:, 1], following[:, 1], following[:, 0]], axis=1)
         quads = quads[seen & np.roll(seen, -1)]

@@ -13,7 +13,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[1] / "scripts"
 PATH = str(SCRIPTS / "pose_subscriber.py")
 YELLOW, WHITE, GREEN, RED, BLUE = (
     (0, 255, 255), (255, 255, 255), (0, 255, 0), (0, 0, 255), (255, 0, 0),
-)  # fmt: skip
+)
 
 
 def road(*lines, height=1080, width=1920):

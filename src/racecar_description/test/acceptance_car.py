@@ -179,7 +179,7 @@ class ControllerStates:
         self._subscribers = [
             rospy.Subscriber(f"/racecar/{name}/state", JointControllerState, self._take, name,
                              tcp_nodelay=True)
-            for name in self.history]  # fmt: skip
+            for name in self.history]
         wait_until(lambda: all(self.history.values()), "the controllers' states")
 
     def _take(self, msg, name):

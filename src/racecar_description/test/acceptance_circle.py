@@ -58,7 +58,7 @@ class Circle(unittest.TestCase):
         self.figures.append({
             "law": "ackermann" if ackermann else "tutorial", "angle_rad": angle,
             "radius_m": round(radius, 4), "wheelbase_over_tan_m": round(wanted, 4),
-            "speed_mps": round(speed, 4)})  # fmt: skip
+            "speed_mps": round(speed, 4)})
         rospy.loginfo("circle: %s", self.figures[-1])
         return radius / wanted, speed
 

@@ -12,7 +12,7 @@ class Commands:
         self._publishers = {
             name: rospy.Publisher(f"/racecar/{name}/command", Float64, queue_size=1,
                                   tcp_nodelay=True)
-            for name in WHEELS + HINGES}  # fmt: skip
+            for name in WHEELS + HINGES}
         wait_until(lambda: all(each.get_num_connections() for each in self._publishers.values()),
                    "six listening controllers")
 

@@ -28,7 +28,7 @@ def write_picture(steps, path):
     titles = list(dict.fromkeys(step.title for step in steps))
     rows = -(-len(titles) // COLUMNS)
     sheet, grid = pyplot.subplots(rows, COLUMNS, figsize=(WIDTH * COLUMNS, HEIGHT * rows),
-                                  squeeze=False, sharex=True)  # fmt: skip
+                                  squeeze=False, sharex=True)
     for axes, title in zip(grid.flat, titles):
         shown = [step for step in steps if step.title == title]
         _draw(axes, shown)

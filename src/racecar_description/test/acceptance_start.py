@@ -55,7 +55,7 @@ class Start(unittest.TestCase):
         self.addCleanup(os.killpg, program.pid, signal.SIGINT)
         topic = wait_until(lambda: next(
             (name for name, _ in rospy.get_published_topics() if name.endswith("/windows/SHOW")),
-            None), "show.py's window")  # fmt: skip
+            None), "show.py's window")
         shown = []
         window = rospy.Subscriber(topic, Image, shown.append, queue_size=100, buff_size=2**24)
         self.addCleanup(window.unregister)

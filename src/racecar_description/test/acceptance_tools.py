@@ -19,7 +19,7 @@ ENVIRONMENT = os.environ | {"ROS_NAMESPACE": "/racecar", "PYTHONUNBUFFERED": "1"
 def run(name, *words):
     """Exit code, standard output and standard error of a command that ends by itself."""
     done = subprocess.run(_command(name, words), env=ENVIRONMENT, capture_output=True, text=True,
-                          timeout=LIMIT)  # fmt: skip
+                          timeout=LIMIT)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -37,7 +37,7 @@ class Spawner:
     def __init__(self, *names):
         self._output = tempfile.TemporaryFile("w+")  # noqa: SIM115  (as long as the process)
         self.process = subprocess.Popen(_command("spawner", names), env=ENVIRONMENT,
-                                        stdout=self._output, stderr=subprocess.STDOUT)  # fmt: skip
+                                        stdout=self._output, stderr=subprocess.STDOUT)
 
     def said(self):
         self._output.seek(0)

@@ -25,12 +25,12 @@ class Track(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         made = subprocess.run([*MAKE, "--out", folder.name], capture_output=True, text=True,
-                              timeout=LIMIT)  # fmt: skip
+                              timeout=LIMIT)
         assert made.returncode == 0, made.stderr
         command = made.stdout.splitlines()[-1]
         environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
         launched = subprocess.Popen(["bash", "-c", command], env=environment,
-                                    start_new_session=True)  # fmt: skip
+                                    start_new_session=True)
         cls.addClassCleanup(launched.wait)
         cls.addClassCleanup(os.killpg, launched.pid, signal.SIGINT)
         init_node("acceptance_track")

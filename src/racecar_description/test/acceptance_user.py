@@ -11,7 +11,7 @@ import subprocess
 import rospy
 
 COMMAND = ("roslaunch", "racecar_description", "car_control.launch", "ackermann:=true",
-           "command_timeout:=true")  # fmt: skip
+           "command_timeout:=true")
 
 
 def start_screen():
@@ -19,7 +19,7 @@ def start_screen():
     reader, writer = os.pipe()
     screen = subprocess.Popen(
         ["Xvfb", "-displayfd", str(writer), "-screen", "0", "800x600x24", "-nolisten", "tcp"],
-        pass_fds=[writer], stderr=subprocess.DEVNULL, start_new_session=True)  # fmt: skip
+        pass_fds=[writer], stderr=subprocess.DEVNULL, start_new_session=True)
     os.close(writer)
     with os.fdopen(reader) as answer:
         return screen, f":{answer.readline().strip()}"
@@ -28,7 +28,7 @@ def start_screen():
 def main():
     screen, display = start_screen()
     typed = subprocess.Popen(COMMAND, env=os.environ | {"DISPLAY": display},
-                             start_new_session=True)  # fmt: skip
+                             start_new_session=True)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: typed.send_signal(signal.SIGINT))
     rospy.set_param("/acceptance_display", display)

@@ -15,7 +15,7 @@ PAPER, INK = (255, 255, 255), (30, 30, 30)
 ROAD_PX = 80
 BEAN = [  # corners of a smooth bean-shaped circuit, px
     (250, 620), (600, 660), (980, 620), (1060, 400), (960, 190), (740, 230), (600, 360),
-    (430, 220), (210, 190), (130, 400)]  # fmt: skip
+    (430, 220), (210, 190), (130, 400)]
 
 
 def blank(shape_px=(HEIGHT_PX, WIDTH_PX), colour=PAPER):
@@ -31,7 +31,7 @@ def closed_curve(corners, count=1200):
     p = [corners[(i + k) % len(corners)] for k in (-1, 0, 1, 2)]
     return (
         (1 - t) ** 3 * p[0] + (3 * t**3 - 6 * t**2 + 4) * p[1]
-        + (-3 * t**3 + 3 * t**2 + 3 * t + 1) * p[2] + t**3 * p[3]) / 6  # fmt: skip
+        + (-3 * t**3 + 3 * t**2 + 3 * t + 1) * p[2] + t**3 * p[3]) / 6
 
 
 def stroke(picture, points, width_px=ROAD_PX, colour=INK, closed=True):
@@ -72,7 +72,7 @@ def by_hand(seed=1):
         stroke(ink, points + 1.2 * shift, ROAD_PX - 6, 255)
     for x, y in points[random.integers(0, len(points), 40)]:  # the pen has missed spots
         cv2.circle(ink, (int(x + random.normal(0, 25)), int(y + random.normal(0, 25))),
-                   int(random.integers(2, 6)), 0, -1)  # fmt: skip
+                   int(random.integers(2, 6)), 0, -1)
     across = 1.5 * (points[310] - points[290])[::-1] * (1, -1)
     ends = [tuple(int(v) for v in points[300] + side * across) for side in (-1, 1)]
     cv2.line(ink, *ends, 0, 9)  # the pen was lifted

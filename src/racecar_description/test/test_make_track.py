@@ -44,7 +44,7 @@ def files_below(folder):
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*")) if path.is_file()
-    }  # fmt: skip
+    }
 
 
 def test_a_drawing_becomes_a_world_that_can_be_driven_in(make_track, tmp_path):
@@ -57,7 +57,7 @@ def test_a_drawing_becomes_a_world_that_can_be_driven_in(make_track, tmp_path):
         "models/my_track/materials/scripts/my_track.material",
         "models/my_track/materials/textures/my_track.png",
         "worlds/my_track.world", "tracks/my_track.yaml", "tracks/my_track.png",
-        "maps/my_track.pgm", "maps/my_track.yaml"}  # fmt: skip
+        "maps/my_track.pgm", "maps/my_track.yaml"}
     world = made / "worlds" / "my_track.world"
     assert output.splitlines()[-1].strip() == (
         "roslaunch racecar_description car_control.launch"
@@ -92,7 +92,7 @@ def test_the_map_is_free_on_the_road_and_has_the_walls(make_track, tmp_path):
         for side in (-wall, wall):
             beside = (x - side * np.sin(heading), y + side * np.cos(heading))
             near = [value(beside[0] + i, beside[1] + j) for i in (-0.05, 0, 0.05)
-                    for j in (-0.05, 0, 0.05)]  # fmt: skip
+                    for j in (-0.05, 0, 0.05)]
             assert 0 in near
     assert value(0.0, 3.9) == 205
 
@@ -100,7 +100,7 @@ def test_the_map_is_free_on_the_road_and_has_the_walls(make_track, tmp_path):
 def test_a_track_file_comes_back_as_it_was(make_track, tmp_path):
     assert make_track(RACETRACK, "--name", "again")[0] == 0
     first, again = load_track_file(RACETRACK), load_track_file(
-        tmp_path / "package/tracks/again.yaml")  # fmt: skip
+        tmp_path / "package/tracks/again.yaml")
     assert (again.corners, again.start) == (first.corners, first.start)
     assert (again.line_width, again.lane_width) == (first.line_width, first.lane_width)
     assert make_track(tmp_path / "package/tracks/again.yaml", "--reverse", "--name", "back")[0] == 0
@@ -172,7 +172,7 @@ def test_other_folders_are_told_to_gazebo(make_track, tmp_path):
 @pytest.mark.parametrize("draw, message", [
     (drawn.blank, "nothing dark in it"),
     (drawn.open_road, "no closed road"),
-    (drawn.figure_eight, "crosses itself")])  # fmt: skip
+    (drawn.figure_eight, "crosses itself")])
 def test_a_bad_drawing_leaves_only_a_marked_picture(make_track, tmp_path, draw, message):
     cv2.imwrite("bad.png", drawn.bean())
     assert make_track("bad.png")[0] == 0
@@ -216,7 +216,7 @@ def test_mistakes_are_one_line(make_track, words, message):
 @pytest.mark.parametrize("words, message", [
     (("--size", "12"), "such as 12x8"), (("--size", "0x8"), "above 0, up to 100"),
     (("--width", "0.1"), "too narrow"), (("--road", "blu"), "use '#rrggbb' or one of"),
-    (("--start", "1"), "two numbers"), (("--random", "x"), "whole number")])  # fmt: skip
+    (("--start", "1"), "two numbers"), (("--random", "x"), "whole number")])
 def test_mistyped_options_say_what_is_meant(make_track, capsys, words, message):
     with pytest.raises(SystemExit) as ended:
         make_track("a.png", *words)
@@ -267,7 +267,7 @@ def test_a_start_near_the_road_is_moved_to_its_middle(make_track, tmp_path, widt
     x, y, heading = CentreLine(track.corners).pose(0.0)
     beside = widths * road_width(track.lane_width)
     outside = max((1, -1), key=lambda side: np.hypot(
-        x - side * np.sin(heading), y + side * np.cos(heading)))  # fmt: skip
+        x - side * np.sin(heading), y + side * np.cos(heading)))
     start = (x - outside * beside * np.sin(heading), y + outside * beside * np.cos(heading))
     words = (RACETRACK, "--name", "made", "--start", f"{start[0]:.6f},{start[1]:.6f}")
     assert make_track(*words)[0] == code
@@ -289,7 +289,7 @@ def test_what_others_made_is_not_overwritten(make_track, tmp_path):
     ("[", "no YAML"), ("name: a", "key 'size' is missing"),
     (RACETRACK.read_text().replace("radius: 1.5}", "radius: 50}"), "bends overlap"),
     (RACETRACK.read_text().replace("start: [0.0, 0.0]", "start: [0.0, 0.5]"), "beside the line"),
-    (RACETRACK.read_text() + "colour: red\n", "unknown key 'colour'")])  # fmt: skip
+    (RACETRACK.read_text() + "colour: red\n", "unknown key 'colour'")])
 def test_a_bad_track_file_names_the_key(make_track, text, message):
     Path("line.yaml").write_text(text)
     code, _, error = make_track("line.yaml")
@@ -313,7 +313,7 @@ def test_a_reader_that_leaves_early_is_no_error(tmp_path, words, unbuffered):
     script = PACKAGE / "scripts" / "make_track"
     done = subprocess.run(
         [sys.executable, script, *words, "--out", tmp_path], stdout=writing,
-        stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": unbuffered})  # fmt: skip
+        stderr=subprocess.PIPE, env={**os.environ, "PYTHONUNBUFFERED": unbuffered})
     os.close(writing)
     assert (done.returncode, done.stderr) == (0, b"")
     assert (tmp_path / "worlds/random_2.world").is_file() == ("--random" in words)

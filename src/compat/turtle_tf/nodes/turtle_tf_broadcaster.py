@@ -13,7 +13,7 @@ def main():
     turtle = rospy.get_param("~turtle", None)
     if turtle is None:
         sys.exit("turtle_tf_broadcaster.py: which turtle? type: "
-                 "rosrun turtle_tf turtle_tf_broadcaster.py _turtle:=turtle1")  # fmt: skip
+                 "rosrun turtle_tf turtle_tf_broadcaster.py _turtle:=turtle1")
     broadcaster = tf.TransformBroadcaster()
 
     def send(pose):

@@ -35,7 +35,7 @@ def main():
             (x, y, _), _ = listener.lookupTransform("turtle2", "carrot1", now)
         except tf.Exception as error:
             rospy.logwarn_throttle(5.0, f"no carrot1 (rosrun turtle_tf fixed_tf_broadcaster.py "
-                                        f"gives one): {error}")  # fmt: skip
+                                        f"gives one): {error}")
         else:
             command = Twist()
             command.linear.x = SPEED_GAIN * math.hypot(x, y)

@@ -66,7 +66,7 @@ class FollowStory(unittest.TestCase):
         jump("turtle1", 4.0, 9.0)
         self.wait_until(lambda: self.leader.pose.x == 4.0 and self.distance() < NEAR, "standing")
         echo = subprocess.Popen(["rosrun", "tf", "tf_echo", "turtle1", "turtle2"], text=True,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         try:
             found = next(match for line in echo.stdout if (match := TRANSLATION.search(line)))
         finally:

@@ -26,12 +26,12 @@ def main():
     turtle = rospy.get_param("~turtle", None)
     if turtle is None:
         sys.exit("turtle_tf2_broadcaster.py: which turtle? type: "
-                 "rosrun turtle_tf2 turtle_tf2_broadcaster.py _turtle:=turtle1")  # fmt: skip
+                 "rosrun turtle_tf2 turtle_tf2_broadcaster.py _turtle:=turtle1")
     broadcaster = tf2_ros.TransformBroadcaster()
     rospy.Subscriber(
         f"/{turtle}/pose", Pose,
         lambda pose: broadcaster.sendTransform(transform_of(pose, turtle)), queue_size=1,
-    )  # fmt: skip
+    )
     rospy.spin()
 
 

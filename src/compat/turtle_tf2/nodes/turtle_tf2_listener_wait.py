@@ -42,7 +42,7 @@ def main():
             found = buffer.lookup_transform(follower, "carrot1", rospy.Time.now(), LONGEST_WAIT)
         except tf2_ros.TransformException as error:
             rospy.logwarn_throttle(5.0, f"no carrot1 (rosrun turtle_tf2 fixed_tf2_broadcaster.py "
-                                        f"gives one): {error}")  # fmt: skip
+                                        f"gives one): {error}")
         else:
             publisher.publish(command_to(found.transform.translation))
         rate.sleep()

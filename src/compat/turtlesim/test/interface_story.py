@@ -19,7 +19,7 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 MIDDLE = 5.544444561004639  # as `rostopic echo` prints upstream's
 WORLD = 499 / 45
 PER_TURTLE = {"set_pen": SetPen, "teleport_absolute": TeleportAbsolute,
-              "teleport_relative": TeleportRelative}  # fmt: skip
+              "teleport_relative": TeleportRelative}
 
 
 def service(name, kind):
@@ -75,7 +75,7 @@ class InterfaceStory(unittest.TestCase):
         names = {"/clear", "/reset", "/spawn", "/kill"} | {f"/turtle1/{n}" for n in PER_TURTLE}
         mine = {name for name in service_names()
                 if rosgraph.Master("/x").lookupService(name)
-                == rosgraph.Master("/x").lookupService("/clear")}  # fmt: skip
+                == rosgraph.Master("/x").lookupService("/clear")}
         loggers = {"/turtlesim/get_loggers", "/turtlesim/set_logger_level"}
         self.assertEqual(mine, names | loggers)
 

@@ -36,7 +36,7 @@ def sends_to_us(node, topic):
     uri = rosgraph.Master("/pond_watch").lookupNode(node)
     _, _, links = xmlrpc.client.ServerProxy(uri).getBusInfo("/pond_watch")
     return any(receiver == rospy.get_name() and direction == "o" and name == topic and is_open
-               for _, receiver, direction, _, name, is_open, *_ in links)  # fmt: skip
+               for _, receiver, direction, _, name, is_open, *_ in links)
 
 
 class Topic:

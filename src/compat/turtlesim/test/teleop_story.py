@@ -42,7 +42,7 @@ class TeleopStory(unittest.TestCase):
         self.before, self.shown = termios.tcgetattr(self.terminal), ""
         self.node = rosrun("turtlesim", "turtle_teleop_key", *arguments, stdin=self.terminal,
                            stdout=self.terminal, stderr=subprocess.STDOUT,
-                           preexec_fn=take_terminal)  # fmt: skip
+                           preexec_fn=take_terminal)
         self.addCleanup(self.end)
         threading.Thread(target=self.read, daemon=True).start()
         wait_until(lambda: self.sent.subscriber.get_num_connections(), "the node's publisher")

@@ -126,7 +126,7 @@ def test_a_turtle_is_drawn_with_its_head_where_it_heads(look, theta, row, column
 @pytest.mark.parametrize("place, seen", [
     ((0, 0), True), ((SIDE, SIDE), True), ((-0.3, 5), True), ((5, 11.5), True),
     ((-1.5, 5), False), ((-40, 5), False), ((5, 1e6), False), ((5, -1e6), False),
-])  # fmt: skip
+])
 def test_a_turtle_at_or_beyond_the_edge_can_be_drawn(place, seen):
     picture = np.full((500, 500, 3), 255, np.uint8)
     draw_turtle(picture, place, 1.0, 0)

@@ -55,7 +55,7 @@ def test_linear_y_goes_to_the_left(turtle, canvas):
 @pytest.mark.parametrize("theta, wrapped", [
     (math.pi, -math.pi), (-math.pi, -math.pi), (3.2, 3.2 - 2 * math.pi), (-7.0, 2 * math.pi - 7),
     (0.5 + 40 * math.pi, 0.5),
-])  # fmt: skip
+])
 def test_theta_is_kept_from_minus_pi_to_pi(turtle, canvas, theta, wrapped):
     turtle.theta = theta
     turtle.step(0.0, canvas)
@@ -85,7 +85,7 @@ def test_the_last_command_counts_and_lives_anew(turtle, canvas):
 
 @pytest.mark.parametrize("theta, x, y", [
     (0.0, SIDE, 5.0), (math.pi, 0.0, 5.0), (math.pi / 2, 5.0, SIDE), (-math.pi / 2, 5.0, 0.0),
-])  # fmt: skip
+])
 def test_the_wall_holds_the_turtle_but_not_its_speed(turtle, canvas, theta, x, y):
     turtle.theta = theta
     turtle.command(1000.0, 0.0, 0.0, now=0.0)

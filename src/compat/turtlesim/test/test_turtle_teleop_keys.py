@@ -13,7 +13,7 @@ def moves(typed):
 
 @pytest.mark.parametrize("key, move", [
     (UP, (1, 0)), (DOWN, (-1, 0)), (LEFT, (0, 1)), (RIGHT, (0, -1)), ("\x1bOA", (1, 0)),
-])  # fmt: skip
+])
 def test_arrows(key, move):
     assert moves(key) == [move]
 

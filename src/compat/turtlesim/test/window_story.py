@@ -24,7 +24,7 @@ def start_screen():
     screen = subprocess.Popen(
         ["Xvfb", "-displayfd", str(writer), "-screen", "0", "800x600x24", "-nolisten", "tcp"],
         pass_fds=[writer], stderr=subprocess.DEVNULL,
-    )  # fmt: skip
+    )
     os.close(writer)
     with os.fdopen(reader) as answer:
         return screen, f":{answer.readline().strip()}"
@@ -39,7 +39,7 @@ def seen():
     """(500, 500, 3) RGB: the screen's upper left corner, where the window is without a manager."""
     grab = ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
             "500x500", "-i", os.environ["DISPLAY"], "-frames:v", "1", "-f", "rawvideo",
-            "-pix_fmt", "rgb24", "-"]  # fmt: skip
+            "-pix_fmt", "rgb24", "-"]
     done = subprocess.run(grab, capture_output=True, timeout=LIMIT, check=True)
     return np.frombuffer(done.stdout, np.uint8).reshape(500, 500, 3)
 

@@ -30,7 +30,7 @@ def test_rows_may_be_padded():
     ("bgr8", COLUMNS, COLUMNS, b"\1" * (ROWS * COLUMNS), "step"),
     ("bgr8", COLUMNS, COLUMNS * 3, PICTURE.tobytes()[:-1], "bytes"),
     ("bgr8", 0, 0, b"", "empty"),
-])  # fmt: skip
+])
 def test_sizes_that_do_not_fit(encoding, width, step, data, said):
     with pytest.raises(BadImage, match=said):
         decode(encoding, width, ROWS, step, data)

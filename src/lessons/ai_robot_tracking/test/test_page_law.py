@@ -21,7 +21,7 @@ def at(error, radius):
     (50, 31, 0.1), (-200, 100, 0.1),                # near, but beside
     (0, 30, 0.1), (0, 25, 0.1),                     # ahead, between near and far
     (0, 24, 0.15), (300, 11, 0.15),                 # far
-])  # fmt: skip
+])
 def test_speeds(error, radius, speed):
     assert page_command(at(error, radius), 640, SETTINGS) == (speed, pytest.approx(-0.005 * error))
 

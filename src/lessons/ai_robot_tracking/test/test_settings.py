@@ -44,7 +44,7 @@ def test_the_file_has_every_key(section):
     ({"kp_turn": float("nan")}, "'kp_turn' must be"),
     ({"kp_turn": True}, "'kp_turn' must be"),
     ({"kp_turn": 10**400}, "'kp_turn' must be"),
-])  # fmt: skip
+])
 def test_mistakes(changed, changes, said):
     path = changed(**changes)
     with pytest.raises(SettingsError) as raised:

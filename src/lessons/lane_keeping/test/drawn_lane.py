@@ -9,7 +9,7 @@ from lane_keeping.road_view import road_view
 
 LAWN, ROAD, LINE, WHITE, SKY = (
     (120, 150, 125), (130, 130, 130), (32, 32, 32), (235, 235, 235), (225, 200, 170),
-)  # fmt: skip
+)
 TROUSERS, SHIRT = (150, 40, 20), (30, 120, 240)  # blue, orange; all BGR
 ROAD_HALF, LINE_HALF = 0.75, 0.02  # m
 PX_PER_M = 150
@@ -46,23 +46,23 @@ def lane_points(beside=0.0, turned=0.0, curvature=0.0, left=0.0, begin=-1.0, end
 
 
 def draw(settings, beside=0.0, turned=0.0, curvature=0.0, sides=(1, -1), zebra=None, shade=(),
-         people=(), light=1.0, noise=0.0, seed=0, size=(640, 480)):  # fmt: skip
+         people=(), light=1.0, noise=0.0, seed=0, size=(640, 480)):
     """The BGR picture. zebra: begin and end in m along the lane; shade: polygons in m."""
     where = dict(beside=beside, turned=turned, curvature=curvature)
     half = settings.lane_width / 2
     ground = np.empty((round(AHEAD * PX_PER_M), round(2 * ASIDE * PX_PER_M), 3), np.uint8)
     ground[:] = LAWN
     _strip(ground, ROAD, lane_points(left=ROAD_HALF, **where),
-           lane_points(left=-ROAD_HALF, **where))  # fmt: skip
+           lane_points(left=-ROAD_HALF, **where))
     if zebra is not None:
         for bar in range(BARS):
             left = (bar - BARS / 2 + 0.25) * 2 * BAR
             part = dict(where, begin=zebra[0], end=zebra[1])
             _strip(ground, WHITE, lane_points(left=left, **part),
-                   lane_points(left=left + BAR, **part))  # fmt: skip
+                   lane_points(left=left + BAR, **part))
     for side in sides:
         _strip(ground, LINE, lane_points(left=side * half + LINE_HALF, **where),
-               lane_points(left=side * half - LINE_HALF, **where))  # fmt: skip
+               lane_points(left=side * half - LINE_HALF, **where))
     for polygon in shade:
         covered = cv2.fillPoly(np.zeros(ground.shape[:2], np.uint8), [_texture(polygon)], 1) > 0
         ground[covered] = (ground[covered] * 0.55).astype(np.uint8)
@@ -105,7 +105,7 @@ def _seen(ground, settings, size):
 def _doll(image, person, settings, size):
     view = road_view(settings, *size)
     sides = np.array([[person.ahead, person.left + person.wide / 2],
-                      [person.ahead, person.left - person.wide / 2]])  # fmt: skip
+                      [person.ahead, person.left - person.wide / 2]])
     hips = person.tall * 0.5
     for low, high, colour in ((0.0, hips, TROUSERS), (hips, person.tall, SHIRT)):
         feet, top = view.to_picture(sides, low), view.to_picture(sides, high)

@@ -40,7 +40,7 @@ def test_thresholds_are_inverted():
     picture = np.full((60, 60), 200, np.uint8)
     picture[:, 28:33] = 40  # a dark line
     for mask in (binarise.global_mean(picture), binarise.adaptive_mean(picture, 11, 2),
-                 binarise.relative_mean(picture, 31, 0.6)):  # fmt: skip
+                 binarise.relative_mean(picture, 31, 0.6)):
         assert (mask[:, 28:33] == 255).all() and not mask[:, :28].any() and not mask[:, 33:].any()
     assert not binarise.opening(np.pad(np.full((4, 4), 255, np.uint8), 9), 5).any()
     assert binarise.region(picture, 0.5).shape == (30, 60)
@@ -135,7 +135,7 @@ def test_a_frozen_picture_counts_only_while_driving_until_another_comes():
     (("bgr8", 640, 480, 1920, 900000), "900000 bytes of data, but 480 rows of 1920 bytes"),
     (("yuv99", 640, 480, 1920, 921600), "encoding 'yuv99' is unknown here; known: bgr8, "),
     (("bgr8", 0, 0, 0, 0), "0x0 pixels are too few, 80x60 is the least"),
-])  # fmt: skip
+])
 def test_mistakes_in_image_messages(fields, mistake):
     found = mistake_in(*fields)
     assert found is None if mistake is None else found.startswith(mistake)

@@ -42,7 +42,7 @@ def test_every_method_has_a_file_and_every_file_is_a_method():
     ({"straight_speed": True}, "'straight_speed' must be a number from 0 to 5, not True"),
     ({"block_px": 10}, "'block_px' must be odd, not 10"),
     ({"windows": None}, "missing key 'windows'"),
-])  # fmt: skip
+])
 def test_mistakes_in_a_file(tmp_path, change, complaint):
     table = yaml.safe_load((CONFIG / "page.yaml").read_text(encoding="utf-8")) | change
     path = tmp_path / "bad.yaml"

@@ -30,7 +30,7 @@ TOLERANCE_PX = {"column_scan": {"left bend": 12, "right bend": 12}}
 @pytest.fixture(scope="module")
 def masks():
     return {name: line_mask(draw(SETTINGS, noise=0.01, **lane), SETTINGS)
-            for name, lane in LANES.items()}  # fmt: skip
+            for name, lane in LANES.items()}
 
 
 def centre_column(row, beside=0.0, turned=0.0, curvature=0.0, **_drawn):

@@ -101,7 +101,7 @@ def _view(limits: Limits, folder: Path | None) -> list[str]:
           for word in ("--ro-bind-try", path, path)],
         *(["--ro-bind", str(folder), SUBMISSION] if folder else []),
         "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME,
-    ]  # fmt: skip
+    ]
 
 
 def _each(options: tuple[str, ...], paths: list[str]) -> list[str]:

@@ -102,7 +102,7 @@ class LaneDriver:
         limits = SpeedLimits(
             settings.max_speed, settings.lateral_acceleration, settings.acceleration,
             settings.braking,
-        )  # fmt: skip
+        )
         before = np.arange(0.0, bends[0].x, SPACING)
         curvature = np.append(self.memory.curvature(before), [bend.curvature for bend in bends])
         speed = speed_profile(curvature, np.full(len(curvature) - 1, SPACING), limits)[0]

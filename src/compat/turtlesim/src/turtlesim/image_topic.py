@@ -31,4 +31,4 @@ def picture_to_msg(picture: np.ndarray) -> Image:
     """(height, width, 3) uint8 RGB to an rgb8 image without a stamp."""
     height, width = picture.shape[:2]
     return Image(height=height, width=width, encoding="rgb8", step=3 * width,
-                 data=picture.tobytes())  # fmt: skip
+                 data=picture.tobytes())

@@ -75,7 +75,7 @@ class TurtlesimNode:
         require_finite((request.x, request.y, request.theta))
         if request.name and not is_legal_name(request.name):
             raise PondError(f"[{request.name}] cannot be a turtle's name: "
-                            "begin with a letter, go on with letters, digits and _")  # fmt: skip
+                            "begin with a letter, go on with letters, digits and _")
         try:
             name = self._pond.spawn(request.name, request.x, request.y, request.theta)
         except PondError as error:

@@ -28,5 +28,5 @@ def _read(name: str, default: int) -> int:
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 255:
         return value
     rospy.logwarn("parameter %s must be a whole number from 0 to 255, not %r: %d is used",
-                  rospy.resolve_name(name), value, default)  # fmt: skip
+                  rospy.resolve_name(name), value, default)
     return default

@@ -153,5 +153,5 @@ RULES: dict[str, Callable[[Sequence[Sample]], Found]] = {
     "bar": _waits_for("traffic_bar_up", "the bar", "bar",
                       lambda robot: robot.x < -1.5 and 0.1 < robot.y < BAR_Y),
     "tunnel": _tunnel, "finish": _finish,
-}  # fmt: skip
+}
 MISSIONS = tuple(RULES)

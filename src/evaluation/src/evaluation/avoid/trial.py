@@ -72,7 +72,7 @@ class AvoidTrial(ReportedTrial):
     does = "Drive by laser through halls with columns."
     good = "all goals reached without a contact"
     writes = "report.json, report.html, paths.png and worlds"
-    result = Drive
+    result, shared = Drive, ("avoider",)
 
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 20, "halls", variable="SEEDS", least=1)

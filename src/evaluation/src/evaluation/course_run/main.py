@@ -121,7 +121,7 @@ class CourseRun(CarDrive):
             "fast": self.options.fast, "seed": self.options.seed,
             "camera_width_px": width, "camera_height_px": height,
             **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {}),
-        }  # fmt: skip
+        }
 
     def write(self, report: dict) -> list[str]:
         picture = path_picture(self.track_file, self.drive, *_titles(self.driver, report))

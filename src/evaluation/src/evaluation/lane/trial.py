@@ -91,7 +91,7 @@ class LaneTrial(LaneDrives):
     does = "Drive laps in differing light and past people."
     good = "all within the limits"
     writes = "report.json, report.html and the drives"
-    open_ended = True
+    open_ended, shared = True, ("method",)
 
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 20, "laps without people")
@@ -113,14 +113,6 @@ class LaneTrial(LaneDrives):
 
     def is_needed(self, case: LaneCase, results: Sequence[LaneDrive]) -> bool:
         return not case.people or count_met(results) < self._crossings
-
-    def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
-        found = super().earlier(options)
-        others = {each.method for each in found} - {options.method}
-        if others:
-            raise RunError(f"{options.out / REPORT}: is of METHOD={others.pop()};"
-                           " choose that or another --out")
-        return found
 
     def passed(self, results: Sequence[LaneDrive]) -> bool:
         if count_met(results) < self._crossings:

@@ -139,13 +139,11 @@ def summary(drives: Sequence[LapDrive]) -> dict:
     """Of several; figures are of closed ones, None where there are none."""
     closed = [drive for drive in drives if drive.closed]
     speeds, errors = [each.mean_speed for each in closed], [each.rms_lateral for each in closed]
-    return {
-        "laps": len(drives), "closed": len(closed),
-        "within_limits": sum(drive.within_limits for drive in drives),
-        "mean_speed": mean(speeds), "least_speed": min(speeds, default=None),
-        "mean_rms_lateral": mean(errors), "max_rms_lateral": max(errors, default=None),
-        "max_lateral": max((each.max_lateral for each in closed), default=None),
-    }  # fmt: skip
+    return {"laps": len(drives), "closed": len(closed),
+            "within_limits": sum(drive.within_limits for drive in drives),
+            "mean_speed": mean(speeds), "least_speed": min(speeds, default=None),
+            "mean_rms_lateral": mean(errors), "max_rms_lateral": max(errors, default=None),
+            "max_lateral": max((each.max_lateral for each in closed), default=None)}
 
 
 def _count(key: str) -> Callable[[dict], str]:

@@ -14,10 +14,9 @@ LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, by when it must be rig
 LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
 MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # in the mean, while it is tracked
 MOST_CPU = 30.0  # percent of a core
-LIMITS_IN_REPORT = {
-    "right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
-    "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG], "cpu": MOST_CPU,
-}  # fmt: skip
+LIMITS_IN_REPORT = {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
+                    "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
+                    "cpu": MOST_CPU}
 
 
 @dataclass(frozen=True)

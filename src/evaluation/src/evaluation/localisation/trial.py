@@ -40,6 +40,7 @@ class LocalisationTrial(protocol.ReportedTrial):
             " then have it keep track of it, and see what that costs.")
     good = "all within the limits of the table"
     writes = "report.json, report.html, the map and log/"
+    shared = "seed", "house", "wheel_odometry", "tracking", "load"
 
     def __init__(self) -> None:
         self._rig: Rig | None = None
@@ -103,16 +104,14 @@ class LocalisationTrial(protocol.ReportedTrial):
 
     def values(self, results: Sequence[Result]) -> dict:
         others = {each.name: asdict(each) for each in _others(results)}
-        return {
-            "passed": self.passed(results), "limits": outcomes.LIMITS_IN_REPORT,
-            "trials": [{**asdict(each), "right": each.right} for each in results
-                       if isinstance(each, Trial)],
-            "tracking": others.get("tracking"), "load": others.get("load"),
-        }  # fmt: skip
+        return {"passed": self.passed(results), "limits": outcomes.LIMITS_IN_REPORT,
+                "trials": [{**asdict(each), "right": each.right} for each in results
+                           if isinstance(each, Trial)],
+                "tracking": others.get("tracking"), "load": others.get("load")}
 
     def from_values(self, values: dict) -> list[Result]:
         found = [protocol.from_json(Trial, each) for each in values["trials"]]
-        return found + [kind(**values[kind.name]) for kind in (Tracking, Load)
+        return found + [protocol.from_json(kind, values[kind.name]) for kind in (Tracking, Load)
                         if values[kind.name]]
 
     def _bring_up(self, session: Session) -> Rig:

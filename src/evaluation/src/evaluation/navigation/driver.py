@@ -88,7 +88,7 @@ class Driver:
             took, records.length - before,
             float(np.linalg.norm(goal[:2] - start[:2])), shortest,
             float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))),
-        )  # fmt: skip
+        )
 
     def tell_pose(self, pose: np.ndarray) -> None:
         """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""

@@ -65,7 +65,7 @@ def _table(ways: list[Way], speed: float) -> list[str]:
             "yes" if way.reached else way.text, f"{way.time:.1f}", f"{way.straight / speed:.1f}",
             f"{way.shortest / speed:.1f}", f"{way.driven:.2f}", f"{way.off * 100:.1f}",
             f"{math.degrees(way.off_yaw):.1f}",
-        ))  # fmt: skip
+        ))
     return table(rows, left=()).splitlines()
 
 
@@ -107,14 +107,12 @@ def _leg(leg: Leg, speed: float, ways: str, own: dict) -> dict:
 
 def _way(way: Way, speed: float) -> dict:
     x, y, yaw = way.goal
-    return {
-        "x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
-        "reached": way.reached, "text": way.text, "time_s": round(way.time, 1),
-        "straight_s": round(way.straight / speed, 1),
-        "shortest_s": _finite(way.shortest / speed, 1),
-        "driven_m": round(way.driven, 3), "off_m": round(way.off, 3),
-        "off_deg": round(math.degrees(way.off_yaw), 1),
-    }  # fmt: skip
+    return {"x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
+            "reached": way.reached, "text": way.text, "time_s": round(way.time, 1),
+            "straight_s": round(way.straight / speed, 1),
+            "shortest_s": _finite(way.shortest / speed, 1),
+            "driven_m": round(way.driven, 3), "off_m": round(way.off, 3),
+            "off_deg": round(math.degrees(way.off_yaw), 1)}
 
 
 def _error(error: tuple[float, float]) -> dict:

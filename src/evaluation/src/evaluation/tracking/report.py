@@ -30,7 +30,7 @@ def summarize(drive: TrackScorer, start: Start) -> dict:
                    for each in drive.hidings],
         "least_gap_m": _rounded(drive.least_gap, 3),
         "distance_m": round(drive.distance, 3),
-    }  # fmt: skip
+    }
 
 
 def lines(report: dict) -> list[str]:

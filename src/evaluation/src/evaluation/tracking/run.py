@@ -31,7 +31,7 @@ COURSE = Course(
     robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",
     camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
     odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0,
-)  # fmt: skip
+)
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
 LONGEST = 120.0      # s, simulated, to reach a cylinder that stands
 

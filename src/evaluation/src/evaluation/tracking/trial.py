@@ -80,7 +80,7 @@ COLUMNS = {
     "settled cm": lambda each: cell(each["max_error_settled"], 100),
     "found by s": lambda each: cell(each["longest_find"]),
     "seeds not good": lambda each: ", ".join(map(str, each["failed_seeds"])) or "-",
-}  # fmt: skip
+}
 
 
 class TrackTrial(Trial):
@@ -123,7 +123,7 @@ class TrackTrial(Trial):
             sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
             "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
             "--no-video", "--out", str(folder),
-        ], folder)  # fmt: skip
+        ], folder)
 
     def run(self) -> dict:
         """The drive's report."""
@@ -174,7 +174,7 @@ def _summary(kind: Set, drives: list[Drive]) -> dict:
         "least_gap": min(known("least_gap_m"), default=None),
         "failed_seeds": [drive.report["seed"] for drive in drives if drive.good < kind.cases],
         "passed": good >= kind.least_share * cases,
-    }  # fmt: skip
+    }
 
 
 def _read(path: Path) -> dict:

@@ -105,12 +105,10 @@ class CarDrive(LiveDrive):
     def counted(self, log: list[str], digits: int) -> dict:
         """Frames, times and the sum over the drive, for the report."""
         simulated, wall = self.simulated, self._last_at - self._first_at
-        return {
-            **frame_figures(*self._frames, log if self.options.fast else None),
-            "drive_sha256": fingerprint(self.drive),
-            "simulated_s": round(simulated, digits), "wall_s": round(wall, digits),
-            "real_time_factor": round(simulated / wall, digits) if wall > 0 else None,
-        }  # fmt: skip
+        return {**frame_figures(*self._frames, log if self.options.fast else None),
+                "drive_sha256": fingerprint(self.drive),
+                "simulated_s": round(simulated, digits), "wall_s": round(wall, digits),
+                "real_time_factor": round(simulated / wall, digits) if wall > 0 else None}
 
     def fast_arguments(self) -> list[str]:
         """For the launch file: as fast as it goes, in lockstep."""

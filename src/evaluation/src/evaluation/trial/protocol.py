@@ -8,6 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from pathlib import Path
+from types import UnionType
 from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
 from evaluation.trial.command_line import Parser
@@ -39,6 +40,7 @@ class Trial(ABC):
     good: ClassVar[str]  # what exit code 0 means
     writes: ClassVar[str]  # what is in the folder for results
     open_ended: ClassVar[bool] = False  # how many of the cases are needed depends on the results
+    shared: ClassVar[Sequence[str]] = ()  # options that are the same for all results of a report
 
     # --- what there is to do
 
@@ -115,6 +117,7 @@ class Trial(ABC):
         if options.scheduler and options.workers > 1:
             raise RunError("--workers is for this machine, --scheduler for others: give one")
         options.out = options.out.resolve()
+        options.shared = {name: str(getattr(options, name)) for name in self.shared}
         self.check(options)
         return options
 
@@ -137,13 +140,18 @@ class ReportedTrial(Trial):
         return [from_json(self.result, each) for each in values[self.listed]]
 
     def earlier(self, options: argparse.Namespace) -> list[Any]:
-        """The results to go on with; RunError if there are none."""
+        """The results to go on with; RunError if there are none, or of other shared options."""
         path = options.out / REPORT
         try:
-            return self.from_values(json.loads(path.read_text(encoding="utf-8")))
+            values = json.loads(path.read_text(encoding="utf-8"))
+            for name, value in values.get("options", {}).items():
+                if value != options.shared[name]:
+                    raise RunError(f"{path}: is of --{name.replace('_', '-')} {value};"
+                                   " give that again, or another --out")
+            return self.from_values(values)
         except OSError as error:
             raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise RunError(f"{path}: no report of {self.program}: {error!r}") from error
 
 
@@ -154,11 +162,14 @@ def try_case(trial: Trial, session: Session, case: Case) -> Any:
 
 
 def from_json(kind: Any, value: Any) -> Any:
-    """One of `kind` from what asdict and JSON made of it; KeyError for a field that is missing."""
+    """One of `kind` from what asdict and JSON made of it; KeyError: no such field, TypeError."""
     if is_dataclass(kind):
         kinds = get_type_hints(kind)
         return kind(**{each.name: from_json(kinds[each.name], value[each.name])
                        for each in fields(kind)})
     if get_origin(kind) is tuple:
         return tuple(from_json(get_args(kind)[0], each) for each in value)
+    kinds = get_args(kind) if isinstance(kind, UnionType) else (get_origin(kind) or kind,)
+    if not isinstance(value, (*kinds, int) if float in kinds else kinds):
+        raise TypeError(f"{value!r} is no {kind}")
     return value

@@ -46,7 +46,7 @@ class Tally:
     """What has become of the cases; results are in the cases' order, those of others first."""
 
     def __init__(self, trial: Trial, options: argparse.Namespace):
-        self._trial, self._path = trial, options.out / REPORT
+        self._trial, self._options = trial, options
         self.results = trial.earlier(options) if options.resume else []
         self.cases = trial.cases(options)
         self.failures: list[str] = []  # a line each
@@ -65,7 +65,12 @@ class Tally:
         count = sum(self._number(each) >= 0 for each in self.results)
         shown = "" if self._trial.open_ended else f"[{count}/{len(self.cases)}] "
         say(f"{shown}{self._trial.line(result)}")
-        write_json(self._trial.values(self.results), self._path)
+        self.write()
+
+    def write(self) -> None:
+        """The report so far, with what --resume has to be given again."""
+        write_json({**self._trial.values(self.results), "options": self._options.shared},
+                   self._options.out / REPORT)
 
     def drop_unneeded(self) -> None:
         """What one case after the other would not have tried is not counted."""
@@ -108,7 +113,7 @@ def _try_elsewhere(tally: Tally, trial: Trial, options: argparse.Namespace,
 def _show(trial: Trial, tally: Tally, out: Path) -> None:
     table = trial.table(tally.results)
     print(table, flush=True)
-    write_json(trial.values(tally.results), out / REPORT)
+    tally.write()
     pictures = trial.pictures(tally.results, out)
     lines = [*(trial.line(each) for each in tally.results), *tally.failures]
     page = write_page(out, trial.program, table, lines, pictures)

@@ -75,7 +75,7 @@ COLUMNS = {
     "air cm": lambda each: cell(each["least_to_obstacles"], 100),
     "to person cm": lambda each: cell(each["least_to_person"], 100),
     "with recovery": lambda each: str(each["drives_with_recovery"]),
-}  # fmt: skip
+}
 
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
@@ -100,4 +100,4 @@ def _summary(name: str, drives: list[Drive]) -> dict:
             (d.to_person for d in there if d.to_person is not None), default=None),
         "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
         "failed": [drive.name for drive in drives if not drive.reached],
-    }  # fmt: skip
+    }

@@ -19,7 +19,7 @@ YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)
 ROOM = (-0.2, 5.2, *YARD[2:])
 TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
 COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
-           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}  # fmt: skip
+           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}
 
 # Set, what is along, across, and their values.
 PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], float]], ...] = (
@@ -32,7 +32,7 @@ PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], f
      lambda drive: drive.seed, lambda drive: (drive.to_obstacles or 0.0) * 100),
     (CROSSINGS, "crossing", "least air to the person, cm",
      lambda drive: drive.seed, lambda drive: (drive.to_person or 0.0) * 100),
-)  # fmt: skip
+)
 
 
 def write_chart(drives: Sequence[Drive], path: Path) -> None:

@@ -34,7 +34,7 @@ class YardTrial(ReportedTrial):
             " who cross its way.")
     good = "at least 95 %% of the yards crossed and no person touched"
     writes = "report.json, report.html, pictures, worlds and drives"
-    result, derived = Drive, ("score",)
+    result, derived, shared = Drive, ("score",), ("parameters",)
 
     def __init__(self) -> None:
         self._rig: Rig | None = None

@@ -11,7 +11,7 @@ from lane_keeping.road_view import RoadView
 
 GREEN, RED, BLUE, YELLOW, CYAN, MAGENTA, BLACK = (
     (0, 220, 0), (0, 0, 255), (255, 80, 0), (0, 230, 255), (255, 220, 0), (255, 0, 255), (0, 0, 0),
-)  # fmt: skip
+)
 BGR = tuple[int, int, int]
 
 

@@ -9,7 +9,7 @@ CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4, "mono8": 1}
 TO_BGR = {
     "rgb8": cv2.COLOR_RGB2BGR, "bgra8": cv2.COLOR_BGRA2BGR, "rgba8": cv2.COLOR_RGBA2BGR,
     "mono8": cv2.COLOR_GRAY2BGR,
-}  # fmt: skip
+}
 SMALLEST = 80, 60  # px
 EVERY = 8  # px; a picture without contrast on this grid is blank
 

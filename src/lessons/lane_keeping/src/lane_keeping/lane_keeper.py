@@ -20,7 +20,7 @@ from lane_keeping.zebra import Zebra, find_zebra
 
 LANE, PERSON, LOST, SEARCHING, STOPPED, BLANK, FROZEN = (
     "lane", "person", "lost", "searching", "stopped", "blank image", "frozen image",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

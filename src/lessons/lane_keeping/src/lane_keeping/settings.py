@@ -32,7 +32,7 @@ def choice(*names: str) -> Any:
 METHODS = (
     "sliding_windows", "banded_centroids", "column_scan", "histogram_peaks", "segmented_hough",
     "skeleton", "pure_pursuit",
-)  # fmt: skip
+)
 BINARISE = ("global_mean", "adaptive_mean", "relative_mean")
 
 

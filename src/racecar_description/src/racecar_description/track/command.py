@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
     """The options."""
     result = argparse.ArgumentParser(
         prog="make_track", description=ABOUT, epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
+        formatter_class=argparse.RawDescriptionHelpFormatter)
     add = result.add_argument
     add("source", nargs="?", type=Path, help="a picture (PNG, JPEG), or a track file (.yaml)")
     add("--random", type=_seed, metavar="SEED", help="a random circuit instead")
@@ -104,7 +104,7 @@ def _course(options: argparse.Namespace, name: str) -> tuple[Course, list[str]]:
     wishes = Wishes(
         name=name, size=options.size, width=options.width, walls=options.walls,
         backwards=options.reverse, start=options.start, colour=options.road,
-        least_radius=options.min_radius)  # fmt: skip
+        least_radius=options.min_radius)
     if options.random is not None:
         return from_seed(options.random, wishes)
     if options.source.suffix.lower() in (".yaml", ".yml"):

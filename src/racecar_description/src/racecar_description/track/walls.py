@@ -77,7 +77,7 @@ def grid_map(course: Course, polygons: list[np.ndarray]) -> GridMap:
         np.pad(picture, [(size[i] * step - picture.shape[i], 0) if i == 0 else
                          (0, size[i] * step - picture.shape[i]) for i in (0, 1)])
         for picture in (inside, walls)
-    ]  # fmt: skip
+    ]
     free, wall = (
         cv2.resize(picture, tuple(size[::-1]), interpolation=cv2.INTER_AREA) for picture in padded
     )

@@ -54,7 +54,7 @@ class Canvas:
         half = pen.width_px / 2 + _ON_EDGE_PX
         along, across = ahead[0] * x + ahead[1] * y + half, ahead[0] * y - ahead[1] * x + half
         inked = ((along >= 0) & (along < length + pen.width_px)
-                 & (across >= 0) & (across < pen.width_px))  # fmt: skip
+                 & (across >= 0) & (across < pen.width_px))
         self.pixels[rows, columns][inked] = pen.color
         self.changes += 1
 

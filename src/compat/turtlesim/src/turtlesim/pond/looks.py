@@ -106,7 +106,7 @@ def _ellipse(x: float, y: float, long: float, short: float, turned_deg: float) -
     angle, turned = np.linspace(0, 2 * np.pi, 60, endpoint=False), np.radians(turned_deg)
     along, across = long * np.cos(angle), short * np.sin(angle)
     return np.stack([x + along * np.cos(turned) - across * np.sin(turned),
-                     y + along * np.sin(turned) + across * np.cos(turned)], axis=1)  # fmt: skip
+                     y + along * np.sin(turned) + across * np.cos(turned)], axis=1)
 
 
 def _polar(radius: float, angle_deg: float) -> tuple[float, float]:

@@ -60,7 +60,7 @@ def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
             found[1].append((right, row))
         if left is not None or right is not None:
             middle = ((right - width if left is None else left)
-                      + (left + width if right is None else right)) / 2  # fmt: skip
+                      + (left + width if right is None else right)) / 2
     left, right = (np.array(points).reshape(-1, 2) for points in found)
     marks = Marks(points=np.concatenate([left, right]))
     return steer_by_error(make_lane(fit_side(left), fit_side(right), view, marks), view, settings)

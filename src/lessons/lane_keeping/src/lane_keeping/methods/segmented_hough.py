@@ -24,7 +24,7 @@ def pieces(edges: np.ndarray, low: int, high: int) -> np.ndarray:
     found = cv2.HoughLinesP(
         edges[low:high], 1, np.pi / 90, VOTES,
         minLineLength=LEAST_LENGTH * (high - low), maxLineGap=GAP_PX,
-    )  # fmt: skip
+    )
     lines = np.empty((0, 4)) if found is None else found[:, 0].astype(float)
     lines[:, 1::2] += low
     upside_down = lines[:, 1] < lines[:, 3]
