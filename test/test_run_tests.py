@@ -21,6 +21,7 @@ def runner(monkeypatch, tmp_path):
     for name in ("run_tests", "run_tests_kinds", "run_tests_processes", "run_tests_results",
                  "run_tests_unsteady", "run_tests_fast"):
         monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     import run_tests
     monkeypatch.setattr(run_tests, "OUT", tmp_path)
     return run_tests
@@ -71,8 +72,28 @@ def test_more_than_three_that_are_not_known_fail_the_run(runner, monkeypatch):
     second(runner, monkeypatch, passed=True)
     results = runner.run_failed_again([failed(runner, name) for name in FILES[:4]], 1.0)
     assert runner.judge_unsteady(results, [{"file": FILES[0]}]) == []
-    (said,) = runner.judge_unsteady(results, [])
+    said, *_ = runner.judge_unsteady(results, [])
     assert said.startswith("4 unsteady files that test/unsteady.yaml does not name")
+
+
+def test_a_file_that_is_unsteady_twice_in_ten_runs_fails_the_second_run(runner, monkeypatch):
+    second(runner, monkeypatch, passed=True)
+    steady, unsteady = [], runner.run_failed_again([failed(runner, FILES[0])], 1.0)
+    known = [{"file": FILES[0]}]
+    first, *nine, late = [runner.judge_unsteady(each, []) for each in
+                          (unsteady, *[steady] * 9, unsteady)]
+    assert first == [] and nine == [[]] * 9 and late == []  # the eleventh
+    assert runner.judge_unsteady(unsteady, known) == []
+    assert runner.judge_unsteady(unsteady, []) == [f"{FILES[0]}: unsteady twice in 10 runs"]
+
+
+@pytest.mark.parametrize("text", ["", "[[", "a folder"])
+def test_a_history_that_cannot_be_read_is_none(runner, monkeypatch, tmp_path, text):
+    second(runner, monkeypatch, passed=True)
+    history = tmp_path / "unsteady.json"
+    history.mkdir() if text == "a folder" else history.write_text(text)
+    results = runner.run_failed_again([failed(runner, FILES[0])], 1.0)
+    assert runner.judge_unsteady(results, [], history) == []
 
 
 def test_what_starts_no_process_hangs_or_leaves_one_is_not_run_again(runner, monkeypatch):
