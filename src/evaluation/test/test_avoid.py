@@ -33,6 +33,32 @@ def test_outcomes(last, outcome):
     assert drive.outcome(last) == outcome
 
 
+class Waiting:
+    """Looks, and lets the simulator write its next line in parts."""
+
+    def __init__(self, path, parts):
+        self._path, self._parts = path, list(parts)
+
+    def wait_for(self, _what, condition, _limit):
+        while not condition():
+            with self._path.open("a") as log:
+                log.write(self._parts.pop(0))
+
+
+def test_the_states_are_read_while_lines_are_half_written(tmp_path):
+    states = [state(0.0, 0.0), state(1.0, 7.9), state(2.0, 8.1), state(3.0, 9.0)]
+    lines = "".join(json.dumps(each) + "\n" for each in ({"called": "pause"}, *states))
+    parts = [lines[begin:begin + 100] for begin in range(0, len(lines), 100)]
+    log = tmp_path / "state.jsonl"
+    log.touch()
+    assert drive.watch(Waiting(log, parts), log) == states[:3]
+    log.write_text(lines)
+    assert drive.watch(Waiting(log, []), log) == states[:3]
+    log.write_text("no state\n")
+    with pytest.raises(RunError, match="log of states"):
+        drive.watch(Waiting(log, []), log)
+
+
 def test_a_result_is_read_back_as_it_was_written():
     found = drive.scored("hall-3", 3, [state(0.0, 0.0), state(20.0, 4.0, 1.3), state(40.0, 8.1)])
     assert found.outcome == drive.REACHED and found.distance == pytest.approx(8.5, abs=0.1)

@@ -16,12 +16,12 @@ from gazebo_msgs.srv import GetWorldProperties
 from marking import conduct, film
 from marking.case_files import CaseFile
 from marking.rules import Rules
-from marking.states import Tail
 from run_session import names
 from run_session.connections import Connections, look_up
 from run_session.launch import MAY_FINISH, Launched
 from run_session.observer import missing_connection
 from run_session.processes import Child
+from run_session.tail import Tail
 
 ME = "/judge"  # never registered at the master
 STARTUP_LIMIT = 240.0  # s, wall, for the course: the machine may be busy

@@ -30,11 +30,12 @@ from marking.course_up import LOOK_PERIOD, CourseUp
 from marking.drive_report import write_report
 from marking.rules import Rules, load_rules
 from marking.sandbox import Kind
-from marking.states import STATE_LOG, Tail, bytes_below, sample_of
+from marking.states import STATE_LOG, bytes_below, sample_of
 from run_session import names
 from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.session import Session
+from run_session.tail import Tail
 
 SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
 ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's

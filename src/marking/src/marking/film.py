@@ -12,7 +12,8 @@ from racecar_description.track.track_file import load_track_file
 from evaluation.course_run.film import CourseFilm
 from evaluation.session.film import FILM_PERIOD
 from marking.case_files import FILM, read_case
-from marking.states import STATE_LOG, Tail, sample_of
+from marking.states import STATE_LOG, sample_of
+from run_session.tail import Tail
 
 NODE = "/film"
 LOOK_PERIOD = 0.1  # s, wall

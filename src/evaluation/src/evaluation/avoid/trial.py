@@ -25,6 +25,7 @@ from run_session.launch import Launched
 from run_session.resources import find_package
 from run_session.session import Session
 from run_session.simulator import WAFFLE, models, unpause
+from run_session.tail import Tail
 
 START_LIMIT = 120.0  # s, wall
 LIMIT = 120.0  # s, simulated
@@ -136,10 +137,9 @@ def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log
 def watch(launched: Launched, state_log: Path) -> list[dict]:
     """The log's states up to the finish, the first contact or LIMIT."""
     states: list[dict] = []
-    with state_log.open(encoding="utf-8") as file:
-        while not (states and outcome(states[-1])):
-            launched.wait_for("the next state", lambda: (line := file.readline())
-                              and _take(states, line), START_LIMIT)
+    log = Tail(state_log)
+    while not (states and outcome(states[-1])):
+        launched.wait_for("the next state", lambda: _take(states, log.lines()), START_LIMIT)
     return states
 
 
@@ -171,16 +171,16 @@ def _connected(master_uri: str) -> bool:
                and not found.missing_link(topic) for topic in TOPICS)
 
 
-def _take(states: list[dict], line: str) -> bool:
-    """Whether the line is a state of the robot; RunError where the log is none."""
+def _take(states: list[dict], lines: Sequence[str]) -> bool:
+    """Add the robot's states up to the drive's end; were there any? RunError: the log is none."""
     try:
-        state = json.loads(line)
+        found = [state for state in map(json.loads, lines)
+                 if WAFFLE in state.get("poses", {}) and math.isfinite(state["time"])]
     except ValueError as error:
         raise RunError(f"the simulator's log of states: {error}") from error
-    if WAFFLE not in state.get("poses", {}) or not math.isfinite(state["time"]):
-        return False
-    states.append(state)
-    return True
+    end = next((number for number, state in enumerate(found, 1) if outcome(state)), len(found))
+    states += found[:end]
+    return bool(found)
 
 
 def _draw(axes: object, result: Drive) -> tuple[str, bool]:
