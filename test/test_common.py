@@ -67,3 +67,20 @@ def test_a_trial_sets_up_what_its_arguments_need(tmp_path: Path, asked: str, opt
 def test_mending_apt_removes_no_package() -> None:
     setup = (ROOT / "scripts/setup/debian.sh").read_text(encoding="utf-8")
     assert setup.count("install -f") == setup.count("install -f --no-remove") == 1
+
+
+@pytest.mark.parametrize(("retries", "said"), [
+    (range(4, -1, -1), "setup: no network: pip cannot reach its package index"),
+    (range(4, 3, -1), "setup: pip install failed: ERROR: No matching distribution"),
+])
+def test_a_connection_that_is_reset_again_and_again_is_no_network(
+        tmp_path: Path, retries: range, said: str) -> None:
+    broken = ("WARNING: Retrying (Retry(total={}, connect=None)) after connection broken by "
+              "'ProtocolError('Connection aborted.', ConnectionResetError(104))': /simple/a/\n")
+    (tmp_path / "pip.log").write_text("".join(map(broken.format, retries))
+                                      + "ERROR: No matching distribution found for a==1\n")
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . scripts/setup/logged.sh; . scripts/setup/python.sh;"
+         f" fail() {{ echo \"setup: $1\"; exit 1; }}; state={tmp_path}; pip_failed install"],
+        cwd=ROOT, text=True, capture_output=True, check=False)
+    assert done.returncode == 1 and done.stdout.startswith(said), done
