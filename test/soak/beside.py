@@ -1,0 +1,66 @@
+"""What people do beside a course: they look at its page, spawn and delete, and record a bag."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import rospy
+
+from run_session.launch import Launched
+from run_session.simulator import delete, spawn_urdf
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src/sim/sim_viewer/test"))
+from page_link import PageLink
+
+VISITORS = 5
+SPAWN_PERIOD = 10.0  # s, wall, that a model stands or is away
+BAG = ["rosbag", "record", "--all", "--split", "--duration=60", "--max-splits=3",
+       "--exclude=.*(image|points).*"]
+MODEL, PLACE = "visitor", (50.0, 50.0)  # m, where nothing else is
+BOX = """<robot name="visitor"><link name="box">
+  <inertial>
+    <mass value="1"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>
+  </inertial>
+  <visual><geometry><box size="0.3 0.3 0.3"/></geometry></visual>
+  <collision><geometry><box size="0.3 0.3 0.3"/></geometry></collision>
+</link></robot>"""
+
+
+class Beside:
+    """Begins at once; `act` is to be called again and again."""
+
+    def __init__(self, launched: Launched, folder: Path):
+        launched.start("bag", [*BAG, "-o", str(folder / "rolling")])
+        launched.start("page", ["roslaunch", "sim_viewer", "viewer.launch"])
+        rospy.init_node("soak", anonymous=True, disable_signals=True)
+        url = launched.wait_for(
+            "the page", lambda: rospy.get_param("/sim_viewer/url", ""), 120.0)
+        camera = next(topic for topic, kind in rospy.get_published_topics()
+                      if kind == "sensor_msgs/Image")
+        self._visitors = [PageLink(url) for _ in range(VISITORS)]
+        for each in self._visitors:
+            each.ask("watch", what="image", args={"topic": camera})
+            each.ask("watch", what="poses")
+        self._stands, self._due = False, time.monotonic()
+
+    def act(self) -> None:
+        """Throw away what the visitors were sent; spawn or delete where that is due."""
+        time.sleep(0.2)
+        for each in self._visitors:
+            each.events.clear()
+        if time.monotonic() < self._due:
+            return
+        self._due = time.monotonic() + SPAWN_PERIOD
+        if self._stands:
+            delete(MODEL)
+        else:
+            spawn_urdf(MODEL, BOX, "", *PLACE)
+        self._stands = not self._stands
+
+    def end(self) -> None:
+        """The visitors go."""
+        for each in self._visitors:
+            each.close()

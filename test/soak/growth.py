@@ -1,0 +1,58 @@
+"""Whether what was sampled is flat after the warm-up: a table, and a picture."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from pathlib import Path
+
+from samples import CLOCK, Sample
+
+from evaluation.picture import chart
+from evaluation.trial.report import grouped, table
+
+WARM_UP = 600.0  # s, wall; of shorter runs a third
+SHARE = 5  # the first and the last of so many parts of what follows are held against each other
+MOST_GROWTH = 0.02
+LEAST = {"memory": 2.0, "descriptors": 2.0, "threads": 2.0}  # MiB, count: less is no growth
+MOST_DRIFT = 0.02  # of pace and rate
+
+
+def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
+    """The table, and whether anything grows, or simulated time or its messages change pace."""
+    rows, changes = [("process", "", "first", "last", "change", "")], False
+    for name, found in grouped(samples, lambda each: each.name).items():
+        for kind in (("pace", "rate") if name == CLOCK else tuple(LEAST)):
+            parts = _ends([(each.time, getattr(each, kind)) for each in found])
+            if parts is None:
+                continue
+            first, last = parts
+            change = (last - first) / first if first else 0.0
+            bad = (abs(change) > MOST_DRIFT if name == CLOCK else
+                   change > MOST_GROWTH and last - first >= LEAST[kind])
+            changes |= bad
+            rows.append((name, kind, f"{first:.2f}", f"{last:.2f}", f"{change:+.1%}",
+                         "CHANGES" if bad else ""))
+    return table(rows, left=(0, 1, 5)), changes
+
+
+def _ends(seen: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
+    """Medians of the first and the last part after the warm-up; None of too few samples."""
+    begin = min(WARM_UP, seen[-1][0] / 3)
+    values = [value for when, value in seen if when >= begin]
+    part = len(values) // SHARE
+    return (statistics.median(values[:part]), statistics.median(values[-part:])) if part else None
+
+
+def draw(samples: Sequence[Sample], path: Path) -> None:
+    """Memory, descriptors and threads of each process, and the pace of time, over hours."""
+    with chart(path, 2, 2, sharex=True) as axes:
+        for panel, kind in zip(axes.flat, (*LEAST, "pace"), strict=True):
+            for name, found in grouped(samples, lambda each: each.name).items():
+                if (name == CLOCK) == (kind == "pace"):
+                    panel.plot([each.time / 3600 for each in found],
+                               [getattr(each, kind) for each in found], label=name)
+            panel.set_title("memory, MiB" if kind == "memory" else kind)
+        axes.flat[0].legend(fontsize="xx-small")
+        for panel in axes[1]:
+            panel.set_xlabel("h")

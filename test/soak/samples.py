@@ -1,0 +1,60 @@
+"""What each process holds, and how simulated time goes, at one moment."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from typing import NamedTuple
+
+import psutil
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from run_session.cpu import processes
+
+PERIOD = 10.0  # s, wall, between two samples
+CLOCK = "clock"  # the row of simulated time
+MEBIBYTE = 2**20
+
+
+class Sample(NamedTuple):
+    """Of one process, by its ROS name; or of CLOCK, with 0 for what it does not have."""
+
+    time: float  # s, wall, since the first
+    name: str
+    memory: float  # MiB in RAM
+    descriptors: int
+    threads: int
+    pace: float  # simulated seconds a second since the last sample; 0 for a process
+    rate: float  # messages of /clock a simulated second
+
+
+class Sampler:
+    """Looks at all processes below this one."""
+
+    def __init__(self) -> None:
+        self._began = self._looked = time.monotonic()
+        self._clocks = 0
+        rospy.Subscriber("/clock", Clock, self._count, queue_size=100)
+        self._simulated = rospy.get_time()
+
+    def look(self) -> list[Sample]:
+        """A row for each process, processes of one name added up, and one for the clock."""
+        now, simulated = time.monotonic(), rospy.get_time()
+        elapsed, passed = now - self._looked, simulated - self._simulated
+        clock = Sample(now - self._began, CLOCK, 0.0, 0, 0, passed / elapsed,
+                       self._clocks / max(passed, 1e-9))
+        self._looked, self._simulated, self._clocks = now, simulated, 0
+        found: dict[str, Sample] = {}
+        for each in processes():
+            with contextlib.suppress(psutil.NoSuchProcess):
+                process = psutil.Process(each.pid)
+                before = found.get(each.name) or Sample(clock.time, each.name, 0.0, 0, 0, 0.0, 0.0)
+                found[each.name] = before._replace(
+                    memory=before.memory + each.memory / MEBIBYTE,
+                    descriptors=before.descriptors + process.num_fds(),
+                    threads=before.threads + process.num_threads())
+        return [clock, *found.values()]
+
+    def _count(self, _: Clock) -> None:
+        self._clocks += 1

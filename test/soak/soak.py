@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Lets a course run for hours, with what people do beside it, and looks for what grows.
+
+    soak.py [--hours H] [--course NAME]
+
+Beside it: the page with five visitors, a model that is spawned and deleted, a bag that rolls.
+Writes out/soak/NAME: samples.csv, growth.png and log/. Exit code 0: all is flat after the warm-up;
+1: something grows; 2: could not run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import rospy
+from beside import Beside
+from growth import draw, judge
+from samples import PERIOD, Sample, Sampler
+
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from run_session.launch import Launched
+from run_session.session import Session
+from run_session.simulator import models
+
+ROOT = Path(__file__).resolve().parents[2]
+START_LIMIT = 300.0  # s, wall
+SIZE = ["camera_width:=320", "camera_height:=240"]
+COURSES = {  # the launch file's words, the robot
+    "course": (["learning_topic", "course_follow.launch", *SIZE], "turtlebot3_waffle"),
+    "race": (["racecar_description", "race.launch", *SIZE], "racecar"),
+    "navigation": (["nav_demo", "nav06_auto_slam.launch"], "turtlebot3_waffle"),
+}
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """The exit code."""
+    parser = argparse.ArgumentParser(prog="soak", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--hours", type=float, default=4.0, help="(4)")
+    parser.add_argument("--course", choices=COURSES, default="course", help="(course)")
+    options = parser.parse_args(words)
+    if not 0 < options.hours <= 1000:
+        parser.error("--hours (HOURS=) must be more than 0 and at most 1000")
+    out = ROOT / "out" / "soak" / options.course
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        with interruptible(), Session(out) as session:
+            samples = _run(session, options)
+    except (RunError, OSError) as failure:
+        print(f"soak: {failure}", file=sys.stderr)
+        return 2
+    return _report(samples, out)
+
+
+def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
+    """One sample a process every PERIOD s; an interruption keeps what there is."""
+    launch, robot = COURSES[options.course]
+    launched = session.launched(robot)
+    launched.start_roscore()
+    launched.start("roslaunch", ["roslaunch", *launch])
+    launched.wait_for(f"model {robot}", lambda: robot in models(), START_LIMIT)
+    beside = Beside(launched, session.out / "log")
+    session.at_end(beside.end)
+    sampler, samples, until = Sampler(), [], time.monotonic() + options.hours * 3600
+    try:
+        while (left := until - time.monotonic()) > 0:
+            _wait(launched, beside, min(PERIOD, left))
+            samples += sampler.look()
+            session.progress.status(f"{left / 60:.0f} min left, {len(samples)} samples")
+    except KeyboardInterrupt:
+        session.progress.say("interrupted: what was sampled is judged")
+    return samples
+
+
+def _wait(launched: Launched, beside: Beside, seconds: float) -> None:
+    """Meanwhile the visitors' pictures are thrown away, and a program that dies is noticed."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        launched.check(rospy.get_time())
+        beside.act()
+
+
+def _report(samples: Sequence[Sample], out: Path) -> int:
+    with (out / "samples.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(Sample._fields)
+        writer.writerows(samples)
+    draw(samples, out / "growth.png")
+    table, grows = judge(samples)
+    print(f"{table}\nwritten to {out}: samples.csv, growth.png")
+    return int(grows)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
