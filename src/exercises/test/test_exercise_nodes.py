@@ -58,10 +58,10 @@ RATE_HZ"""
 
 def test_a_goal_that_never_ends_has_no_end(tmp_path):
     file = written("refuse_goal", tmp_path / "mine.py", (
-        "            return\n        total", "            while not self.server.is_new_goal_available():"
-        "\n                rospy.sleep(0.1)\n            return\n        total"),
-        ("self.server.set_aborted", "print"))
-    assert "end of the goal 0: none, wanted ABORTED" in check(SCRIPT, "refuse_goal", file).stdout
+        "self.server.set_aborted", "while not self.server.is_new_goal_available(): rospy.sleep"),
+        ('AddIntsResult(), "num must be 1 or more"', "0.1"))
+    done = check(SCRIPT, "refuse_goal", file)
+    assert "end of the goal 0: none, wanted ABORTED" in done.stdout, done.stdout + done.stderr
 
 
 def test_a_node_that_ends_by_itself_is_no_fault_of_the_check(tmp_path):
