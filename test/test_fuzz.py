@@ -75,3 +75,14 @@ def test_a_mistake_is_one_line(words, said):
     done = subprocess.run([sys.executable, FUZZ / "fuzz.py", *words], capture_output=True,
                           text=True, timeout=120)
     assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_a_folder_that_can_hold_no_finding_is_one_line(tmp_path, monkeypatch, capsys):
+    (tmp_path / "out").write_text("")
+    monkeypatch.syspath_prepend(str(FUZZ))
+    import fuzz as command
+
+    monkeypatch.setattr(command, "OUT", tmp_path / "out")
+    assert command.main(["--target", "ogre", "--minutes", "0.001"]) == 2
+    said = capsys.readouterr().err
+    assert said == f"fuzz: nothing can be kept in {tmp_path / 'out'}: File exists\n"

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -29,6 +30,11 @@ def main(words: list[str] | None = None) -> int:
     options = _parser().parse_args(words)
     if options.input:
         return _replay(options)
+    try:
+        OUT.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=OUT).close()
+    except OSError as error:
+        return _wrong(f"nothing can be kept in {OUT}: {error.strerror}")
     chosen = [TARGETS[options.target]] if options.target else list(TARGETS.values())
     reports = {target.name: Report(target, OUT) for target in chosen}
     until, seed = time.monotonic() + options.minutes * 60, options.seed

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 import rospkg
 
+from exercises.catalogue import find_exercises
+
 pytestmark = pytest.mark.processes
 LESSON = rospkg.RosPack().get_path("learning_service")
 TYPED = ["rosrun", "evaluation", "check_exercise"]
@@ -27,6 +29,51 @@ def test_the_starting_file_fails_and_the_solution_passes(node_exercise, begun):
     solved = check(SCRIPT, node_exercise.name, node_exercise.solution)
     assert solved.returncode == 0, solved.stdout + solved.stderr
     assert solved.stdout.splitlines()[-1].startswith("passed, ")
+
+
+def written(name, file, *changes):
+    """The solution with parts of it written otherwise, in a file."""
+    text = find_exercises()[name].solution.read_text(encoding="utf-8")
+    for part, other in changes:
+        assert part in text
+        text = text.replace(part, other)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def test_a_result_may_come_after_the_status_that_has_its_end(tmp_path):
+    """As over a slow connection: they are two topics."""
+    late = """import time
+publish_result = actionlib.ActionServer.publish_result
+def late(self, *what):
+    self.publish_status()
+    time.sleep(0.5)
+    publish_result(self, *what)
+actionlib.ActionServer.publish_result = late
+RATE_HZ"""
+    file = written("refuse_goal", tmp_path / "mine.py", ("RATE_HZ = ", f"{late} = "))
+    done = check(SCRIPT, "refuse_goal", file)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_goal_that_never_ends_has_no_end(tmp_path):
+    file = written("refuse_goal", tmp_path / "mine.py", (
+        "self.server.set_aborted", "while not self.server.is_new_goal_available(): rospy.sleep"),
+        ('AddIntsResult(), "num must be 1 or more"', "0.1"))
+    done = check(SCRIPT, "refuse_goal", file)
+    assert "end of the goal 0: none, wanted ABORTED" in done.stdout, done.stdout + done.stderr
+
+
+def test_a_node_that_ends_by_itself_is_no_fault_of_the_check(tmp_path):
+    """It has gone from the master's list when Ctrl-C is to be pressed."""
+    file = written("stop_at_end", tmp_path / "mine.py", ("queue_size=1", "queue_size=None"), (
+        "        driver.drive()\n",
+        "        if driver.publisher.get_num_connections():\n            driver.drive()\n"
+        "            rospy.signal_shutdown('')\n            time.sleep(0.5)\n"),
+        ("        rospy.on_shutdown(self.stop)\n", ""))
+    done = check(SCRIPT, "stop_at_end", file)
+    assert done.returncode == 1 and "FAIL  " in done.stdout, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr, done.stderr
 
 
 def test_a_toggle_fails_by_the_command_that_a_learner_types(tmp_path):

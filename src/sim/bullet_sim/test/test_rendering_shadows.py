@@ -146,6 +146,22 @@ def test_a_box_darkens_the_floor_where_it_hides_a_spot_light(renderer, at, towar
     assert np.abs(level - 255 * gap[..., 2])[bright].max() <= 2
 
 
+def test_what_lies_before_a_wide_spot_light_darkens_nothing_behind_it(renderer):
+    scene = stage(spot((0, 0, 3), (0.0, 0.0, 1.0), outer_angle=5.0, inner_angle=4.5, range=50.0))
+    wall = Visual("wall", Box((0.1, 6.0, 10.0)), cast_shadows=False)
+    scene.add_link(("wall", "link"), [wall], Pose((-2.0, 0.0, 5.0)))
+    view = CameraView(320, 240, 1.0, 0.05, 50.0, Pose.from_xyz_rpy((5, 0, 2), (0, 0, np.pi)))
+    bare = renderer.draw(scene, view).rgb
+    scene.add_link(("roof", "link"), [Visual("roof", Box((1.0, 1.0, 0.1)))], Pose((3.0, 0.0, 6.0)))
+    assert np.array_equal(renderer.draw(scene, view).rgb, bare)  # nor is the roof in the picture
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 0.0), (1e200, 1e200, 0.0)])
+def test_a_sun_without_a_direction_of_a_length_shines_down(renderer, direction):
+    wanted = renderer.draw(stage(sun((0.0, 0.0, -1.0))), slanting()).rgb
+    assert np.array_equal(renderer.draw(stage(sun(direction)), slanting()).rgb, wanted)
+
+
 @pytest.mark.parametrize("changed", [
     lambda: stage(replace(spot((0, 0, 3)), outer_angle=0.0)),
     lambda: stage(description=replace(DARK, shadows=False)),

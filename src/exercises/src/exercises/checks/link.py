@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.urdf.tree import read_tree
 from bullet_sim.formats.xml_text import read_xml_file
-from bullet_sim.pose import shortest_angular_distance
+from bullet_sim.pose import quaternion_from_rpy, rotate
 from exercises.errors import CannotCheck, Mistake
 from exercises.finding import Finding, holds, near
 
@@ -20,7 +21,7 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     try:
         tree = read_tree(read_xml_file(file))
     except SimulationError as error:
-        raise CannotCheck(f"{file}: {error}") from error
+        raise CannotCheck(str(error)) from error
     for name in (LINK, BASE, FOOT):
         if name not in tree.links:
             raise Mistake(f"{file}: has no link {name!r}; there are: {', '.join(tree.links)}")
@@ -33,5 +34,7 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     pose = poses[FOOT].inverse() * poses[LINK]
     for axis, value in zip("xyz", pose.position, strict=True):
         yield near(f"{axis} of {LINK} in {FOOT}", value, limits[axis], limits["tolerance"], " m")
-    yield near(f"yaw of {LINK}, from looking back", shortest_angular_distance(
-        limits["yaw"], pose.rpy()[2]), 0.0, limits["tolerance"], " rad")
+    along, wanted = (rotate(turn, (1.0, 0.0, 0.0)) for turn in (
+        pose.orientation, quaternion_from_rpy(0.0, 0.0, limits["yaw"])))
+    yield near(f"angle of {LINK} from looking back", 2 * math.asin(
+        min(1.0, math.dist(along, wanted) / 2)), 0.0, limits["tolerance"], " rad")

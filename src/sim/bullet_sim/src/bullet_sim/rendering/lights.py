@@ -47,10 +47,10 @@ def strongest_highlight(scene: SceneState) -> float:
 
 
 def light_direction(light: LightDescription) -> np.ndarray:
-    """(3,) unit vector in the world along which it shines; down if the light has none."""
+    """(3,) unit vector in the world along which it shines; down if it has none of a length."""
     direction = np.array(rotate(light.pose.orientation, light.direction))
     length = np.linalg.norm(direction)
-    return direction / length if length > 0 else np.array([0.0, 0.0, -1.0])
+    return direction / length if 0 < length < np.inf else np.array([0.0, 0.0, -1.0])
 
 
 def _rows(light: LightDescription) -> np.ndarray:

@@ -74,7 +74,7 @@ vec3 lit(vec3 position, vec3 normal) {
 #ifdef PER_PIXEL
         if (shadow >= 0 && strength > 0.0 && facing > 0.0) {
             vec4 at = in_map(shadow, position, normal);
-            strength *= arriving(shadow, at.xyz / at.w);
+            if (at.w > 0.0) strength *= arriving(shadow, at.xyz / at.w);  // else behind the light
         }
 #else
         vec3 before = colour;
