@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 
 from course import COURSES, Course
-from faults import set_loopback
+from faults import faults_of, set_loopback
 from rounds import Play, drawn
 
 from run_session.interruption import interruptible
@@ -33,6 +34,10 @@ NAMESPACES = ["unshare", "--map-root-user", "--net", "--mount"]
 def main(words: list[str] | None = None) -> int:
     """The exit code."""
     options = _parser().parse_args(words)
+    known = [fault.name for fault in faults_of(options.course.drivers)]
+    if not any(name.startswith(options.only) for name in known):
+        return _wrong(f"no fault begins with {options.only!r} (ONLY=); there are: "
+                      f"{', '.join(known)}")
     if INSIDE not in os.environ:
         return _start_inside()
     set_loopback(True)
@@ -40,7 +45,7 @@ def main(words: list[str] | None = None) -> int:
     try:
         with interruptible():
             for seed in range(options.seed, options.seed + options.rounds):
-                _play(COURSES[options.course], seed, options, played, found)
+                _play(seed, options, played, found)
     except KeyboardInterrupt:
         pass
     print(f"{'fault':34} rounds findings")
@@ -49,8 +54,8 @@ def main(words: list[str] | None = None) -> int:
     return int(any(found.values()))
 
 
-def _play(course: Course, seed: int, options: argparse.Namespace, played: Counter,
-          found: Counter) -> None:
+def _play(seed: int, options: argparse.Namespace, played: Counter, found: Counter) -> None:
+    course = options.course
     this = drawn(course, seed, options.only)
     folder, results = OUT / f"{course.name}-{seed}", OUT / f"{course.name}-results"
     shutil.rmtree(folder, ignore_errors=True)
@@ -90,12 +95,24 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(_wrong(message))
 
 
+def _whole(text: str) -> int:
+    if not re.fullmatch(r"[0-9]{1,9}", text) or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, 1 or more")
+    return int(text)
+
+
+def _course(name: str) -> Course:
+    if name not in COURSES:
+        raise argparse.ArgumentTypeError(f"no course {name!r}; there are: {', '.join(COURSES)}")
+    return COURSES[name]
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="chaos", description=__doc__,
                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=USUAL_ROUNDS)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--course", choices=sorted(COURSES), default="course")
+    parser.add_argument("--rounds", type=_whole, default=USUAL_ROUNDS)
+    parser.add_argument("--seed", type=_whole, default=1)
+    parser.add_argument("--course", type=_course, default="course")
     parser.add_argument("--only", default="", help="the beginning of a fault's name, as: kill")
     return parser
 

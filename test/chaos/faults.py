@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
-from clock import LIBRARY, set_clock
+from clock import set_clock
 from drive import Drive
 from members import send
 
 LONGEST_JUMP = 7200.0  # s
 GET_FLAGS, SET_FLAGS, IS_UP = 0x8913, 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
 FILLER = "filler"
+CLOCK = "clock"
 ENDED, DRIVEN = (2,), (0, 1)  # exit codes of a judge that could not run, and that could
 
 
@@ -77,9 +78,9 @@ def jump_clock(drive: Drive, rng: Random) -> None:
 def faults_of(drivers: tuple[str, ...]) -> list[Fault]:
     """All that can happen to a drive with these driving nodes."""
     parts = (*drivers, "simulator", "master", "roscore", "roslaunch")
-    clock = [Fault("clock", jump_clock, DRIVEN)] if LIBRARY else []
     return [*map(_kill, parts), _kill("judge", (-signal.SIGKILL,)),
             _kill("encoder", DRIVEN), *map(_stop, (*parts, "judge")),
             Fault("disk", fill_disk, (*DRIVEN, *ENDED), on_tmpfs=True),
             Fault("interface", lambda *_: set_loopback(False), (*DRIVEN, *ENDED),
-                  end=lambda _: set_loopback(True)), *clock]
+                  end=lambda _: set_loopback(True)),
+            Fault(CLOCK, jump_clock, DRIVEN)]
