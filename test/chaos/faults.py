@@ -40,6 +40,17 @@ def _kill(victim: str, codes: tuple[int, ...] = ENDED) -> Fault:
                  codes, victim)
 
 
+def _kill_driver(victim: str) -> Fault:
+    """While the judge sleeps, who would end the simulation too soon to see the car stand."""
+
+    def begin(drive: Drive, _: Random) -> None:
+        send(drive.pids("judge"), signal.SIGSTOP)
+        send(drive.pids(victim), signal.SIGKILL)
+
+    return Fault(f"kill {victim}", begin, ENDED, victim,
+                 lambda drive: send(drive.pids("judge"), signal.SIGCONT))
+
+
 def _stop(victim: str) -> Fault:
     return Fault(f"stop {victim}", lambda drive, _: send(drive.pids(victim), signal.SIGSTOP),
                  DRIVEN, victim, lambda drive: send(drive.pids(victim), signal.SIGCONT))
@@ -77,9 +88,9 @@ def jump_clock(drive: Drive, rng: Random) -> None:
 
 def faults_of(drivers: tuple[str, ...]) -> list[Fault]:
     """All that can happen to a drive with these driving nodes."""
-    parts = (*drivers, "simulator", "master", "roscore", "roslaunch")
-    return [*map(_kill, parts), _kill("judge", (-signal.SIGKILL,)),
-            _kill("encoder", DRIVEN), *map(_stop, (*parts, "judge")),
+    others = ("simulator", "master", "roscore", "roslaunch")
+    return [*map(_kill_driver, drivers), *map(_kill, others), _kill("judge", (-signal.SIGKILL,)),
+            _kill("encoder", DRIVEN), *map(_stop, (*drivers, *others, "judge")),
             Fault("disk", fill_disk, (*DRIVEN, *ENDED), on_tmpfs=True),
             Fault("interface", lambda *_: set_loopback(False), (*DRIVEN, *ENDED),
                   end=lambda _: set_loopback(True)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -15,12 +15,15 @@ from clock import clock_environment
 from course import Course
 from drive import DURATION, Drive
 from faults import CLOCK, Fault, empty_disk, faults_of
-from states import drives_on
+from members import POLL
+from states import STOP_TIME, drives_on
 
 START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a machine with other work
 GRACE = 60.0  # s, wall, on such a machine
 LONGEST_STOP = 3.0  # s, wall
 DISK = "size=24m"
+WATCHED = STOP_TIME + 0.3  # s, simulated, for which a car without a driver is looked at
+WATCH_LIMIT = 100.0  # s, wall, for that: in lockstep the world waits a second for each image
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,12 @@ class Play:
         self._round, self._folder, self._results = played, folder, results
         self._rng = Random(f"{played.course.name}/{played.seed}/act")
 
+    @property
+    def _without_driver(self) -> bool:
+        """Whether the car is to stand meanwhile."""
+        played = self._round
+        return played.fault.victim in played.course.drivers and not played.starting
+
     def faults(self) -> list[str]:
         """What is wrong, one line each."""
         played = self._round
@@ -92,8 +101,7 @@ class Play:
         yield from wrong_words(drive.log.read_text(encoding="utf-8", errors="replace"), code)
         yield from wrong_logs(self._results / "log")
         yield from half_files(self._results)
-        without_driver = played.fault.victim in played.course.drivers and not played.starting
-        if without_driver and (late := drives_on(drive.places(), since, until)):
+        if self._without_driver and (late := drives_on(drive.places(), since, until)):
             yield late
 
     def _wait_for_moment(self, drive: Drive) -> bool:
@@ -116,6 +124,8 @@ class Play:
             return since, math.inf
         try:
             time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+            if self._without_driver:
+                _wait(lambda: _now(drive) > since + WATCHED, WATCH_LIMIT)
             return since, _now(drive)
         finally:
             fault.end(drive)
@@ -124,6 +134,12 @@ class Play:
         """Near its end it may have ended before."""
         late = since > DURATION / 2
         return (*self._round.fault.codes, 0, 1) if late else self._round.fault.codes
+
+
+def _wait(condition: Callable[[], bool], limit: float) -> None:
+    until = time.monotonic() + limit
+    while not condition() and time.monotonic() < until:
+        time.sleep(POLL)
 
 
 def _now(drive: Drive) -> float:
