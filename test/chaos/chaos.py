@@ -20,7 +20,7 @@ from pathlib import Path
 
 from course import COURSES, Course
 from faults import faults_of, set_loopback
-from rounds import Play, drawn
+from rounds import RESULTS, Play, drawn
 
 from run_session.interruption import interruptible
 
@@ -69,8 +69,8 @@ def _play(seed: int, options: argparse.Namespace, played: Counter, found: Counte
     found[this.title] += 1
     only = f" ONLY='{options.only}'" if options.only else ""
     print(f"  again: make chaos COURSE={course.name} SEED={seed} ROUNDS=1{only}", flush=True)
-    if results.exists():
-        shutil.move(results, folder / "results")
+    if not (folder / RESULTS).exists() and results.exists():
+        shutil.move(results, folder / RESULTS)
 
 
 def _start_inside() -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 import subprocess
 import time
 from collections.abc import Callable, Iterator
@@ -22,6 +23,7 @@ START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a machine with other work
 GRACE = 60.0  # s, wall, on such a machine
 LONGEST_STOP = 3.0  # s, wall
 DISK = "size=24m"
+RESULTS = "results"  # in the folder of a round that failed
 WATCHED = STOP_TIME + 0.3  # s, simulated, for which a car without a driver is looked at
 WATCH_LIMIT = 100.0  # s, wall, for that: in lockstep the world waits a second for each image
 
@@ -78,6 +80,7 @@ class Play:
             return list(dict.fromkeys(self._play()))
         finally:
             if played.fault.on_tmpfs:
+                shutil.copytree(self._results, self._folder / RESULTS)
                 subprocess.run(["umount", "--lazy", str(self._results)], check=True)
 
     def _play(self) -> Iterator[str]:
