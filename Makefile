@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes autorace mark drive viewer test fuzz soak bench setup build deps deb lint clean
+.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes autorace mark drive viewer test fuzz chaos soak bench setup build deps deb lint clean
 
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
@@ -79,6 +79,10 @@ test: ## run every check and test [JOBS=3], or those of what has changed, in 90 
 fuzz: ## give spoilt files to all readers [MINUTES=10] [TARGET=urdf] [SEED=n], or one file again [INPUT=out/fuzz/…]
 	@scripts/fuzz.sh $(if $(MINUTES),--minutes "$(MINUTES)") $(if $(TARGET),--target "$(TARGET)") \
 	  $(if $(SEED),--seed "$(SEED)") $(if $(INPUT),--input "$(INPUT)")
+
+chaos: ## kill, stop, starve parts of drives at random moments [ROUNDS=20] [SEED=1] [COURSE=course|race|lane_empty] [ONLY=kill]
+	@scripts/chaos.sh $(if $(ROUNDS),--rounds "$(ROUNDS)") $(if $(SEED),--seed "$(SEED)") \
+	  $(if $(COURSE),--course "$(COURSE)") $(if $(ONLY),--only "$(ONLY)")
 
 soak: ## let a course run with people beside it; does anything grow? [HOURS=4] [COURSE=course|race|navigation]
 	@scripts/soak.sh $(if $(HOURS),--hours "$(HOURS)") $(if $(COURSE),--course "$(COURSE)")

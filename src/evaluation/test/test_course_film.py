@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -72,6 +74,28 @@ def test_a_full_disk_is_said(tmp_path, make):
         encoder.write(PAGE)
     said = encoder.close()
     assert "No space left" in said or "is the disk full?" in said
+
+
+FILMS_ON_A_SMALL_DISK = """
+import subprocess, sys
+from pathlib import Path
+import numpy as np
+from evaluation.session.film import FilmFile
+disk = Path(sys.argv[1])
+subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", str(disk)], check=True)
+film = FilmFile(disk / "run.mp4")
+page = np.random.default_rng(1).integers(0, 255, (120, 160, 3), dtype=np.uint8)
+for number in range(24):
+    film._add(np.roll(page, number, 0))
+print(film.close(), (disk / "run.mp4").exists())
+"""
+
+
+@pytest.mark.skipif(subprocess.run(["unshare", "-rm", "true"]).returncode, reason="no namespaces")
+def test_a_disk_that_gets_full_meanwhile_leaves_no_half_a_film(tmp_path):
+    done = subprocess.run(["unshare", "-rm", sys.executable, "-c", FILMS_ON_A_SMALL_DISK, tmp_path],
+                          capture_output=True, text=True, timeout=120)
+    assert done.stdout.endswith("No space left on device False\n"), done
 
 
 def test_an_encoder_that_hangs_holds_nothing_up_and_leaves_no_broken_film(tmp_path, monkeypatch):

@@ -1,11 +1,13 @@
 """A single drive, with nothing that drives: what is kept when it is interrupted."""
 
+import errno
 from argparse import Namespace
 from types import SimpleNamespace
 
 import pytest
 
 from evaluation.trial import live
+from evaluation.trial.program import run_program
 
 
 class Drive(live.LiveDrive):
@@ -58,3 +60,37 @@ def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         live.run_live(drive)
     assert [report["outcome"] for report in drive.reports] == ["passed"]
+
+
+class Whole(Ending):
+    """A session that ends by itself."""
+
+    def __exit__(self, *_): ...
+
+
+class Film:
+    """Nothing else may leave it half written: the encoder would go on when we have ended."""
+
+    process_id, codec, closed = None, "", 0
+
+    def stop(self): ...
+
+    def close(self):
+        self.closed += 1
+        return ""
+
+
+def test_a_full_disk_is_one_line_and_the_film_is_closed_too(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(live, "Session", Whole)
+    drive = Drive(tmp_path)
+    drive.film = Film()
+
+    def write(report):
+        raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / "report.json"))
+
+    monkeypatch.setattr(drive, "write", write)
+    assert run_program("drive", lambda: live.run_live(drive)) == 2
+    assert drive.film.closed == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"drive: no space left for {tmp_path / 'report.json'}: make room")
+    assert said.count("\n") == 1

@@ -36,6 +36,15 @@ def test_the_usual_course(file, monkeypatch):
     assert ("follower" in nodes) == (file == "course_follow.launch")
 
 
+@pytest.mark.parametrize("file, arguments, seconds", [
+    ("0course.launch", (), "0"), ("course_follow.launch", (), "0.4"),
+    ("course_follow.launch", ("command_timeout:=0",), "0")])
+def test_a_killed_follower_leaves_a_standing_robot(file, arguments, seconds):
+    _, params = load(file, *arguments)
+    robot = ElementTree.fromstring(params["/robot_description"])
+    assert [tag.text for tag in robot.iter("commandTimeout")] == [seconds]
+
+
 @pytest.mark.parametrize("file", FILES)
 def test_arguments_reach_the_simulator(file):
     nodes, params = load(file, "paused:=true", "real_time_factor:=0", "lockstep:=/cmd_vel",

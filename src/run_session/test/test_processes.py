@@ -1,11 +1,12 @@
 """A child that is ended takes all with it that it started."""
 
 import os
+import subprocess
 import time
 
 import psutil
 
-from run_session.processes import Family
+from run_session.processes import Family, end_with_parent
 
 # Ends at Ctrl-C; what it has started, in a session of its own, does not.
 PARENT = ("import subprocess, sys, time; child = subprocess.Popen(['sh', '-c', 'trap \"\" INT; "
@@ -20,3 +21,8 @@ def test_what_a_child_has_started_ends_with_it(tmp_path):
         time.sleep(0.05)
     family.end(child, 0.5)
     assert not psutil.pid_exists(int(lines[0]))
+
+
+def test_a_program_whose_parent_has_died_meanwhile_is_not_begun():
+    nobody = 1 << 22  # more than Linux numbers processes
+    assert subprocess.Popen(["sleep", "1000"], preexec_fn=end_with_parent(nobody)).wait(20) == 0

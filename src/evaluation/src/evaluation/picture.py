@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import cv2
 import numpy as np
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile
@@ -15,6 +16,7 @@ from evaluation import colours
 from evaluation.colours import LAPS, PAPER, TEXT, lap_colour
 from evaluation.lap import LapScorer
 from evaluation.plan import arrow, start_mark
+from run_session.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,6 +74,11 @@ def pixels(figure: Figure) -> np.ndarray:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., 2::-1].copy()
+
+
+def write_png(path: Path, picture: np.ndarray) -> None:
+    """As a PNG of (rows, columns, 3), BGR; OSError, and no file, where it cannot be written."""
+    write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
 
 
 def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: str) -> np.ndarray:

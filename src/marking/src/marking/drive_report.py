@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import cv2
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.lap import LapScorer, Verdict, fingerprint
-from evaluation.picture import path_picture
+from evaluation.picture import path_picture, write_png
 from evaluation.trial.report import write_json
 from marking.case_files import PATH_PICTURE, REPORT, CaseFile
 
@@ -48,6 +47,6 @@ def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Seq
     if drive.samples:
         picture = path_picture(load_track_file(Path(case.track)), drive, report["outcome"],
                                next(iter([*violations, fault or why])))
-        cv2.imwrite(str(folder / PATH_PICTURE), picture)
+        write_png(folder / PATH_PICTURE, picture)
     write_json(report, folder / REPORT)
     return report

@@ -9,7 +9,7 @@ import re
 import signal
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -69,7 +69,7 @@ class Family:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=end_with_parent,
+                preexec_fn=end_with_parent(os.getpid()),
             )
         self._children.append(Child(name, process, log))
         return self._children[-1]
@@ -155,9 +155,16 @@ def read_log(path: Path) -> list[str]:
     return strip_terminal_codes(path.read_text(encoding="utf-8", errors="replace")).splitlines()
 
 
-def end_with_parent() -> None:
-    """Between fork and exec: have the kernel ask us to end when our parent dies."""
-    _libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+def end_with_parent(parent: int) -> Callable[[], None]:
+    """What to do between fork and exec: have the kernel ask us to end when this parent dies."""
+
+    def prepare() -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # Python's handler would swallow it here
+        _libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+        if os.getppid() != parent:  # it has died already: nobody will ask
+            os._exit(0)
+
+    return prepare
 
 
 def _collect(pid: int) -> None:

@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-import cv2
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.course_run.film import CourseFilm
 from evaluation.course_run.report import followers_table, summarize, write_report
 from evaluation.lap import LapScorer, Verdict
-from evaluation.picture import path_picture
+from evaluation.picture import path_picture, write_png
 from evaluation.session.course_file import drivers, load_course
 from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD
 from evaluation.trial.car_drive import CarDrive
@@ -125,7 +124,7 @@ class CourseRun(CarDrive):
 
     def write(self, report: dict) -> list[str]:
         picture = path_picture(self.track_file, self.drive, *_titles(self.driver, report))
-        cv2.imwrite(str(self.out / "path.png"), picture)
+        write_png(self.out / "path.png", picture)
         found = [followers_table(write_report(self.out, self.driver, report), self.driver)]
         if self.options.fast and report["frames_dropped"]:
             found.append(f"{report['frames_dropped']} images without a command:"

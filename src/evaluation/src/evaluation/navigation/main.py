@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from evaluation.house.house_file import load_house
@@ -15,6 +14,7 @@ from evaluation.navigation.parts import MappingPart, NavigationPart
 from evaluation.navigation.pictures import Film, map_picture
 from evaluation.navigation.report import lines, summarize
 from evaluation.navigation.score import Result
+from evaluation.picture import write_png
 from evaluation.trial.command_line import LARGEST_SEED, Parser
 from evaluation.trial.live import LiveDrive, Outcome
 from evaluation.trial.report import write_json
@@ -114,7 +114,7 @@ class NavigationRun(LiveDrive):
 
     def write(self, report: dict) -> list[str]:
         picture = map_picture(self._ground, self.result, *_titles(self.options, self.result))
-        cv2.imwrite(str(self.out / "map.png"), picture)
+        write_png(self.out / "map.png", picture)
         write_json(report, self.out / "report.json")
         return lines(self.options, self.result)
 

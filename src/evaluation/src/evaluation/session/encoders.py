@@ -22,9 +22,10 @@ class FfmpegEncoder:
     codec = "H.264 by ffmpeg"
 
     def __init__(self, path: Path, width: int, height: int, rate_hz: int):
-        words = (f"nice -n 10 ffmpeg -loglevel error -y -f rawvideo -pixel_format bgr24 -video_size"
-                 f" {width}x{height} -framerate {rate_hz} -i - -c:v libx264 -preset ultrafast"
-                 " -crf 24 -threads 1 -pix_fmt yuv420p -movflags +faststart")
+        # -xerror: without it, no room for the end of the film is no failure.
+        words = ("nice -n 10 ffmpeg -xerror -loglevel error -y -f rawvideo -pixel_format bgr24"
+                 f" -video_size {width}x{height} -framerate {rate_hz} -i - -c:v libx264"
+                 " -preset ultrafast -crf 24 -threads 1 -pix_fmt yuv420p -movflags +faststart")
         # It ends when its input does: the thread that starts it may end long before the film.
         self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
         self._process = subprocess.Popen(

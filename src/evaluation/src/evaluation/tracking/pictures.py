@@ -6,14 +6,13 @@ import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 from ai_robot_tracking.scenes.scene import HALF_ROOM, HIDDEN_TIME, SHADE_RADIUS, Scene
 from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.colours import BAD, CAR, FAINT, GOOD, HIDDEN
 from evaluation.lap import Sample
-from evaluation.picture import below, draw_arrow, legend, map_sheet, pixels
+from evaluation.picture import below, draw_arrow, legend, map_sheet, pixels, write_png
 from evaluation.plan import Plan
 from evaluation.session.film import CameraFilm, side_by_side
 from evaluation.tracking.score import BAND, Task, TrackScorer
@@ -93,7 +92,7 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
     draw_arrow(axes, (last.x, last.y, last.yaw), 0.4, FOLLOWER)
     legend(axes)
     _draw_curve(below(figure, CURVE), drive)
-    cv2.imwrite(str(path), pixels(figure))
+    write_png(path, pixels(figure))
 
 
 def _draw_runs(axes: object, x: np.ndarray, y: np.ndarray, drive: TrackScorer) -> None:

@@ -61,7 +61,7 @@ def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
             [sys.executable, "-P", "-m", "evaluation.trial.case_process", folder],
             env={**os.environ, "ROS_HOSTNAME": "localhost"}, stdin=subprocess.DEVNULL,
             stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
-            preexec_fn=end_with_parent)
+            preexec_fn=end_with_parent(os.getpid()))
     ended = os.pidfd_open(process.pid)
     try:
         while not select.select([ended], [], [], LOOK_PERIOD)[0]:

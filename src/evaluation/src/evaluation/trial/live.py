@@ -147,9 +147,13 @@ def run_live(drive: LiveDrive) -> int:
             drive.end()
     except KeyboardInterrupt as ended:  # while all ended: what was seen is reported
         early = ended
-    found = _report(drive, outcome, launched.log_folder) if drive.was_seen else None
-    with interruptible():
-        _finish_film(drive, found)
+    found = None
+    try:
+        if drive.was_seen:
+            found = _report(drive, outcome, launched.log_folder)
+    finally:
+        with interruptible():
+            _finish_film(drive, found)
     if early is not None:
         raise early
     faults = drive.faults(outcome)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Callable
 
@@ -24,7 +25,9 @@ def run_program(name: str, work: Callable[[], int]) -> int:
                                 "or give one with --out") if refused.filename else refused)
         return NOT_RUN
     except (RunError, TrackError, WorldError, OSError) as failure:
-        complain(name, failure)
+        full = isinstance(failure, OSError) and failure.errno == errno.ENOSPC
+        complain(name, RunError(f"no space left for {failure.filename or 'what is written'}: make "
+                                "room, or give a folder elsewhere with --out") if full else failure)
         return NOT_RUN
     except KeyboardInterrupt:
         print(f"{name}: interrupted; all processes ended", file=sys.stderr)

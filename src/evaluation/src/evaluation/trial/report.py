@@ -9,14 +9,14 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from run_session.files import write_whole
+
 PAGE = "report.html"
 
 
 def write_json(values: dict, path: Path) -> None:
-    """Written beside it first, so that a run that is killed leaves the last report whole."""
-    half = path.with_suffix(".tmp")
-    half.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-    half.replace(path)
+    """OSError names the file; the one of before is then still whole."""
+    write_whole(path, (json.dumps(values, indent=1) + "\n").encode())
 
 
 def write_page(out: Path, title: str, table: str, lines: Sequence[str],
@@ -28,7 +28,7 @@ def write_page(out: Path, title: str, table: str, lines: Sequence[str],
             "</title><style>body{font-family:sans-serif}img{max-width:100%}</style></head><body>\n"
             f"<h1>{escape(title)}</h1>\n<pre>{escape(table)}</pre>\n{shown}"
             f"<pre>{escape(chr(10).join(lines))}</pre>\n</body></html>\n")
-    (out / PAGE).write_text(text, encoding="utf-8")
+    write_whole(out / PAGE, text.encode())
     return PAGE
 
 

@@ -1,6 +1,7 @@
 """The state log: what a judge believes instead of topics."""
 
 import json
+from pathlib import Path
 
 import pytest
 from gazebo_msgs.msg import ModelState
@@ -55,3 +56,12 @@ def test_a_plugin_s_service_is_a_call_too(logged):
     bench.call("/turn/calibrate")
     bench.run(0.01)
     assert {"call": "/turn/calibrate", "caller": ""} in lines()
+
+
+def test_a_full_disk_ends_the_simulation_with_one_line(bench, caplog):
+    StateLog(bench.simulation, Path("/dev/full"))
+    bench.spawn(BOX.replace("NAME", "box"))
+    bench.call("/gazebo/get_model_state", model_name="box")
+    bench.run(0.2)
+    assert caplog.text.count("/dev/full: No space left on device: the simulation ends") == 1
+    assert bench.simulation._stopped()

@@ -20,9 +20,9 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_diff_drive.so")
 class DiffDrivePlugin:
-    """Publishes first, then moves the wheels; there is no command time-out.
+    """Publishes first, then moves the wheels.
 
-    gazebo_ros_diff_drive.cpp, UpdateChild.
+    gazebo_ros_diff_drive.cpp, UpdateChild. `commandTimeout` is ours: upstream's has no time-out.
     """
 
     def __init__(self, context: PluginContext):
@@ -39,7 +39,8 @@ class DiffDrivePlugin:
         self._drive = DiffDrive(*driven, geometry)
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
-        self._updated = context.world.time
+        self._updated = self._commanded = context.world.time
+        self._timeout = p.number("commandTimeout", 0.0)  # s; 0: never
         self._publish_tf = p.flag("publishTf", True)
         odom_tf = p.flag("publishOdomTF", True)
         self._publish_wheel_tf = p.flag("publishWheelTF", False)
@@ -79,6 +80,7 @@ class DiffDrivePlugin:
         return right, left
 
     def _command(self, msg: Twist) -> None:
+        self._commanded = self._context.world.time
         self._drive.command(msg.linear.x, msg.angular.z)
 
     def _update(self) -> None:
@@ -93,10 +95,12 @@ class DiffDrivePlugin:
             self._output.publish(reading, [
                 wheel_transform(model, joint, reading.time, self._prefix, joint.description.child)
                 for joint in wheels])
+        if 0 < self._timeout < world.time - self._commanded:
+            self._drive.command(0.0, 0.0)
         self._drive.update(world.time - self._updated)
         self._updated = world.time
 
     def _restart(self) -> None:
         self._drive.stop()
         self._odometry_source.restart()
-        self._updated = self._context.world.time
+        self._updated = self._commanded = self._context.world.time

@@ -49,6 +49,19 @@ def test_it_drives_as_told_for_ever_and_tells_where_the_model_is(bench, robot, c
     assert right == pytest.approx((0.3 + 0.5 * 0.2) / 0.1, rel=0.02)
 
 
+def test_a_command_grows_old_where_it_is_asked_to(bench, robot, command):
+    # conforms: libgazebo_ros_diff_drive.so/commandTimeout
+    car = bench.spawn(robot(commandTimeout=0.4))
+    bench.send("/cmd_vel", command(0.3))
+    bench.run(0.39)
+    assert car.joints["left_joint"].velocity == pytest.approx(3.0, rel=0.02)
+    bench.run(0.2)
+    assert car.joints["left_joint"].velocity == pytest.approx(0.0, abs=0.02)
+    bench.send("/cmd_vel", command(0.3))
+    bench.run(0.2)
+    assert car.joints["left_joint"].velocity == pytest.approx(3.0, rel=0.02)
+
+
 def test_frames_rate_stamps_and_covariances(bench, robot):
     # conforms: libgazebo_ros_diff_drive.so/updateRate, libgazebo_ros_diff_drive.so/odometryFrame
     # conforms: libgazebo_ros_diff_drive.so/robotBaseFrame

@@ -1,0 +1,51 @@
+"""What must hold after a round."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+
+COMPLAINT = "course_run: "
+NO_ENDING = ("course_run: no film", )  # what a run says and goes on
+
+
+def wrong_words(said: str, code: int | None) -> Iterator[str]:
+    """One who ends early does it with one line."""
+    if "Traceback" in said:
+        yield "the judge prints a traceback"
+    lines = [line for line in said.splitlines() if line.startswith(COMPLAINT)
+             and not line.startswith(NO_ENDING)]
+    if code == 2 and len(lines) != 1:
+        yield f"the judge ends with {len(lines)} lines"
+
+
+def wrong_logs(folder: Path) -> Iterator[str]:
+    """Nor does anybody else print a traceback; Python does at a Ctrl-C while modules load."""
+    for path in sorted(folder.glob("*.log")):
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if text.count("Traceback (most recent") > text.count("KeyboardInterrupt"):
+            yield f"a traceback in {path.name}"
+
+
+def half_files(folder: Path) -> Iterator[str]:
+    """Results that are not whole."""
+    for path in sorted(folder.rglob("*")):
+        if path.parent.name != "log" and path.is_file() and not _is_whole(path):
+            yield f"{path.name} is not whole"
+
+
+def _is_whole(path: Path) -> bool:
+    if path.suffix == ".json":
+        try:
+            json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            return False
+    elif path.suffix == ".png":
+        return path.read_bytes().endswith(b"IEND\xaeB`\x82")
+    elif path.suffix == ".mp4":
+        film = cv2.VideoCapture(str(path))
+        return film.read()[0]
+    return path.suffix != ".tmp"

@@ -1,0 +1,49 @@
+"""All processes of a round, whoever has started them: they carry its mark."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import signal
+import time
+from pathlib import Path
+
+MARK = "CHAOS_ROUND"  # environment variable
+POLL = 0.05  # s
+
+
+def members(mark: str) -> dict[int, str]:
+    """Command lines by process id, of those that live."""
+    needle, found = f"{MARK}={mark}".encode(), {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # gone by now, or another user's
+            if needle in (folder / "environ").read_bytes().split(b"\0"):
+                words = (folder / "cmdline").read_bytes().rstrip(b"\0").split(b"\0")
+                found[int(folder.name)] = b" ".join(words).decode(errors="replace")
+    return found
+
+
+def matching(mark: str, pattern: str) -> list[int]:
+    """Ids of those whose command line has this regular expression."""
+    return [pid for pid, line in members(mark).items() if re.search(pattern, line)]
+
+
+def send(pids: list[int], number: signal.Signals) -> None:
+    """A signal to those that still live."""
+    for pid in pids:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, number)
+
+
+def end_left_over(mark: str, grace: float) -> list[str]:
+    """Command lines of what lives `grace` s, wall, on; none of it does afterwards."""
+    until = time.monotonic() + grace
+    while (left := members(mark)) and time.monotonic() < until:
+        time.sleep(POLL)
+    lines = list(left.values())
+    while left:
+        send(list(left), signal.SIGKILL)
+        time.sleep(POLL)
+        left = members(mark)
+    return lines

@@ -1,0 +1,159 @@
+"""One round: a drive, a fault at a random moment, and what is wrong afterwards."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+
+from checks import half_files, wrong_logs, wrong_words
+from clock import clock_environment
+from course import Course
+from drive import DURATION, Drive
+from faults import CLOCK, Fault, empty_disk, faults_of
+from members import POLL
+from states import STOP_TIME, drives_on
+
+START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a machine with other work
+GRACE = 60.0  # s, wall, on such a machine
+LONGEST_STOP = 3.0  # s, wall
+DISK = "size=24m"
+RESULTS = "results"  # in the folder of a round that failed
+WATCHED = STOP_TIME + 0.3  # s, simulated, for which a car without a driver is looked at
+WATCH_LIMIT = 100.0  # s, wall, for that: in lockstep the world waits a second for each image
+
+
+@dataclass(frozen=True)
+class Round:
+    """What a seed stands for."""
+
+    course: Course
+    seed: int
+    fault: Fault
+    fast: bool
+    film: bool
+    starting: bool  # it happens before the car drives
+    delay: float  # s, wall
+
+    @property
+    def title(self) -> str:
+        """For the table."""
+        return f"{self.fault.name}{' while starting' if self.starting else ''}"
+
+
+def drawn(course: Course, seed: int, only: str = "") -> Round:
+    """The round of this seed; of those faults whose name begins so."""
+    rng = Random(f"{course.name}/{seed}")
+    choice = [each for each in faults_of(course.drivers) if each.name.startswith(only)]
+    fault = rng.choice(choice)
+    encoder = fault.victim == "encoder"
+    return Round(course, seed, fault, rng.random() < 0.4, encoder or rng.random() < 0.5,
+                 not encoder and rng.random() < 0.3, rng.uniform(0.0, 2.5))
+
+
+class Play:
+    """Plays a round in a folder; `results` is that of rounds before, too."""
+
+    def __init__(self, played: Round, folder: Path, results: Path):
+        self._round, self._folder, self._results = played, folder, results
+        self._rng = Random(f"{played.course.name}/{played.seed}/act")
+
+    @property
+    def _without_driver(self) -> bool:
+        """Whether the car is to stand meanwhile."""
+        played = self._round
+        return played.fault.victim in played.course.drivers and not played.starting
+
+    def faults(self) -> list[str]:
+        """What is wrong, one line each."""
+        played = self._round
+        self._folder.mkdir(parents=True)
+        self._results.mkdir(parents=True, exist_ok=True)
+        if played.fault.on_tmpfs:
+            _mount(self._results)
+        try:
+            return list(dict.fromkeys(self._play()))
+        finally:
+            if played.fault.on_tmpfs:
+                shutil.copytree(self._results, self._folder / RESULTS)
+                subprocess.run(["umount", "--lazy", str(self._results)], check=True)
+
+    def _play(self) -> Iterator[str]:
+        played = self._round
+        clock = clock_environment(self._folder) if played.fault.name == CLOCK else {}
+        drive = Drive(played.course, self._folder, self._results, played.fast, played.film, clock)
+        try:
+            if not self._wait_for_moment(drive):
+                yield f"never came so far: {_last_line(drive)}"
+                return
+            since, until = self._act(drive)
+            code = drive.wait(END_LIMIT)
+            if code is None:
+                yield f"the judge has not ended within {END_LIMIT:g} s"
+        finally:
+            left = drive.close(GRACE)
+            empty_disk(self._results)
+        yield from (f"left behind: {line[:100]}" for line in left)
+        if code is not None and code not in self._codes(since):
+            yield f"the judge ended with {code}: {_last_line(drive)}"
+        yield from wrong_words(drive.log.read_text(encoding="utf-8", errors="replace"), code)
+        yield from wrong_logs(self._results / "log")
+        yield from half_files(self._results)
+        if self._without_driver and (late := drives_on(drive.places(), since, until)):
+            yield late
+
+    def _wait_for_moment(self, drive: Drive) -> bool:
+        played = self._round
+        if played.starting:
+            there = drive.wait_for(
+                lambda: not played.fault.victim or drive.pids(played.fault.victim), START_LIMIT)
+        else:
+            there = drive.wait_for(drive.moves, START_LIMIT)
+        if there:
+            time.sleep(played.delay)  # a random moment: nothing is waited for
+        return there
+
+    def _act(self, drive: Drive) -> tuple[float, float]:
+        """From when until when, s, simulated, it lasted."""
+        fault = self._round.fault
+        fault.begin(drive, self._rng)
+        since = _now(drive)
+        if fault.end is None:
+            return since, math.inf
+        try:
+            time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+            if self._without_driver:
+                _wait(lambda: _now(drive) > since + WATCHED, WATCH_LIMIT)
+            return since, _now(drive)
+        finally:
+            fault.end(drive)
+
+    def _codes(self, since: float) -> tuple[int, ...]:
+        """Near its end it may have ended before."""
+        late = since > DURATION / 2
+        return (*self._round.fault.codes, 0, 1) if late else self._round.fault.codes
+
+
+def _wait(condition: Callable[[], bool], limit: float) -> None:
+    until = time.monotonic() + limit
+    while not condition() and time.monotonic() < until:
+        time.sleep(POLL)
+
+
+def _now(drive: Drive) -> float:
+    seen = drive.places()
+    return seen[-1][0] if seen else 0.0
+
+
+def _last_line(drive: Drive) -> str:
+    lines = drive.log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    return lines[-1][:300] if lines else "it said nothing"
+
+
+def _mount(folder: Path) -> None:
+    subprocess.run(["mount", "-t", "tmpfs", "-o", DISK, "tmpfs", str(folder)], check=True)

@@ -1,0 +1,120 @@
+"""What `make chaos` looks at, and what its command refuses; its rounds take minutes each."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.processes
+CHAOS = Path(__file__).parent / "chaos"
+TELLS_TIME = """
+import sys, time
+for _ in sys.stdin:
+    print(time.time(), time.monotonic(), flush=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def chaos():
+    """The modules of chaos/, which find each other by name."""
+    sys.path.insert(0, str(CHAOS))
+    try:
+        import checks
+        import clock
+        import course
+        import members
+        import rounds
+        import states
+    finally:
+        sys.path.remove(str(CHAOS))
+    return {"checks": checks, "clock": clock, "course": course, "members": members,
+            "rounds": rounds, "states": states}
+
+
+def test_half_a_file_is_noticed(chaos, tmp_path):
+    picture = cv2.imencode(".png", np.zeros((50, 50, 3), np.uint8))[1].tobytes()
+    for name, content in (("path.png", picture), ("report.json", b"{}\n"), ("log/a.tmp", b"")):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    assert list(chaos["checks"].half_files(tmp_path)) == []
+    for name, content in (("path.png", picture[:-4]), ("report.json", b"{"), ("run.mp4", b"moov"),
+                          ("report.json.tmp", b"{}")):
+        (tmp_path / name).write_bytes(content)
+    assert list(chaos["checks"].half_files(tmp_path)) == [
+        f"{name} is not whole" for name in ("path.png", "report.json", "report.json.tmp",
+                                            "run.mp4")]
+
+
+@pytest.mark.parametrize("said, code, faults", [
+    ("course_run: the simulator died\n", 2, 0), ("", 2, 1), ("drives\n", 0, 0),
+    ("course_run: no film: ffmpeg\ncourse_run: died\n", 2, 0),
+    ("course_run: one\ncourse_run: two\n", 2, 1), ("Traceback (most recent call last)\n", 1, 1)])
+def test_who_ends_early_says_one_line(chaos, said, code, faults):
+    assert len(list(chaos["checks"].wrong_words(said, code))) == faults
+
+
+@pytest.mark.parametrize("stop, until, fault", [
+    (0.6, 9.0, False), (0.8, 9.0, True), (9.0, 9.0, True), (9.0, 0.6, False)])
+def test_a_car_that_drives_on_is_noticed(chaos, tmp_path, stop, until, fault):
+    """Its driver is gone at 1 s; it stands `stop` s later, the simulation ends `until` s later."""
+    times = np.arange(0.0, 1.0 + min(until, 9.0), 0.04)
+    lines = [json.dumps({"time": now, "poses": {"car": [min(now, 1.0 + stop) * 0.2, 0, 0]}})
+             for now in times]
+    path = tmp_path / "states"
+    path.write_text("\n".join([*lines, '{"time": 3']), encoding="utf-8")
+    seen = chaos["states"].places(path, "car")
+    assert len(seen) == len(times)
+    assert (chaos["states"].drives_on(seen, 1.0, 9.9) is not None) == fault
+    assert chaos["states"].driven(seen) > 0.02
+
+
+@pytest.mark.parametrize("name", ["course", "race", "lane_empty"])
+def test_a_seed_is_a_round_and_every_fault_has_one(chaos, name):
+    course, drawn = chaos["course"].COURSES[name], chaos["rounds"].drawn
+    rounds = [drawn(course, seed) for seed in range(1, 201)]
+    assert [each.title for each in rounds] == [drawn(course, seed).title for seed in range(1, 201)]
+    faults = chaos["rounds"].faults_of(course.drivers)
+    assert {each.fault.name for each in rounds} == {fault.name for fault in faults}
+
+
+def test_what_is_left_behind_is_named_and_ended(chaos, tmp_path):
+    members = chaos["members"]
+    left = subprocess.Popen(["sleep", "1000"], start_new_session=True,
+                            env={**os.environ, members.MARK: str(tmp_path)})
+    assert members.matching(str(tmp_path), "^sleep 1000$") in ([left.pid], [])  # not yet exec'd
+    assert members.end_left_over(str(tmp_path), 0.2) == ["sleep 1000"]
+    assert left.wait(10.0) == -9
+    assert members.end_left_over(str(tmp_path), 0.0) == []
+
+
+def test_the_clock_jumps_for_a_round_s_programs_alone(chaos, tmp_path):
+    environment = os.environ | chaos["clock"].clock_environment(tmp_path)
+    told = subprocess.Popen([sys.executable, "-c", TELLS_TIME], env=environment, text=True,
+                            stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    seen = []
+    for ahead in (0.0, -7200.5, 30.0):
+        chaos["clock"].set_clock(tmp_path, ahead)
+        told.stdin.write("\n")
+        told.stdin.flush()
+        wall, monotonic = map(float, told.stdout.readline().split())
+        seen.append((wall - time.time(), monotonic - time.monotonic()))
+    told.communicate()
+    assert [wall for wall, _ in seen] == pytest.approx([0.0, -7200.5, 30.0], abs=20.0)
+    assert [monotonic for _, monotonic in seen] == pytest.approx([0.0] * 3, abs=20.0)
+
+
+@pytest.mark.parametrize("words, said", [
+    (["--rounds", "0"], "'0' is not a whole number, 1 or more"),
+    (["--seed", "x"], "'x' is not a whole number"),
+    (["--course", "moon"], "no course 'moon'; there are: course, race, lane_empty"),
+    (["--only", "flood"], "no fault begins with 'flood' (ONLY=); there are: kill follower, ")])
+def test_a_mistake_is_one_line(words, said):
+    done = subprocess.run([sys.executable, CHAOS / "chaos.py", *words], capture_output=True,
+                          text=True, timeout=120)
+    assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1
