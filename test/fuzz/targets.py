@@ -1,8 +1,15 @@
 """All targets by name."""
 
+import bags
 import formats
 import maps
 import meshes
+import networks
+import nodes
+import page
+import pictures
+import simulator
 
-TARGETS = {target.name: target for family in (formats, meshes, maps)
+TARGETS = {target.name: target for family in (formats, meshes, maps, pictures, networks, bags,
+                                            page, simulator, nodes)
            for target in family.TARGETS}

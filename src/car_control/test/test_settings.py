@@ -57,7 +57,9 @@ def test_a_wrong_file_is_named_with_its_key(tmp_path, change, says):
 
 
 @pytest.mark.parametrize("text", ["", "- 1\n", "speed: [1\n", "example: 3\n",
-                                  "speed: 2026-13-45", "speed: !!timestamp x", "[" * 1000])
+                                  "speed: 2026-13-45", "speed: !!timestamp x",
+                                  "speed: !!int ''", "speed: !!bool x", "[" * 1000,
+                                  '{"a\\nb": 1}'])
 def test_a_file_that_is_no_table_is_one_line(tmp_path, text):
     for section in (None, "example"):
         with pytest.raises(SettingsError) as raised:

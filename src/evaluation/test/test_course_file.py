@@ -65,6 +65,13 @@ def test_a_file_that_is_no_text_or_not_there(tmp_path):
         load_course(str(tmp_path / "none.yaml"))
 
 
+@pytest.mark.parametrize("text", ["a: 2020-13-45", "a: !!int ''", "a: !!bool x", "[" * 1000])
+def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
+    (tmp_path / "mine.yaml").write_text(text)
+    with pytest.raises(RunError, match=r"mine\.yaml: no YAML: [^\n]{1,300}$"):
+        load_course(str(tmp_path / "mine.yaml"))
+
+
 def test_the_controllers_are_those_of_the_lockstep_topics():
     assert load_course("course").controller_names() == set()
     names = load_course("race").controller_names()

@@ -53,6 +53,13 @@ def test_a_file_that_is_no_table(tmp_path):
         read_exercises(file)
 
 
+@pytest.mark.parametrize("text", ["a: 2020-13-45", "a: !!int ''", "a: !!bool x", "[" * 1000])
+def test_what_the_yaml_parser_gives_up_on_is_one_line(tmp_path, text):
+    (tmp_path / "exercises.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(CannotCheck, match=r"exercises\.yaml: [^\n]{1,300}$"):
+        read_exercises(tmp_path / "exercises.yaml")
+
+
 def test_two_packages_with_one_name(tmp_path):
     folders = {name: tmp_path / name for name in ("one", "two")}
     for folder in folders.values():

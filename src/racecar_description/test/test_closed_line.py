@@ -133,7 +133,14 @@ def test_a_track_file_that_is_no_text_is_named(tmp_path):
         load_track(tmp_path / "picture.yaml")
 
 
-@pytest.mark.parametrize("text", ["[" * 3000, "name: 2020-13-45", "size: " + "9" * 5000])
+MERGES = "a: &a {x: 1}\n" + "".join(
+    f"{new}: &{new} {{<<: [{', '.join([f'*{old}'] * 9)}]}}\n"
+    for old, new in zip("abcdefghi", "bcdefghij"))
+
+
+@pytest.mark.parametrize("text", [
+    "[" * 3000, "name: 2020-13-45", "size: " + "9" * 5000, "size: !!int ''", "size: !!bool x",
+    MERGES])
 def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
     (tmp_path / "track.yaml").write_text(text)
     with pytest.raises(TrackError, match=r"track\.yaml: no YAML: ") as caught:

@@ -5,6 +5,7 @@ The YAML file has every default, once; the dataclass has types, bounds and meani
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import Field, field, fields
 from pathlib import Path
@@ -47,7 +48,7 @@ def load_settings(
     for where, table in ((place, values), ("the node's parameters", given or {})):
         for key, value in table.items():
             if key not in known:
-                raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+                raise SettingsError(f"{where}: unknown key {key!r:.80}; known: {', '.join(known)}")
             result[key] = checked(known[key], value, where)
     for key in known:
         if key not in values:
@@ -60,17 +61,17 @@ def load_settings(
 
 def checked(entry: Field, value: object, where: str) -> object:
     """The value as this field has it; SettingsError if it cannot."""
-    kind = _type_name(entry)
+    kind, given = _type_name(entry), reprlib.repr(value)[:80]
     if kind != "float":
         if type(value).__name__ != kind:
             wanted = {"bool": "true or false", "str": "a text"}[kind]
-            raise SettingsError(f"{where}: '{entry.name}' must be {wanted}, not {value!r}")
+            raise SettingsError(f"{where}: '{entry.name}' must be {wanted}, not {given}")
         return value
     low, high = entry.metadata["low"], entry.metadata["high"]
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (number and low <= value <= high):
         raise SettingsError(
-            f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {value!r}"
+            f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {given}"
         )
     return float(value)
 
@@ -90,9 +91,8 @@ def _read_table(path: Path, section: str | None, place: str) -> dict:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
-        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     if section is not None:
         values = values.get(section) if isinstance(values, dict) else None
     if not isinstance(values, dict):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import reprlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -71,8 +72,8 @@ def read_exercises(file: Path) -> dict[str, Exercise]:
     """Name -> exercise of one file; CannotCheck names file and key of what is wrong."""
     try:
         table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise CannotCheck(f"{file}: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise CannotCheck(f"{file}: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(table, dict):
         raise CannotCheck(f"{file}: must be a table of exercises, NAME: {{{', '.join(KEYS)}}}")
     return {name: _exercise(file, str(name), entry) for name, entry in table.items()}
@@ -83,19 +84,21 @@ def _exercise(file: Path, name: str, entry: Any) -> Exercise:
     _check_keys(place, entry, KEYS)
     for key in ("title", "start", "solution", "check"):
         if not isinstance(entry[key], str):
-            raise CannotCheck(f"{place}: {key}: must be a text, is {entry[key]!r}")
+            raise CannotCheck(f"{place}: {key}: must be a text, is"
+                              f" {reprlib.repr(entry[key])[:80]}")
     start, solution = (file.parent / entry[key] for key in ("start", "solution"))
     for key, path in (("start", start), ("solution", solution)):
         if not path.is_file():
             raise CannotCheck(f"{place}: {key}: no file {path}")
     if entry["check"] not in CHECKS:
-        raise CannotCheck(f"{place}: check: no check {entry['check']!r}; there are:"
+        raise CannotCheck(f"{place}: check: no check {entry['check']!r:.80}; there are:"
                           f" {', '.join(CHECKS)}")
     limits = entry["limits"]
     _check_keys(f"{place}: limits", limits, CHECKS[entry["check"]])
     for key, value in limits.items():
         if type(value) not in (int, float) or not math.isfinite(value):
-            raise CannotCheck(f"{place}: limits: {key}: must be a number, is {value!r}")
+            raise CannotCheck(f"{place}: limits: {key}: must be a number, is"
+                              f" {reprlib.repr(value)[:80]}")
     return Exercise(file, name, entry["title"], start, solution, entry["check"], limits)
 
 
@@ -104,7 +107,7 @@ def _check_keys(place: str, table: Any, expected: tuple[str, ...]) -> None:
     for key in [*given, *expected]:
         if key not in expected or key not in given:
             which = "missing" if key in expected else "unknown"
-            raise CannotCheck(f"{place}: {which} key {key!r}; there are: {', '.join(expected)}")
+            raise CannotCheck(f"{place}: {which} key {key!r:.80}; there are: {', '.join(expected)}")
 
 
 @functools.cache

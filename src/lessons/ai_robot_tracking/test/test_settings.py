@@ -64,7 +64,7 @@ def test_parameters_win_and_are_checked():
 
 
 @pytest.mark.parametrize("text", ["", "visual_tracker_pid: 3", "[1, 2", "\x00", "a: 2026-13-45",
-                                  "a: !!timestamp x", "[" * 1000])
+                                  "a: !!timestamp x", "a: !!int ''", "a: !!bool x", "[" * 1000])
 def test_no_table(tmp_path, text):
     path = tmp_path / "mine.yaml"
     path.write_text(text, encoding="utf-8")

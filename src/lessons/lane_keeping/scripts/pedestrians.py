@@ -7,6 +7,7 @@ step out, and do not step out close before a car that drives.
 """
 
 import math
+import reprlib
 import sys
 import threading
 from pathlib import Path
@@ -84,8 +85,7 @@ def read_crossings(path):
         length, _, kerb, far = numbers(values, MEASURES, "")
         return [Crossing(*numbers(zebra, PLACE, f"zebra {count}: "), length, kerb, far)
                 for count, zebra in enumerate(zebras, start=1)]
-    except (OSError, ValueError, TypeError, AttributeError, RecursionError,
-            yaml.YAMLError) as error:
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         raise SystemExit(f"pedestrians: {path}: {' '.join(str(error).split())}") from error
 
 
@@ -93,11 +93,11 @@ def numbers(table, keys, where):
     """The values of these keys as floats; ValueError if it has others, or one is no number."""
     wrong = sorted(set(table if isinstance(table, dict) else ()) ^ set(keys), key=str)
     if wrong:
-        raise ValueError(f"{where}key '{wrong[0]}' is missing or unknown")
+        raise ValueError(f"{where}key {wrong[0]!r:.80} is missing or unknown")
     for key in keys:
         value = table[key]
         if type(value) not in (int, float) or not -MOST < value < MOST:
-            raise ValueError(f"{where}'{key}' must be a number, not {value!r}")
+            raise ValueError(f"{where}'{key}' must be a number, not {reprlib.repr(value)[:80]}")
     return [float(table[key]) for key in keys]
 
 

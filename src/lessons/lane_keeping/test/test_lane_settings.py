@@ -71,7 +71,8 @@ def test_parameters_win():
         load_settings(FILES[0], {"gain": 3})
 
 
-@pytest.mark.parametrize("text", ["windows: 2026-13-45", "windows: !!timestamp x", "[" * 1000])
+@pytest.mark.parametrize("text", ["windows: 2026-13-45", "windows: !!timestamp x",
+                                  "windows: !!int ''", "windows: !!bool x", "[" * 1000])
 def test_what_yaml_itself_trips_over_is_one_line(tmp_path, text):
     path = tmp_path / "odd.yaml"
     path.write_text(text, encoding="utf-8")

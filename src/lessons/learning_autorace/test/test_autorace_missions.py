@@ -84,8 +84,22 @@ def test_a_wrong_number_of_the_calibration_is_named(tmp_path, change, said):
     with pytest.raises(CalibrationError, match="No such file"):
         load_calibration(tmp_path / "none.yaml")
     path.write_bytes("height: 高".encode("gbk"))
-    with pytest.raises(CalibrationError, match=r"camera.yaml: 'utf-8' codec"):
+    with pytest.raises(CalibrationError, match=r"camera.yaml: cannot be read: 'utf-8' codec"):
         load_calibration(path)
+
+
+@pytest.mark.parametrize("text", ["a: 2020-13-45", "a: !!int ''", "a: !!bool x", "[" * 1000])
+def test_what_the_yaml_parser_gives_up_on_is_one_line(tmp_path, text):
+    (tmp_path / "camera.yaml").write_text(text)
+    with pytest.raises(CalibrationError, match=r"camera\.yaml: cannot be read: [^\n]{1,300}$"):
+        load_calibration(tmp_path / "camera.yaml")
+
+
+def test_a_list_of_aliases_is_not_spelt_out(tmp_path):
+    bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))
+    (tmp_path / "camera.yaml").write_text(f"clip_percent: [{bomb}]")
+    with pytest.raises(CalibrationError, match="clip_percent must be a number, .{1,200}$"):
+        load_calibration(tmp_path / "camera.yaml")
 
 
 def test_a_camera_that_looks_elsewhere_sees_no_bar():

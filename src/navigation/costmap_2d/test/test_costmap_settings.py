@@ -97,6 +97,12 @@ def test_some_parameters_are_searched_upwards():
     assert found.values["width"] == 10.0
 
 
+@pytest.mark.parametrize("text", ["!!int ''", "!!bool x", "[" * 1000, "2020-13-45", "{a: 1}"])
+def test_a_footprint_that_yaml_cannot_read_is_one_line(text):
+    with pytest.raises(ParameterError, match=r"footprint is [^\n]{1,300}$"):
+        settings.footprint_of({"footprint": text}, WHERE)
+
+
 def test_an_unknown_layer_is_left_out_with_a_line():
     found = read({"plugins": [{"name": "sonar", "type": "range_sensor_layer::RangeSensorLayer"},
                               {"name": "i", "type": "costmap_2d::InflationLayer"}]})

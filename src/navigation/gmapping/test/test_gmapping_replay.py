@@ -94,12 +94,22 @@ def test_what_is_wrong_is_said_in_one_line(bag, capsys, arguments, text):
 
 
 @pytest.mark.parametrize("text, said", [
-    ("", "NAME: VALUE lines"), ("- particles", "NAME: VALUE lines"), ("a: [", "is no YAML")])
+    ("", "NAME: VALUE lines"), ("- particles", "NAME: VALUE lines"), ("a: [", "is no YAML"),
+    ("a: 2020-13-45", "is no YAML"), ("a: !!int ''", "is no YAML"), ("[" * 1000, "is no YAML")])
 def test_a_file_of_parameters_that_is_none(bag, capsys, tmp_path, text, said):
     (tmp_path / "slam.yaml").write_text(text)
     assert replay(bag, "none", "--params", str(tmp_path / "slam.yaml")) == 1
     line = capsys.readouterr().err
     assert said in line and "slam.yaml" in line and line.count("\n") == 1
+
+
+@pytest.mark.parametrize("text, said", [
+    ("1: 2", "no parameter 1"), ("delta: 1" + "0" * 400, "must be of type double")])
+def test_a_parameter_that_cannot_be(bag, capsys, tmp_path, text, said):
+    (tmp_path / "slam.yaml").write_text(text)
+    assert replay(bag, "none", "--params", str(tmp_path / "slam.yaml")) == 1
+    line = capsys.readouterr().err
+    assert said in line and line.count("\n") == 1
 
 
 def test_scans_of_no_use_are_counted_and_the_rest_is_mapped(tmp_path, capsys):

@@ -244,6 +244,21 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+@pytest.mark.parametrize("text", [
+    "a: !!int ''", "a: !!bool x", "a: &a {x: 1}\n" + "".join(
+        f"{new}: &{new} {{<<: [{', '.join([f'*{old}'] * 9)}]}}\n"
+        for old, new in zip("abcdefghi", "bcdefghij"))])
+def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
+    (tmp_path / "map.yaml").write_text(text)
+    with pytest.raises(MapMetadataError, match=r"map\.yaml: is no YAML: [^\n]{1,300}$"):
+        read_map(tmp_path / "map.yaml")
+
+
+def test_a_number_of_thousands_of_digits_is_not_spelt_out(tmp_path):
+    with pytest.raises(MapMetadataError, match="resolution is a number of thousands of digits"):
+        read_map(write(tmp_path, greys(GREYS), resolution="0x" + "f" * 5000))
+
+
 def test_a_list_of_aliases_is_named_and_not_spelt_out(tmp_path):
     bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))
     began = time.process_time()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -42,7 +43,8 @@ def load_record(kind: type, name: str, folder: Path) -> Any:
     for field in fields(kind):
         wanted, fits = RULES[field.type]
         if not fits(values[field.name]):
-            raise RunError(f"{path}: {field.name}: must be {wanted}, is {values[field.name]!r}")
+            raise RunError(f"{path}: {field.name}: must be {wanted}, is "
+                           f"{reprlib.repr(values[field.name])[:80]}")
     return kind(**{key: _frozen(value) for key, value in values.items()})
 
 
@@ -80,15 +82,15 @@ def read_keys(path: Path, expected: Sequence[str]) -> dict:
     """A YAML file that has exactly these keys; RunError names file and key."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except UnicodeDecodeError as error:
-        raise RunError(f"{path}: no text file") from error
     except OSError as error:
         raise RunError(f"{path}: {error.strerror}") from error
-    except yaml.YAMLError as error:
-        raise RunError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except UnicodeDecodeError as error:
+        raise RunError(f"{path}: no text file") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise RunError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(values, dict) or set(values) != set(expected):
         given = set(values) if isinstance(values, dict) else set()
         wrong = sorted(given - set(expected), key=str) or sorted(set(expected) - given)
         kind = "unknown" if given - set(expected) else "missing"
-        raise RunError(f"{path}: {kind} key {wrong[0]!r}; there are: {', '.join(expected)}")
+        raise RunError(f"{path}: {kind} key {wrong[0]!r:.80}; there are: {', '.join(expected)}")
     return values

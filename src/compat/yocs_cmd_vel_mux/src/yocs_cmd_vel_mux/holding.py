@@ -1,5 +1,6 @@
 """One of several inputs drives the robot until it times out or a higher priority publishes."""
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -63,7 +64,7 @@ def read_holding(file: object, where: str) -> Holding:
                                           float(entry["timeout"]), int(entry["priority"])))
         except KeyError as error:
             raise BadFile(f"{where}: subscribers[{i}] has no {error.args[0]}") from None
-        except (TypeError, ValueError):
-            raise BadFile(f"{where}: subscribers[{i}] is {entry!r}; it needs name, topic, and as "
-                          "numbers timeout and priority") from None
+        except (TypeError, ValueError, OverflowError):
+            raise BadFile(f"{where}: subscribers[{i}] is {reprlib.repr(entry)[:80]}; it needs "
+                          "name, topic, and as numbers timeout and priority") from None
     return Holding(subscribers, str(file.get("publisher", DEFAULT_OUTPUT)))

@@ -27,8 +27,8 @@ def read(file: Path) -> None:
     """CannotCheck where it is no YAML, Mistake where it lacks what controllers need."""
     try:
         table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
-        raise CannotCheck(f"{file}: no YAML: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise CannotCheck(f"{file}: no YAML: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
         raise Mistake(f"{file}: its first key must be `racecar`, with controllers below it")
     for name, entry in table["racecar"].items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import Field, field, fields
 from pathlib import Path
@@ -10,10 +11,6 @@ from typing import Any, TypeVar
 import yaml
 
 Settings = TypeVar("Settings")
-
-# What a text that is no YAML raises; a date of month 13 is a ValueError, `!!timestamp x` an
-# AttributeError.
-NO_YAML = (ValueError, AttributeError, RecursionError, yaml.YAMLError)
 
 
 class SettingsError(Exception):
@@ -53,7 +50,7 @@ def refuse_unknown(keys: Iterable[object], known: Collection[str], where: str | 
     """SettingsError for the first key that is not known."""
     for key in keys:
         if key not in known:
-            raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+            raise SettingsError(f"{where}: unknown key {key!r:.80}; known: {', '.join(known)}")
 
 
 def refuse_missing(known: Iterable[str], keys: Collection[object], where: str | Path) -> None:
@@ -72,7 +69,8 @@ def checked(entry: Field, value: object, what: str) -> float:
     fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
     if not (fits and low <= value <= high):
         wanted = "a whole number" if whole else "a number"
-        raise SettingsError(f"{what} must be {wanted} from {low:g} to {high:g}, not {value!r}")
+        raise SettingsError(f"{what} must be {wanted} from {low:g} to {high:g}, not "
+                            f"{reprlib.repr(value)[:80]}")
     return value if whole else float(value)
 
 
@@ -81,8 +79,8 @@ def _section(path: Path, section: str) -> dict:
         sections = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except NO_YAML as error:
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     values = sections.get(section) if isinstance(sections, dict) else None
     if not isinstance(values, dict):
         raise SettingsError(f"{path}: no section '{section}:' with lines of 'key: number' in it")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
 from pathlib import Path
@@ -101,7 +102,7 @@ def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -
     for where, table in ((str(path), values), ("the node's parameters", given or {})):
         for key, value in table.items():
             if key not in known:
-                raise SettingsError(f"{where}: unknown key '{key}'; known: {', '.join(known)}")
+                raise SettingsError(f"{where}: unknown key {key!r:.80}; known: {', '.join(known)}")
             result[key] = _checked(known[key], value, where)
     for key in known:
         if key not in values:
@@ -114,11 +115,11 @@ def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -
 
 def _checked(entry: Field, value: object, where: str) -> object:
     """The value as this field has it; SettingsError if it cannot."""
-    rule = entry.metadata
+    rule, given = entry.metadata, reprlib.repr(value)[:80]
     if "names" in rule:
         if value not in rule["names"]:
             raise SettingsError(
-                f"{where}: '{entry.name}' must be {rule['meaning']}, not {value!r}"
+                f"{where}: '{entry.name}' must be {rule['meaning']}, not {given}"
             )
         return value
     whole, low, high = rule.get("whole", False), rule["low"], rule["high"]
@@ -126,7 +127,7 @@ def _checked(entry: Field, value: object, where: str) -> object:
     if not (fits and low <= value <= high):
         kind = "whole number" if whole else "number"
         raise SettingsError(
-            f"{where}: '{entry.name}' must be a {kind} from {low:g} to {high:g}, not {value!r}"
+            f"{where}: '{entry.name}' must be a {kind} from {low:g} to {high:g}, not {given}"
         )
     return value if whole else float(value)
 
@@ -137,9 +138,8 @@ def read_table(path: Path) -> dict:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except (ValueError, AttributeError, RecursionError, yaml.YAMLError) as error:
-        # A date of month 13 is a ValueError, `!!timestamp x` an AttributeError.
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(values, dict):
         raise SettingsError(f"{path}: not a table of 'key: value' lines")
     return values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,8 +47,9 @@ def load_calibration(path: Path) -> Calibration:
     """The file's numbers; CalibrationError if it cannot be read or a number is missing or wild."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise CalibrationError(f"{path}: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise CalibrationError(f"{path}: cannot be read: {' '.join(str(error).split())[:200]}") \
+            from error
     found = _numbers(path, values, TOP_LIMITS)
     for part, limits in LIMITS.items():
         found |= _numbers(path, values.get(part), limits, f"{part}.")
@@ -60,7 +62,8 @@ def _numbers(path: Path, values: object, limits: dict, part: str = "") -> dict[s
         value = values.get(key) if isinstance(values, dict) else None
         if not isinstance(value, (int, float)) or not least <= value <= most:
             raise CalibrationError(
-                f"{path}: {part}{key} must be a number, {least:g} to {most:g}; got {value!r}")
+                f"{path}: {part}{key} must be a number, {least:g} to {most:g}; got "
+                f"{reprlib.repr(value)[:80]}")
         found[key] = float(value)
     return found
 

@@ -101,14 +101,14 @@ def footprint_of(values: Mapping[str, Any], where: str) -> np.ndarray | None:
     """
     try:
         corners = np.asarray(yaml.safe_load(values["footprint"]) or [], float)
-    except (yaml.YAMLError, ValueError, TypeError):
+    except Exception:  # PyYAML lets out KeyError, IndexError and more
         corners = np.zeros(1)
     if not corners.size:
         return None
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 \
             or not np.isfinite(corners).all():
-        raise ParameterError(f"{where}/footprint is {values['footprint']!r}, but must be three or "
-                             "more corners, such as [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]")
+        raise ParameterError(f"{where}/footprint is {values['footprint']!r:.80}, but must be three "
+                             "or more corners, such as [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]")
     return corners
 
 

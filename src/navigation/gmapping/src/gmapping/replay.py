@@ -104,7 +104,8 @@ def values_from(settings: list[str], seed: int | None, params: Path | None) -> d
         given["seed"] = seed
     strange = given.keys() - {entry.name for entry in table}
     if strange:
-        raise ParameterError(f"slam_gmapping has no parameter {', '.join(sorted(strange))}")
+        names = ", ".join(sorted(map(str, strange)))
+        raise ParameterError(f"slam_gmapping has no parameter {names}")
     for line in ignored(given, {"": table}):
         print(f"slam_gmapping_replay: a parameter without effect: {line}", file=sys.stderr)
     return {entry.name: entry.checked(given.get(entry.name, entry.default), entry.name)
@@ -115,8 +116,9 @@ def _yaml(text: str, where: str) -> Any:
     """Its value; raises ParameterError with the place that it comes from."""
     try:
         return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise ParameterError(f"{where} is no YAML: {' '.join(str(error).split())}") from None
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise ParameterError(f"{where:.500} is no YAML: "
+                             f"{' '.join(str(error).split())[:200]}") from None
 
 
 def write_trajectory(path: Path, stamps: np.ndarray, poses: np.ndarray) -> None:

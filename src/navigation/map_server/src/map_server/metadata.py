@@ -72,6 +72,13 @@ def read_metadata(path: Path) -> MapMetadata:
                        occupied, free, mode)
 
 
+class _Loader(yaml.SafeLoader):
+    """YAML without `<<`: ten lines of that can stand for a billion values."""
+
+    def flatten_mapping(self, node: yaml.Node) -> None:
+        """Leaves the key as it is, which SafeLoader then refuses."""
+
+
 def _load(path: Path) -> dict[str, Any]:
     try:
         content = read_file(path, LARGEST)
@@ -88,8 +95,8 @@ def _load(path: Path) -> dict[str, Any]:
         raise MapMetadataError(f"{path}: is no map's YAML file: it has more than {LARGEST} "
                                f"bytes")
     try:
-        found = yaml.safe_load(content)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        found = yaml.load(content, _Loader)
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         reason = " ".join(str(error).split())[:200]
         raise MapMetadataError(f"{path}: is no YAML: {reason}; write KEY: VALUE lines such as "
                                f"{EXAMPLES['resolution']}") from None
@@ -106,7 +113,10 @@ class _Keys:
 
     def wrong(self, key: str, what: str) -> MapMetadataError:
         """The error for a key's value."""
-        value = reprlib.repr(self.values[key])[:80]  # a YAML alias can repeat itself 10^9 times
+        try:  # a YAML alias can repeat itself 10^9 times
+            value = reprlib.repr(self.values[key])[:80]
+        except ValueError:  # Python spells no such number out
+            value = "a number of thousands of digits"
         return MapMetadataError(f"{self.path}: {key} is {value}, but {what}; write for example "
                                 f"{EXAMPLES[key]}")
 

@@ -10,6 +10,7 @@ upstream's), `ours` (true: upstream has none, and the default is what upstream d
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -46,19 +47,19 @@ class Parameter:
 
     def checked(self, value: Any, where: str) -> Any:
         """The value in this entry's type; raises ParameterError with `where` it was set."""
-        kind = KINDS[self.type]
-        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        kind, shown = KINDS[self.type], reprlib.repr(value)[:80]
+        if kind is float and type(value) is int and abs(value) < 1e300:
             value = float(value)
         if kind is int and isinstance(value, float) and value.is_integer():
             value = int(value)  # roscpp takes 20.0 for 20, too
         if kind is str and isinstance(value, list):  # [[0.1, 0.1], ...]: text to upstream
             value = yaml.safe_dump(value, default_flow_style=True, width=math.inf).strip()
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-            raise ParameterError(f"{where} is {value!r}, but must be of type {self.type}")
+            raise ParameterError(f"{where} is {shown}, but must be of type {self.type}")
         if kind in (int, float) and not self.min <= value <= self.max:
-            raise ParameterError(f"{where} is {value!r}, but must be {self._range()}")
+            raise ParameterError(f"{where} is {shown}, but must be {self._range()}")
         if self.choices and value not in self.choices:
-            raise ParameterError(f"{where} is {value!r}, but must be {' or '.join(self.choices)}")
+            raise ParameterError(f"{where} is {shown}, but must be {' or '.join(self.choices)}")
         return value
 
     def _range(self) -> str:

@@ -12,6 +12,8 @@ import yaml
 from racecar_description.track.centre_line import CentreLine, Corner
 from racecar_description.track.errors import TrackError
 
+MOST = 1e12  # m, of any number
+
 
 @dataclass(frozen=True)
 class TrackFile:
@@ -26,15 +28,22 @@ class TrackFile:
     corners: tuple[Corner, ...]  # of the line
 
 
+class _Loader(yaml.SafeLoader):
+    """YAML without `<<`: ten lines of that can stand for a billion values."""
+
+    def flatten_mapping(self, node: yaml.Node) -> None:
+        """Leaves the key as it is, which SafeLoader then refuses."""
+
+
 def load_track_file(path: str | Path) -> TrackFile:
     """Read and check a track file; each mistake is one TrackError that names file and key."""
     path = Path(path)
     try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+        values = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "no text file"
         raise TrackError(f"{path}: {reason}") from error
-    except (yaml.YAMLError, RecursionError, ValueError) as error:  # ValueError: month 13
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     try:
         return _track_file(values)
@@ -80,7 +89,10 @@ def _name(value: object) -> str:
 
 def _shown(value: object) -> str:
     """For a message; a list of YAML's aliases can be a billion times as long as its file."""
-    return reprlib.repr(value)[:80]
+    try:
+        return reprlib.repr(value)[:80]
+    except ValueError:  # Python spells no such number out
+        return "a number of thousands of digits"
 
 
 def _check_start(track: TrackFile, line: CentreLine) -> None:
@@ -115,7 +127,7 @@ def _check_keys(place: str, values: object, schema: type) -> None:
 
 
 def _number(place: str, value: object, positive: bool = False) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < MOST:
         raise TrackError(f"{place}: must be a number, is {_shown(value)}")
     if positive and value <= 0:
         raise TrackError(f"{place}: must be more than 0, is {_shown(value)}")

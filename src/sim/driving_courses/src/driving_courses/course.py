@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -73,13 +74,13 @@ def load_course(name: str | Path) -> Course:
     except OSError as error:
         known = ", ".join(sorted(found.stem for found in FOLDER.glob("*.yaml")))
         raise CourseError(f"{path}: {error.strerror}; there are: {known}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
-        raise CourseError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise CourseError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
     course = _fill(Course, values, str(path))
     for key, known in CHOICES.items():
         if getattr(course, key) not in known:
             raise CourseError(f"{path}: {key}: must be one of {', '.join(map(repr, known))},"
-                              f" is {getattr(course, key)!r}")
+                              f" is {getattr(course, key)!r:.80}")
     return course
 
 
@@ -89,14 +90,15 @@ def _fill(kind: type, values: Any, place: str) -> Any:
     given = set(values) if isinstance(values, dict) else set()
     for key in [*sorted(map(str, given - set(expected))), *(k for k in expected if k not in given)]:
         which = "unknown" if key in given else "missing"
-        raise CourseError(f"{place}: {which} key {key!r}; there are: {', '.join(expected)}")
+        raise CourseError(f"{place}: {which} key {key!r:.80}; there are: {', '.join(expected)}")
     found = {}
     for key, wanted in expected.items():
         value = values[key]
         if wanted == "FeatureSpec":
             found[key] = _fill(FeatureSpec, value, f"{place}: {key}")
         elif not _fits(value, wanted):
-            raise CourseError(f"{place}: {key}: must be {_WANTED[wanted]}, is {value!r}")
+            raise CourseError(f"{place}: {key}: must be {_WANTED[wanted]}, is "
+                              f"{reprlib.repr(value)[:80]}")
         else:
             found[key] = _frozen(value)
     return kind(**found)

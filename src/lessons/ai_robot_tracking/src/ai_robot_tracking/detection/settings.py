@@ -9,7 +9,6 @@ from pathlib import Path
 import yaml
 
 from ai_robot_tracking.settings import (
-    NO_YAML,
     SettingsError,
     checked,
     count,
@@ -51,6 +50,6 @@ def read_yaml(path: Path) -> object:
     """What the file holds; SettingsError if it is not there or no YAML."""
     try:
         return yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, *NO_YAML) as error:
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise SettingsError(f"{path}: cannot be read: {reason}") from None
