@@ -36,6 +36,14 @@ def test_check_urdf_takes_it(path, tmp_path):
     assert done.returncode == 0 and "Successfully Parsed XML" in done.stdout, done.stdout
 
 
+@pytest.mark.parametrize("path", sorted((PACKAGE / "launch").glob("*")), ids=lambda path: path.name)
+def test_without_a_screen_no_rviz_is_started(path):
+    done = subprocess.run(["env", "-u", "DISPLAY", "roslaunch", "--nodes", str(path)], text=True,
+                          capture_output=True, check=True)
+    nodes = done.stdout.split()
+    assert "/robot_state_publisher" in nodes and "/rviz" not in nodes
+
+
 def test_the_car_stands_on_the_ground():
     found = joints(CAR)
     assert found["left_wheel2base_link"][0] == found["right_wheel2base_link"][0] == "continuous"
