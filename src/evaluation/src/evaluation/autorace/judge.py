@@ -152,6 +152,5 @@ RULES: dict[str, Callable[[Sequence[Sample]], Found]] = {
     "parking": _parking,
     "bar": _waits_for("traffic_bar_up", "the bar", "bar",
                       lambda robot: robot.x < -1.5 and 0.1 < robot.y < BAR_Y),
-    "tunnel": _tunnel, "finish": _finish,
-}
+    "tunnel": _tunnel, "finish": _finish}
 MISSIONS = tuple(RULES)

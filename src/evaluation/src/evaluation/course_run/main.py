@@ -119,8 +119,7 @@ class CourseRun(CarDrive):
             # What was asked for that makes a run drive otherwise; None: as the launch file says.
             "fast": self.options.fast, "seed": self.options.seed,
             "camera_width_px": width, "camera_height_px": height,
-            **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {}),
-        }
+            **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {})}
 
     def write(self, report: dict) -> list[str]:
         picture = path_picture(self.track_file, self.drive, *_titles(self.driver, report))

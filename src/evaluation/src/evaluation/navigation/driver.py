@@ -87,8 +87,7 @@ class Driver:
             tuple(goal.tolist()), reached, text or sent.get_goal_status_text(),
             took, records.length - before,
             float(np.linalg.norm(goal[:2] - start[:2])), shortest,
-            float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))),
-        )
+            float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))))
 
     def tell_pose(self, pose: np.ndarray) -> None:
         """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""

@@ -64,8 +64,7 @@ def _table(ways: list[Way], speed: float) -> list[str]:
             str(number), f"{way.goal[0]:.2f}", f"{way.goal[1]:.2f}",
             "yes" if way.reached else way.text, f"{way.time:.1f}", f"{way.straight / speed:.1f}",
             f"{way.shortest / speed:.1f}", f"{way.driven:.2f}", f"{way.off * 100:.1f}",
-            f"{math.degrees(way.off_yaw):.1f}",
-        ))
+            f"{math.degrees(way.off_yaw):.1f}"))
     return table(rows, left=()).splitlines()
 
 

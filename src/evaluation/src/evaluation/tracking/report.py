@@ -29,8 +29,7 @@ def summarize(drive: TrackScorer, start: Start) -> dict:
         "hidden": [{"begin_s": round(each.begin, 2), "found_after_s": _rounded(each.found_after, 2)}
                    for each in drive.hidings],
         "least_gap_m": _rounded(drive.least_gap, 3),
-        "distance_m": round(drive.distance, 3),
-    }
+        "distance_m": round(drive.distance, 3)}
 
 
 def lines(report: dict) -> list[str]:

@@ -79,8 +79,7 @@ COLUMNS = {
     "most cm": lambda each: cell(each["max_error"], 100),
     "settled cm": lambda each: cell(each["max_error_settled"], 100),
     "found by s": lambda each: cell(each["longest_find"]),
-    "seeds not good": lambda each: ", ".join(map(str, each["failed_seeds"])) or "-",
-}
+    "seeds not good": lambda each: ", ".join(map(str, each["failed_seeds"])) or "-"}
 
 
 class TrackTrial(Trial):
@@ -122,8 +121,7 @@ class TrackTrial(Trial):
         self._drive = session.start_drive([
             sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
             "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
-            "--no-video", "--out", str(folder),
-        ], folder)
+            "--no-video", "--out", str(folder)], folder)
 
     def run(self) -> dict:
         """The drive's report."""
@@ -173,8 +171,7 @@ def _summary(kind: Set, drives: list[Drive]) -> dict:
         "longest_find": max(known("found_after_s", finds), default=None),
         "least_gap": min(known("least_gap_m"), default=None),
         "failed_seeds": [drive.report["seed"] for drive in drives if drive.good < kind.cases],
-        "passed": good >= kind.least_share * cases,
-    }
+        "passed": good >= kind.least_share * cases}
 
 
 def _read(path: Path) -> dict:

@@ -74,8 +74,7 @@ COLUMNS = {
     "BARN": lambda each: cell(each["mean_score"], 1, 3),
     "air cm": lambda each: cell(each["least_to_obstacles"], 100),
     "to person cm": lambda each: cell(each["least_to_person"], 100),
-    "with recovery": lambda each: str(each["drives_with_recovery"]),
-}
+    "with recovery": lambda each: str(each["drives_with_recovery"])}
 
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
@@ -99,5 +98,4 @@ def _summary(name: str, drives: list[Drive]) -> dict:
         "least_to_person": min(
             (d.to_person for d in there if d.to_person is not None), default=None),
         "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
-        "failed": [drive.name for drive in drives if not drive.reached],
-    }
+        "failed": [drive.name for drive in drives if not drive.reached]}

@@ -31,8 +31,7 @@ PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], f
     (YARDS, "yard", "least air, cm",
      lambda drive: drive.seed, lambda drive: (drive.to_obstacles or 0.0) * 100),
     (CROSSINGS, "crossing", "least air to the person, cm",
-     lambda drive: drive.seed, lambda drive: (drive.to_person or 0.0) * 100),
-)
+     lambda drive: drive.seed, lambda drive: (drive.to_person or 0.0) * 100))
 
 
 def write_chart(drives: Sequence[Drive], path: Path) -> None:

@@ -137,8 +137,7 @@ class Rig:
         motion = message.twist[message.name.index(WAFFLE)].linear
         self._samples.put(Sample(
             rospy.get_time(), place_of(places[WAFFLE]), math.hypot(motion.x, motion.y),
-            place_of(places[PERSON]) if PERSON in places else None,
-        ))
+            place_of(places[PERSON]) if PERSON in places else None))
 
     def _take_recovery(self, message: RecoveryStatus) -> None:
         self.recoveries.append(message.recovery_behavior_name)
