@@ -13,6 +13,7 @@ import pytest
 
 pytestmark = pytest.mark.processes
 CHAOS = Path(__file__).parent / "chaos"
+TRACEBACK = "Traceback (most recent call last):\n"
 TELLS_TIME = """
 import sys, time
 for _ in sys.stdin:
@@ -57,6 +58,14 @@ def test_half_a_file_is_noticed(chaos, tmp_path):
     ("course_run: one\ncourse_run: two\n", 2, 1), ("Traceback (most recent call last)\n", 1, 1)])
 def test_who_ends_early_says_one_line(chaos, said, code, faults):
     assert len(list(chaos["checks"].wrong_words(said, code))) == faults
+
+
+@pytest.mark.parametrize("said, faults", [
+    (f"{TRACEBACK}ValueError\n", 1), (f"{TRACEBACK}KeyboardInterrupt\n", 0),
+    (f"--- Logging error ---\n{TRACEBACK}OSError\n", 0), ("all is well\n", 0)])
+def test_a_traceback_in_a_log_is_noticed(chaos, tmp_path, said, faults):
+    (tmp_path / "roslaunch.log").write_text(said)
+    assert len(list(chaos["checks"].wrong_logs(tmp_path))) == faults
 
 
 @pytest.mark.parametrize("stop, until, fault", [

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from course import WATCHED, Course
-from members import MARK, POLL, end_left_over, matching, members
+from members import MARK, POLL, end_left_over, matching
 from states import Place, driven, places
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,10 +77,6 @@ class Drive:
             self.judge.kill()
             self.judge.wait()
         return end_left_over(self.mark, grace)
-
-    def living(self) -> int:
-        """How many processes."""
-        return len(members(self.mark))
 
     def _write_launch(self) -> None:
         package, file = self.course.launch

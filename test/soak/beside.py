@@ -1,4 +1,4 @@
-"""What people do beside a course: they look at its page, spawn and delete, and record a bag."""
+"""What people do beside a course: look at its page, spawn and delete, give goals, record a bag."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import rospy
+from geometry_msgs.msg import PoseStamped
 
 from run_session.launch import Launched
 from run_session.simulator import delete, spawn_urdf
@@ -19,6 +20,7 @@ SPAWN_PERIOD = 10.0  # s, wall, that a model stands or is away
 BAG = ["rosbag", "record", "--all", "--split", "--duration=60", "--max-splits=3",
        "--exclude=.*(image|points).*"]
 MODEL, PLACE = "visitor", (50.0, 50.0)  # m, where nothing else is
+GOALS, GOAL_PERIODS = ((1.5, -1.5), (-1.4, 1.4)), 6  # m in map; in turn, each after so many spawns
 BOX = """<robot name="visitor"><link name="box">
   <inertial>
     <mass value="1"/>
@@ -44,21 +46,28 @@ class Beside:
         for each in self._visitors:
             each.ask("watch", what="image", args={"topic": camera})
             each.ask("watch", what="poses")
-        self._stands, self._due = False, time.monotonic()
+        self._goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
+        self._count, self._due = 0, time.monotonic()
 
     def act(self) -> None:
-        """Throw away what the visitors were sent; spawn or delete where that is due."""
+        """Throw away what the visitors were sent; spawn, delete, give a goal where it is due."""
         time.sleep(0.2)
         for each in self._visitors:
             each.events.clear()
         if time.monotonic() < self._due:
             return
         self._due = time.monotonic() + SPAWN_PERIOD
-        if self._stands:
+        if self._count % 2:
             delete(MODEL)
         else:
             spawn_urdf(MODEL, BOX, "", *PLACE)
-        self._stands = not self._stands
+        if self._count % GOAL_PERIODS == 0:
+            goal = PoseStamped()
+            goal.header.frame_id, goal.pose.orientation.w = "map", 1.0
+            place = GOALS[self._count // GOAL_PERIODS % len(GOALS)]
+            goal.pose.position.x, goal.pose.position.y = place
+            self._goals.publish(goal)
+        self._count += 1
 
     def end(self) -> None:
         """The visitors go."""

@@ -31,10 +31,11 @@ from run_session.simulator import models
 ROOT = Path(__file__).resolve().parents[2]
 START_LIMIT = 300.0  # s, wall
 SIZE = ["camera_width:=320", "camera_height:=240"]
-COURSES = {  # the launch file's words, the robot
-    "course": (["learning_topic", "course_follow.launch", *SIZE], "turtlebot3_waffle"),
-    "race": (["racecar_description", "race.launch", *SIZE], "racecar"),
-    "navigation": (["nav_demo", "nav06_auto_slam.launch"], "turtlebot3_waffle"),
+COURSES = {  # the robot, and the words of each roslaunch
+    "course": ("turtlebot3_waffle", [["learning_topic", "course_follow.launch", *SIZE]]),
+    "race": ("racecar", [["racecar_description", "race.launch", *SIZE]]),
+    "navigation": ("mycar", [["urdf02_gazebo", "demo02_obstacles.launch"],
+                             ["nav_demo", "nav06_auto_slam.launch", "state_publishers:=false"]]),
 }
 
 
@@ -60,11 +61,12 @@ def main(words: Sequence[str] | None = None) -> int:
 
 def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
     """One sample a process every PERIOD s; an interruption keeps what there is."""
-    launch, robot = COURSES[options.course]
+    robot, launches = COURSES[options.course]
     launched = session.launched(robot)
     launched.start_roscore()
-    launched.start("roslaunch", ["roslaunch", *launch])
-    launched.wait_for(f"model {robot}", lambda: robot in models(), START_LIMIT)
+    for package, file, *arguments in launches:
+        launched.start(package, ["roslaunch", package, file, *arguments])
+        launched.wait_for(f"model {robot}", lambda: robot in models(), START_LIMIT)
     beside = Beside(launched, session.out / "log")
     session.at_end(beside.end)
     sampler, samples, until = Sampler(), [], time.monotonic() + options.hours * 3600

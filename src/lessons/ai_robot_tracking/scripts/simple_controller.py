@@ -14,6 +14,7 @@ from ai_robot_tracking.settings import number
 from geometry_msgs.msg import Twist
 
 RATE_HZ = 10
+PATIENCE = 1.0  # s, wall: a robot that is there has connected by then
 
 
 @dataclass(frozen=True)
@@ -59,8 +60,11 @@ def main():
     rospy.init_node("simple_controller")
     settings = read_settings(ControllerSettings, "simple_controller")
     controller = SimpleController()
+    patient_until = time.monotonic() + PATIENCE
     while controller.publisher.get_num_connections() == 0 and not rospy.is_shutdown():
-        rospy.logwarn_throttle(5, "nobody listens on %s yet", controller.publisher.resolved_name)
+        if time.monotonic() > patient_until:
+            rospy.logwarn_throttle(5, "nobody listens on %s yet",
+                                   controller.publisher.resolved_name)
         time.sleep(0.05)
     controller.forward(settings.speed, settings.duration)
     controller.rotate(settings.turn, settings.turn_duration)

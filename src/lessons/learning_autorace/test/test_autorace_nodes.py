@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from learning_autorace import node
 from learning_autorace.calibration import load_calibration
+from sensor_msgs.msg import LaserScan
 
 PACKAGE = Path(__file__).resolve().parent.parent
 SCRIPTS = sorted(PACKAGE.glob("scripts/0[2-7]*.py"))
@@ -23,6 +24,14 @@ def test_a_script_drives(script, monkeypatch):
     image, view = np.zeros((240, 320, 3), np.uint8), np.zeros((100, 160, 3), np.uint8)
     speed, turn = drive(node.Seen(0.0, image, view))
     assert speed > 0.0 and turn == 0.0
+
+
+def test_beams_that_meet_nothing_are_left_out_without_a_warning():
+    scan = LaserScan(angle_increment=np.pi / 2, range_min=0.1, range_max=3.5,
+                     ranges=[np.inf, 1.0, np.inf, 0.0])
+    with np.errstate(all="raise"):
+        points = node.laser_points(scan)
+    assert points == pytest.approx(np.array([[node.LASER_FORWARD, 1.0]]))
 
 
 def test_all_lessons_are_there_and_small():

@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.xacro.bounds import run_bounded
 from bullet_sim.formats.xacro.files import expand
 
 
@@ -91,3 +92,11 @@ def test_a_list_comprehension_reaches_no_system_call(value, tmp_path):
         value("${[c.__init__.__globals__['system']('touch " + str(made) + f"') for c in ().{REACH} "
               "if c.__name__ == '_wrap_close']}")
     assert not made.exists()
+
+
+def test_a_bounded_process_may_bound_another_after_it_has_grown():
+    def grow_and_bound() -> int:
+        grown = bytearray(1 << 26)
+        return run_bounded(lambda: len(grown) >> 24, "inner")
+
+    assert run_bounded(grow_and_bound, "outer") == 4

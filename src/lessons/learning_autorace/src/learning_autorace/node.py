@@ -46,7 +46,8 @@ def laser_points(scan: LaserScan) -> np.ndarray:
     ranges = np.array(scan.ranges)
     angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
     met = (ranges >= scan.range_min) & (ranges < scan.range_max)
-    return np.stack((LASER_FORWARD + ranges * np.cos(angles), ranges * np.sin(angles)), 1)[met]
+    ranges, angles = ranges[met], angles[met]
+    return np.stack((LASER_FORWARD + ranges * np.cos(angles), ranges * np.sin(angles)), 1)
 
 
 class Node:

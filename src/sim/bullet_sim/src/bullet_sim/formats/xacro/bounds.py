@@ -113,9 +113,16 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
 
 
 def limit_memory() -> None:
-    """Lets this process have MOST_BYTES on top of what it has from its parent."""
+    """Lets this process have MOST_BYTES on top of what it has from its parent.
+
+    In one that is limited already, as check's reader of launch files is, it takes what that leaves:
+    only root may raise a limit.
+    """
     held = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_DATA, (held + MOST_BYTES, held + MOST_BYTES))
+    most, given = held + MOST_BYTES, resource.getrlimit(resource.RLIMIT_DATA)[1]
+    if given != resource.RLIM_INFINITY:
+        most = min(most, given)
+    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
 
 
 def _what_took(long: float, file: str) -> str:
