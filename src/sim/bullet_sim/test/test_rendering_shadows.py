@@ -292,8 +292,11 @@ def test_the_same_scene_gives_the_same_bytes(renderer):
 def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):
     suns = [sun(name=f"sun{number}", level=0.1) for number in range(6)]
     with caplog.at_level(logging.WARNING, logger="bullet_sim"):
-        picture = renderer.draw(stage(*suns), from_above((0.65, 0.1, 4.0))).rgb
-    assert "more than 4 lights cast shadows; these do not: sun4, sun5" in caplog.text
+        scene = stage(*suns)
+        picture = renderer.draw(scene, from_above((0.65, 0.1, 4.0))).rgb
+        scene.change_light(suns[0])  # it stays the first
+        assert np.array_equal(renderer.draw(scene, from_above((0.65, 0.1, 4.0))).rgb, picture)
+    assert caplog.messages == ["more than 4 lights cast shadows; these do not: sun4, sun5"]
     slope = 1 / np.linalg.norm((0.5, 0.2, 1.0))
     np.testing.assert_allclose(picture[240, 320], 255 * 0.2 * slope, atol=1)
 

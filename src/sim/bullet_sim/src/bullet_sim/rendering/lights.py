@@ -3,6 +3,7 @@
 import logging
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,6 +18,12 @@ _KINDS = {"directional": DIRECTIONAL, "point": POINT, "spot": SPOT}
 EYE_OFFSET = 16  # bytes, of the camera's position in the block
 
 
+@lru_cache(maxsize=64)
+def warn_once(text: str) -> None:
+    """Log it; not again whenever a light changes."""
+    log.warning("%s", text)
+
+
 def lights_block(scene: SceneState, casting: Sequence[LightDescription] = ()) -> bytes:
     """All but the camera's position; lights beyond the eighth are left out.
 
@@ -25,7 +32,7 @@ def lights_block(scene: SceneState, casting: Sequence[LightDescription] = ()) ->
     lights = list(scene.lights.values())
     if len(lights) > MAX_LIGHTS:
         left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])
-        log.warning("more than %d lights; left out: %s", MAX_LIGHTS, left_out)
+        warn_once(f"more than {MAX_LIGHTS} lights; left out: {left_out}")
     block = np.zeros((3 + 6 * MAX_LIGHTS, 4), np.float32)
     block[0] = scene.description.ambient
     block[2].view(np.int32)[0] = min(len(lights), MAX_LIGHTS)

@@ -115,8 +115,10 @@ class Scene(SceneState):
 
     def change_light(self, light: LightDescription) -> None:
         """Give the light of that name other properties; UnknownName without one."""
-        self.remove_light(light.name)
-        self.lights[light.name] = light
+        if light.name not in self.lights:
+            raise UnknownName("light", light.name, self.lights)
+        self.lights[light.name] = light  # in its old place: of too many the last are left out
+        self.version = next(_versions)
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
         """Visuals whose mesh cannot be read are left out, with one warning each.

@@ -7,7 +7,6 @@ edges of shadows are smoothed over two texels.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,14 +15,13 @@ import numpy as np
 
 from bullet_sim.description import LightDescription
 from bullet_sim.rendering.gpu_surfaces import SHADOWS_BINDING, SHADOWS_UNIT, Surface
+from bullet_sim.rendering.lights import warn_once
 from bullet_sim.rendering.own_memory import own_blocks
 from bullet_sim.rendering.rectangles import NOWHERE, is_empty
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shaders import MAX_LIGHTS, shader
 from bullet_sim.rendering.shadow_reach import Beam, Boxes, Cone
 from bullet_sim.rendering.visibility import box_corners
-
-log = logging.getLogger(__name__)
 
 MAX_SHADOWS = 4
 _GROUND = 20.0  # m; a wider plane shades what is in a map, which is not widened for it
@@ -38,7 +36,7 @@ def casting_lights(scene: SceneState) -> list[LightDescription]:
     casting = [light for light in list(scene.lights.values())[:MAX_LIGHTS] if _casts(light)]
     if len(casting) > MAX_SHADOWS:
         left_out = ", ".join(light.name for light in casting[MAX_SHADOWS:])
-        log.warning("more than %d lights cast shadows; these do not: %s", MAX_SHADOWS, left_out)
+        warn_once(f"more than {MAX_SHADOWS} lights cast shadows; these do not: {left_out}")
     return casting[:MAX_SHADOWS]
 
 
