@@ -98,7 +98,7 @@ def test_what_the_yaml_parser_gives_up_on_is_one_line(tmp_path, text):
 def test_a_list_of_aliases_is_not_spelt_out(tmp_path):
     bomb = ", ".join(f"&b{n} [{', '.join([f'*b{n - 1}' if n else 'a'] * 10)}]" for n in range(9))
     (tmp_path / "camera.yaml").write_text(f"clip_percent: [{bomb}]")
-    with pytest.raises(CalibrationError, match="clip_percent must be a number, .{1,200}$"):
+    with pytest.raises(CalibrationError, match=r"clip_percent must be a number, .{1,200}$"):
         load_calibration(tmp_path / "camera.yaml")
 
 
