@@ -2,14 +2,12 @@
 
 import bags
 import formats
+import forms
 import maps
 import meshes
 import networks
-import nodes
-import page
 import pictures
-import simulator
 
-TARGETS = {target.name: target for family in (formats, meshes, maps, pictures, networks, bags,
-                                            page, simulator, nodes)
+TARGETS = {target.name: target
+           for family in (formats, meshes, maps, pictures, networks, bags, forms)
            for target in family.TARGETS}

@@ -72,6 +72,7 @@ def test_what_is_unknown_becomes_an_entry_and_a_wrong_value_a_warning():
      "line 1: this is no YAML: an alias (*name)"),
     ("Visualization Manager: {Displays: [&a {Class: rviz/Grid, Offset: *a}]}", "an alias (*name)"),
     ("Date: 2001-13-01", "this is no YAML: month must be in 1..12"),
+    ("a: !!int ''", "this is no YAML"), ("a: !!bool x", "this is no YAML"),
     ("a" * (1 << 20) + "b", "is larger than 1048576 bytes"),
     ("\0", "this is no YAML"), (b"\xff\xfe\x80", "is no text"),
     ("Visualization Manager: {Displays: [" + "{Class: rviz/Grid}," * 51 + "]}", "51 displays"),

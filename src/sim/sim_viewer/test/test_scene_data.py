@@ -8,6 +8,7 @@ import types
 import cv2
 import numpy as np
 import pytest
+from aiohttp import web
 from gazebo_msgs.msg import LinkStates
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
 from sim_viewer.context import Node
@@ -88,6 +89,13 @@ def test_textures_that_browsers_cannot_read_become_png(tmp_path):
     answer = fetch(content(box(texture=str(path))), "texture")
     assert answer.content_type == "image/png"
     assert tuple(cv2.imdecode(np.frombuffer(answer.body, np.uint8), 1)[0, 0]) == (0, 0, 255)
+
+
+def test_a_texture_of_a_stranger_s_size_is_not_unpacked(tmp_path):
+    path = tmp_path / "huge.ppm"
+    path.write_bytes(b"P6\n2000000 1000\n255\n" + bytes(100))
+    with pytest.raises(web.HTTPNotFound):
+        fetch(content(box(texture=str(path))), "texture")
 
 
 def fetch(scene, what):

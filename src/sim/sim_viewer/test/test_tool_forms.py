@@ -39,6 +39,10 @@ def test_a_filled_in_template_is_the_message():
     (SetModelStateRequest, "model_state: {pose: {position: 3}}", "model_state.pose.position is 3"),
     (SetModelStateRequest, "model_state: {pose: {position: {x: {}}}}", "position.x is {}"),
     (Header, "stamp: soon", "stamp is 'soon'"),
+    (Header, "stamp: {secs: soon, nsecs: 0}", "stamp is {'secs': 'soon'"),
+    (Header, "stamp: {secs: -1, nsecs: 0}", "stamp is {'secs': -1"),
+    (Header, "x" * 900 + ": 1", f"no field '{'x' * 79}; "),
+    (Header, "seq: !!int ''", "not YAML"), (Header, "seq: !!bool x", "not YAML"),
 ])
 def test_a_wrong_request_has_one_line_that_names_the_field(kind, text, reason):
     with pytest.raises(Refused) as refused:

@@ -15,6 +15,8 @@ import numpy as np
 from aiohttp import web
 
 from bullet_sim.description import Visual
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes.images import read_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape, link_shape
 from sim_viewer.context import Node
@@ -99,7 +101,8 @@ def mesh_bytes(part: MeshPart) -> bytes:
 
 
 def _as_png(path: str) -> bytes:
-    image = cv2.imread(path, cv2.IMREAD_COLOR)
-    if image is None:
-        raise web.HTTPNotFound(text="no image that can be read\n")
+    try:
+        image = read_image(path, cv2.IMREAD_COLOR)
+    except FormatError:
+        raise web.HTTPNotFound(text="no image that can be read\n") from None
     return cv2.imencode(".png", image)[1].tobytes()

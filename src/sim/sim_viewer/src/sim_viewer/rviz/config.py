@@ -53,7 +53,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
         read = Loader(data.decode("utf-8")).get_single_data()
     except UnicodeDecodeError:
         raise ConfigError(f"{path} is no text; give a .rviz file") from None
-    except (yaml.YAMLError, RecursionError, ValueError) as error:  # ValueError: month 13
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         raise ConfigError(f"{path}{_where(error)}: this is no YAML: {_what(error)}") from None
     try:
         return parse(read)

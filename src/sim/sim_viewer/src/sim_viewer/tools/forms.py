@@ -37,8 +37,8 @@ def load_yaml(text: str) -> Any:
     except yaml.MarkedYAMLError as error:
         line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
         raise Refused(f"not YAML: {line}{error.problem}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise Refused(f"not YAML: {str(error).splitlines()[0]}") from None
+    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+        raise Refused(f"not YAML: {' '.join(str(error).split())[:200]}") from None
 
 
 def template(message_class: type) -> str:
@@ -91,7 +91,7 @@ def _check(message_class: type, values: dict, path: str) -> None:
     kinds = slots(message_class)
     for name, value in values.items():
         if name not in kinds:
-            raise Refused(f"there is no field '{path}{name}'; {_fields(message_class)}")
+            raise Refused(f"there is no field {f'{path}{name}'!r:.80}; {_fields(message_class)}")
         _check_value(kinds[name], value, f"{path}{name}")
 
 
@@ -117,7 +117,8 @@ def _fits(kind: str, value: Any) -> bool:
     if kind in ("string", "bool"):
         return isinstance(value, str if kind == "string" else bool)
     if kind in ("time", "duration"):
-        return isinstance(value, dict) and set(value) <= {"secs", "nsecs"}
+        return isinstance(value, dict) and set(value) <= {"secs", "nsecs"} and all(
+            _fits("int32" if kind == "duration" else "uint32", part) for part in value.values())
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return False
     if kind in BOUNDS:
