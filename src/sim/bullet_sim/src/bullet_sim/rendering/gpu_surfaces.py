@@ -16,7 +16,8 @@ from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
 
 LIGHTS_BINDING, SURFACE_BINDING, SHADOWS_BINDING = 0, 1, 2
 IMAGE_UNIT, SHADOWS_UNIT = 0, 1
-_FEW = 100
+_FEW = 500
+_PLANE = 1e-4  # m, of thickness
 _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
 
 
@@ -53,7 +54,7 @@ class Surface:
     opaque: bool
     highlight: float  # brightest specular channel, 0..1
     casts_shadows: bool
-    flat: bool  # few triangles of one direction, as planes have
+    flat: bool  # few triangles in one plane
     drawings: dict[Kind, Drawing]
 
 
@@ -134,7 +135,8 @@ class SurfaceStore:
             opaque=material.diffuse[3] >= 1,
             highlight=max(material.specular[:3]) if material.shininess > 0 else 0.0,
             casts_shadows=part.casts_shadows and material.diffuse[3] >= 1,
-            flat=len(part.faces) <= _FEW and not np.ptp(part.normals, axis=0).any(),
+            flat=(len(part.faces) <= _FEW and not np.ptp(part.normals, axis=0).any()
+                  and np.ptp(part.vertices @ part.normals[0]) < _PLANE),
             drawings={},
         )
 
