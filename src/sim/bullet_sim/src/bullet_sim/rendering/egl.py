@@ -279,7 +279,7 @@ def _pieces(item: _Item, shadows: np.ndarray | None, view: CameraView) -> list[_
     """How to draw a surface that can have shadows in rectangles of the picture."""
     if item.shaded is None or shadows is None:
         return [(item, item.plain, None)]
-    if not item.surface.flat:
+    if not item.surface.convex:
         return [(item, item.shaded, None)]
     return [(item, item.shaded if shaded else item.plain, place)
             for place, shaded in tiles(shadows, view.width, view.height)]

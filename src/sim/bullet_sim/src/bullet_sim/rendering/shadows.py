@@ -80,8 +80,8 @@ class ShadowPass:
                 ground = node.shape.plane_size > _GROUND
                 casters.append(_Caster(number, np.concatenate(boxes), parts, ground, arrays))
             first += len(own)
-        flat = np.array([surface.flat for own in surfaces for surface in own])
-        return Shadows(self, lights, casters, flat) if lights and casters else None
+        convex = np.array([surface.convex for own in surfaces for surface in own])
+        return Shadows(self, lights, casters, convex) if lights and casters else None
 
     def _array(self, surface: Surface) -> moderngl.VertexArray:
         return self.context.vertex_array(
@@ -92,11 +92,11 @@ class Shadows:
     """The maps of one version of a scene."""
 
     def __init__(self, drawing: ShadowPass, lights: list[LightDescription],
-                 casters: list[_Caster], flat: np.ndarray):
+                 casters: list[_Caster], convex: np.ndarray):
         self.lights = lights
         self._pass = drawing
         self._casters = casters
-        self._flat = flat  # whether a part of the scene is in one plane: it has no shadow of its own
+        self._convex = convex  # (parts of the scene,), which have no shadow of their own on them
         self._parts = np.concatenate([caster.parts for caster in casters])
         self._owner = np.repeat(np.arange(len(casters)), [len(one.boxes) for one in casters])
         self._fitted = np.array([not caster.ground for caster in casters])[self._owner]
@@ -121,7 +121,7 @@ class Shadows:
                      self._reaches, self._wide, self._in_map, strict=True)]
         one, other, places = (np.concatenate(column) for column in zip(*found, strict=True))
         other = parts[other]
-        there = ~is_empty(places) & ~((self._parts[one] == other) & self._flat[other])
+        there = ~is_empty(places) & ~((self._parts[one] == other) & self._convex[other])
         casting = np.isin(np.arange(len(self._casters)), self._owner[one[there]])
         self._wanted = [node if casts else None
                         for node, casts in zip(self._standing, casting, strict=True)]
