@@ -216,7 +216,8 @@ def test_what_sees_the_sun_has_no_stripes_of_its_own_shadow(renderer, shape, mat
 def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkeypatch):
     drawn = []
     draw = Shadows._draw
-    monkeypatch.setattr(Shadows, "_draw", lambda self, changed: drawn.append(1) or draw(self, changed))
+    monkeypatch.setattr(Shadows, "_draw",
+                        lambda self, changed: drawn.append(changed) or draw(self, changed))
     scene = stage()
     first = renderer.draw(scene, from_above()).rgb
     renderer.draw(scene, slanting())
@@ -274,6 +275,41 @@ def test_the_same_scene_gives_the_same_bytes(renderer):
                                        (other, crowd(1)[0]), (other, scene.frozen()))]
     other.close()
     assert all(np.array_equal(pictures[0], one) for one in pictures[1:])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_picture_knows_nothing_of_what_was_drawn_before(renderer, seed):
+    scene, view = crowd(seed)
+    poses = {key: node.pose for key, node in scene.nodes.items()}
+    random = np.random.default_rng(seed)
+    for _ in range(4):
+        for key in list(poses)[2::3]:
+            scene.set_pose(key, Pose(random.uniform((-3, -3, 0), (3, 3, 1.5))))
+        renderer.draw(scene, replace(view, pose=crowd(random.integers(99))[1].pose))
+    for key, pose in poses.items():
+        scene.set_pose(key, pose)
+    other = EglRenderer()
+    fresh = other.draw(crowd(seed)[0], view).rgb
+    other.close()
+    assert np.array_equal(renderer.draw(scene, view).rgb, fresh)
+
+
+def test_what_moves_out_of_sight_is_not_drawn_into_maps(renderer, monkeypatch):
+    drawn = []
+    draw = Shadows._draw
+    monkeypatch.setattr(Shadows, "_draw",
+                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+    scene, far = stage(), ("far", "link")
+    scene.add_link(far, [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.0, 9.0, 0.1)))
+    scene.add_link(("end", "link"), [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.5, 9.5, 0.1)))
+    first = renderer.draw(scene, from_above()).rgb
+    for step in range(3):
+        scene.set_pose(far, Pose((8.0 + 0.1 * step, 9.0, 0.1)))
+        assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+    assert len(drawn) == 1
+    scene.set_pose(far, Pose((0.6, 0.9, 0.1)))
+    assert not np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+    assert [changed.tolist() for changed in drawn[1:]] == [[False, True, False]]
 
 
 def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):

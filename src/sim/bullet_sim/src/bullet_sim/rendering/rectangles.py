@@ -29,9 +29,12 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
     The bits of a corner's number tell on which of opposite sides it is; with sixteen corners it is
     what a box sweeps over. `clip_world` (4, 4) is world to clip coordinates of the picture.
     """
-    edges = _edges(corners.shape[1])
     clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
     ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
+    if (ahead >= 0).all():
+        place = clip[..., :2] / clip[..., 3:]
+        return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
+    edges = _edges(corners.shape[1])
     one, other = clip[:, edges[0]], clip[:, edges[1]]
     cut = (ahead[:, edges[0]] < 0) != (ahead[:, edges[1]] < 0)
     rise = np.where(cut, ahead[:, edges[0]] - ahead[:, edges[1]], 1.0)
@@ -44,7 +47,7 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
 
 
 def tiles(places: np.ndarray, width: int, height: int) -> list[tuple[Scissor, bool]]:
-    """The picture in rectangles of whole tiles, and whether they are where the places (n, 2, 2) are.
+    """The picture in rectangles of whole tiles, and whether one of the places (n, 2, 2) is there.
 
     Tiles are as large as llvmpipe's, which it draws one by one.
     """

@@ -30,7 +30,7 @@ class Reach:
     side: int  # texels
     grain: float  # m, of a texel; of a spot light at a depth of 1 m
     source: np.ndarray  # (4,) homogeneous, in the world: where the light comes from
-    # From where to where lines through what casts can be followed, in gaps between it and the light.
+    # How far lines from the light can be followed, from what casts, in gaps between the two.
     follow: tuple[float, float]
     blur: float  # m, by which shadows can be wider than what casts
 
@@ -87,7 +87,8 @@ def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receive
     world of boxes around them, `in_map` (n, 2, 2) the rectangles of the map where casters are, and
     `clip_world` (4, 4) is world to clip coordinates of the picture.
     """
-    lit = rectangles_of(receivers, reach.clip_world)
+    # A directional light is followed backwards, too: nothing is cut off before its map begins.
+    lit = rectangles_of(receivers, np.diag([1, 1, reach.source[3], 1]) @ reach.clip_world)
     meet = (in_map[:, None, 0] <= lit[:, 1]) & (in_map[:, None, 1] >= lit[:, 0])
     one, other = np.nonzero(meet.all(axis=2))
     start = casters[one]

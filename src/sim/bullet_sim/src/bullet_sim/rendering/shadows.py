@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import LightDescription
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.gpu_surfaces import SHADOWS_BINDING, SHADOWS_UNIT, Surface
 from bullet_sim.rendering.own_memory import own_blocks
 from bullet_sim.rendering.rectangles import is_empty, rectangles_of
@@ -76,16 +77,20 @@ class ShadowPass:
             if cast:
                 boxes = [node.shape.parts[index].boxes for index in cast]
                 parts = [first + index for index in cast for _ in node.shape.parts[index].boxes]
-                arrays = [self._array(own[index]) for index in cast]
+                arrays = [self._array(node.shape.parts[index]) for index in cast]
                 ground = node.shape.plane_size > _GROUND
                 casters.append(_Caster(number, np.concatenate(boxes), parts, ground, arrays))
             first += len(own)
         convex = np.array([surface.convex for own in surfaces for surface in own])
         return Shadows(self, lights, casters, convex) if lights and casters else None
 
-    def _array(self, surface: Surface) -> moderngl.VertexArray:
+    def _array(self, part: MeshPart) -> moderngl.VertexArray:
+        """Its triangles, with each place only once, whatever the normals are there."""
+        places, numbers = np.unique(part.vertices, axis=0, return_inverse=True)
+        faces = numbers.reshape(-1)[part.faces].astype(np.uint32)
         return self.context.vertex_array(
-            self.program, [(surface.vertices, "3f 5x4", "in_position")], surface.indices)
+            self.program, [(self.context.buffer(places), "3f", "in_position")],
+            self.context.buffer(faces))
 
 
 class Shadows:
