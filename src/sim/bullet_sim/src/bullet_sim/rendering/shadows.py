@@ -137,6 +137,7 @@ class Shadows:
         changed = [new is not old for new, old in zip(self._wanted, self._drawn, strict=True)]
         if any(changed):
             self._draw(np.array(changed))
+            self._pass.context.finish()  # llvmpipe takes far longer for both when they overlap
         self._texture.use(SHADOWS_UNIT)
         self._block.bind_to_uniform_block(SHADOWS_BINDING)
 
