@@ -20,11 +20,11 @@ from bullet_sim.description import (
     Visual,
 )
 from bullet_sim.pose import Pose
+from bullet_sim.rendering import shadows
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.rectangles import inside_and_around
+from bullet_sim.rendering.rectangles import TILE, tiles
 from bullet_sim.rendering.scene import Scene
-from bullet_sim.rendering.shadow_reach import Beam, Cone
 from bullet_sim.rendering.shadows import Shadows
 
 DARK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
@@ -232,7 +232,8 @@ def test_what_sees_the_sun_has_no_stripes_of_its_own_shadow(renderer, shape, mat
 def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkeypatch):
     drawn = []
     draw = Shadows._draw
-    monkeypatch.setattr(Shadows, "_draw", lambda self: drawn.append(1) or draw(self))
+    monkeypatch.setattr(Shadows, "_draw",
+                        lambda self, changed: drawn.append(changed) or draw(self, changed))
     scene = stage()
     first = renderer.draw(scene, from_above()).rgb
     renderer.draw(scene, slanting())
@@ -271,12 +272,15 @@ def crowd(seed):
 def test_what_is_left_out_for_speed_is_not_missed(renderer, monkeypatch, seed):
     scene, view = crowd(seed)
     quick = renderer.draw(scene, view).rgb.astype(int)
-    everywhere = np.array([[-1.0, -1.0], [1.0, 1.0]])
-    for light in Beam, Cone:
-        monkeypatch.setattr(light, "seen_on", lambda self, boxes, clip_world: np.tile(
-            everywhere, (len(boxes[0]), 1, 1)))
+    monkeypatch.setattr(shadows, "shadow_places", everywhere)
     whole = renderer.draw(scene, view).rgb.astype(int)
     assert np.abs(whole - quick).max() <= 1  # one rounds in the corner, one in the pixel
+
+
+def everywhere(reach, casters, in_map, receivers, clip_world):
+    """As `shadow_places`, with nothing left out."""
+    one, other = np.indices((len(casters), len(receivers))).reshape(2, -1)
+    return one, other, np.tile([[-1.0, -1.0], [1.0, 1.0]], (len(one), 1, 1))
 
 
 def test_the_same_scene_gives_the_same_bytes(renderer):
@@ -287,6 +291,41 @@ def test_the_same_scene_gives_the_same_bytes(renderer):
                                        (other, crowd(1)[0]), (other, scene.frozen()))]
     other.close()
     assert all(np.array_equal(pictures[0], one) for one in pictures[1:])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_picture_knows_nothing_of_what_was_drawn_before(renderer, seed):
+    scene, view = crowd(seed)
+    poses = {key: node.pose for key, node in scene.nodes.items()}
+    random = np.random.default_rng(seed)
+    for _ in range(4):
+        for key in list(poses)[2::3]:
+            scene.set_pose(key, Pose(random.uniform((-3, -3, 0), (3, 3, 1.5))))
+        renderer.draw(scene, replace(view, pose=crowd(random.integers(99))[1].pose))
+    for key, pose in poses.items():
+        scene.set_pose(key, pose)
+    other = EglRenderer()
+    fresh = other.draw(crowd(seed)[0], view).rgb
+    other.close()
+    assert np.array_equal(renderer.draw(scene, view).rgb, fresh)
+
+
+def test_what_moves_out_of_sight_is_not_drawn_into_maps(renderer, monkeypatch):
+    drawn = []
+    draw = Shadows._draw
+    monkeypatch.setattr(Shadows, "_draw",
+                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+    scene, far = stage(), ("far", "link")
+    scene.add_link(far, [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.0, 9.0, 0.1)))
+    scene.add_link(("end", "link"), [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.5, 9.5, 0.1)))
+    first = renderer.draw(scene, from_above()).rgb
+    for step in range(3):
+        scene.set_pose(far, Pose((8.0 + 0.1 * step, 9.0, 0.1)))
+        assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+    assert len(drawn) == 1
+    scene.set_pose(far, Pose((0.6, 0.9, 0.1)))
+    assert not np.array_equal(renderer.draw(scene, from_above()).rgb, first)
+    assert [changed.tolist() for changed in drawn[1:]] == [[False, True, False]]
 
 
 def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):
@@ -301,12 +340,20 @@ def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):
     np.testing.assert_allclose(picture[240, 320], 255 * 0.2 * slope, atol=1)
 
 
-@pytest.mark.parametrize("place", [
-    [[-0.5, -0.25], [0.5, 0.75]], [[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 0.3], [-0.999, 1.0]]])
-def test_a_rectangle_and_what_is_around_it_are_the_picture_once(place):
-    inside, around = inside_and_around(np.array(place), 64, 48)
-    count = np.zeros((48, 64), int)
-    for left, first, width, height in (inside, *around):
+@pytest.mark.parametrize("places", [
+    [[[-0.5, -0.25], [0.5, 0.75]]], [[[-1.0, -1.0], [1.0, 1.0]]], [[[-1.0, 0.3], [-0.99, 1.0]]],
+    [[[-0.9, -0.9], [-0.2, 0.3]], [[-0.3, -0.1], [0.2, 0.9]], [[0.7, -0.9], [0.8, -0.8]]]])
+def test_tiles_are_the_picture_once_and_say_where_the_places_are(places):
+    places, size = np.array(places), np.array([640, 400])
+    count, inside = np.zeros((400, 640), int), np.zeros((400, 640), bool)
+    for (left, first, width, height), there in tiles(places, 640, 400):
         assert width > 0 and height > 0
         count[first:first + height, left:left + width] += 1
+        inside[first:first + height, left:left + width] = there
     assert (count == 1).all()
+    wanted = np.zeros_like(inside)
+    for low, high in ((places + 1) / 2 * size).tolist():
+        wanted[int(low[1]):int(high[1]), int(low[0]):int(high[0])] = True
+    for first, left in np.ndindex(7, 10):
+        tile = np.s_[TILE * first:TILE * (first + 1), TILE * left:TILE * (left + 1)]
+        assert (inside[tile] == wanted[tile].any()).all()

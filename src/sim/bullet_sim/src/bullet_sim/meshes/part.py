@@ -1,7 +1,7 @@
 """One drawable piece of a surface: triangles that share a material."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,6 +18,8 @@ class MeshPart:
     faces: np.ndarray  # (m, 3) uint32
     material: Material | None = None  # None: the file names none
     casts_shadows: bool = True
+    # (k, 4, 8): homogeneous corners of boxes, together around all of it, where somebody needs them
+    boxes: np.ndarray = field(default_factory=lambda: np.empty((0, 4, 8)))
 
 
 NamedPart = tuple[str, MeshPart]  # name of the submesh it belongs to, and the part
@@ -65,7 +67,17 @@ def join_parts(parts: Sequence[MeshPart]) -> MeshPart:
         faces=np.concatenate(faces),
         material=parts[0].material,
         casts_shadows=parts[0].casts_shadows,
+        boxes=np.concatenate([part.boxes for part in parts]),
     )
+
+
+def box_corners(part: MeshPart, thinnest: float = 0.0) -> np.ndarray:
+    """(4, 8) homogeneous corners of the box around a part, along its axes."""
+    low, high = part.vertices.min(axis=0).astype(float), part.vertices.max(axis=0)
+    grow = np.maximum(thinnest - (high - low), 0.0) / 2
+    picks = np.indices((2, 2, 2)).reshape(3, 8)
+    bounds = np.array([low - grow, high + grow])
+    return np.vstack([bounds[picks[axis], axis] for axis in range(3)] + [np.ones(8)])
 
 
 def grid_faces(rows: int, columns: int) -> np.ndarray:

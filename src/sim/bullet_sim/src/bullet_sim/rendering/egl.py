@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -36,7 +37,7 @@ from bullet_sim.rendering.projection import (
     projection_matrix,
     view_matrix,
 )
-from bullet_sim.rendering.rectangles import NOWHERE, Scissor, inside_and_around, is_empty
+from bullet_sim.rendering.rectangles import Scissor, tiles
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
@@ -55,6 +56,7 @@ _RECESS = 10.0
 
 @dataclass(eq=False)
 class _Item:
+    number: int  # of the part in the scene
     surface: Surface
     plain: Drawing
     shaded: Drawing | None  # where shadows fall
@@ -150,10 +152,12 @@ class EglRenderer:
         shadows = self._shadow_pass.of(scene, surfaces)
         casting = shadows.lights if shadows else []
 
+        numbers = itertools.count()
+
         def item(surface: Surface) -> _Item:
             per_pixel = near_lights or surface.highlight * shine > _VISIBLE
             plain, shaded = Kind(per_pixel, fog), Kind(per_pixel, fog, len(casting))
-            return _Item(surface, self._store.drawing(surface, plain),
+            return _Item(next(numbers), surface, self._store.drawing(surface, plain),
                          self._store.drawing(surface, shaded) if casting else None)
 
         outlines = Outlines([node.shape for node in scene.nodes.values()])
@@ -176,9 +180,9 @@ class EglRenderer:
         for index in seen.order:
             node, clip_node = nodes[index], seen.clip_node[index]
             pieces = [
-                piece for item, visible, place in
-                zip(prepared.items[index], seen.parts[index], places[index], strict=True) if visible
-                for piece in _pieces(item, place, view)]
+                piece for item, visible in
+                zip(prepared.items[index], seen.parts[index], strict=True) if visible
+                for piece in _pieces(item, places.get(item.number), view)]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
             target.render(node, [p for p in pieces if p[0].surface.opaque], clip_node)
             see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))
@@ -257,28 +261,28 @@ def _open_context() -> moderngl.Context:
 
 
 def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
-                   clip_world: np.ndarray) -> Sequence[Sequence[np.ndarray]]:
-    """For each part of each node, the rectangle of the picture in which there can be shadows on it.
+                   clip_world: np.ndarray) -> dict[int, np.ndarray]:
+    """The rectangles (k, 2, 2) of the picture in which there can be shadows on a part, by number.
 
-    Those that are in the picture are ready to be drawn.
+    The shadows are ready to be drawn.
     """
-    outlines, shadows = prepared.outlines, prepared.shadows
-    if shadows is None:
-        return [[NOWHERE] * len(parts) for parts in seen.parts]
-    places = shadows.seen_on(nodes, outlines.boxes(nodes), clip_world)
-    if np.any(~is_empty(places) & np.concatenate(seen.parts)):
-        shadows.use()
-    return outlines.by_node(places)
+    if prepared.shadows is None:
+        return {}
+    places = prepared.shadows.seen_on(nodes, prepared.outlines.boxes(nodes),
+                                      np.concatenate(seen.parts), clip_world)
+    if places:
+        prepared.shadows.use()
+    return places
 
 
-def _pieces(item: _Item, shadows: np.ndarray, view: CameraView) -> list[_Piece]:
-    """How to draw a surface that can have shadows in a rectangle of the picture."""
-    if item.shaded is None or is_empty(shadows):
+def _pieces(item: _Item, shadows: np.ndarray | None, view: CameraView) -> list[_Piece]:
+    """How to draw a surface that can have shadows in rectangles of the picture."""
+    if item.shaded is None or shadows is None:
         return [(item, item.plain, None)]
-    if not item.surface.flat:
+    if not item.surface.convex:
         return [(item, item.shaded, None)]
-    inside, around = inside_and_around(shadows, view.width, view.height)
-    return [(item, item.shaded, inside), *((item, item.plain, one) for one in around)]
+    return [(item, item.shaded if shaded else item.plain, place)
+            for place, shaded in tiles(shadows, view.width, view.height)]
 
 
 def _finish_without_gil() -> Callable[[], None] | None:

@@ -16,7 +16,8 @@ from bullet_sim.rendering.shaders import EXP, EXP2, LINEAR, sources
 
 LIGHTS_BINDING, SURFACE_BINDING, SHADOWS_BINDING = 0, 1, 2
 IMAGE_UNIT, SHADOWS_UNIT = 0, 1
-_FEW = 100
+_FEW = 500
+_IN_FRONT = 1e-4  # m
 _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
 
 
@@ -53,7 +54,7 @@ class Surface:
     opaque: bool
     highlight: float  # brightest specular channel, 0..1
     casts_shadows: bool
-    flat: bool  # few triangles of one direction, as planes have
+    convex: bool  # few triangles, as planes and boxes have, none of them in front of another
     drawings: dict[Kind, Drawing]
 
 
@@ -134,7 +135,7 @@ class SurfaceStore:
             opaque=material.diffuse[3] >= 1,
             highlight=max(material.specular[:3]) if material.shininess > 0 else 0.0,
             casts_shadows=part.casts_shadows and material.diffuse[3] >= 1,
-            flat=len(part.faces) <= _FEW and not np.ptp(part.normals, axis=0).any(),
+            convex=len(part.faces) <= _FEW and _is_convex(part),
             drawings={},
         )
 
@@ -157,6 +158,13 @@ class SurfaceStore:
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = path not in self._images
         return texture
+
+
+def _is_convex(part: MeshPart) -> bool:
+    first, second, third = part.vertices[part.faces.T].astype(float)
+    across = np.cross(second - first, third - first)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    return bool(np.all(part.vertices @ across.T < np.sum(first * across, axis=1) + _IN_FRONT))
 
 
 def _rgba(rgb: np.ndarray) -> np.ndarray:

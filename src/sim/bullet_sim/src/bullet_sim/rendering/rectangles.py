@@ -6,11 +6,14 @@ the second in both is empty.
 
 from __future__ import annotations
 
+import functools
+import itertools
+import math
+
 import numpy as np
 
 NOWHERE = np.array([[1.0, 1.0], [-1.0, -1.0]])
-_CUBE = np.array([(corner, corner | bit) for bit in (1, 2, 4) for corner in range(8)
-                  if not corner & bit]).T  # (2, 12): which of eight corners edges go between
+TILE = 64  # px
 
 Scissor = tuple[int, int, int, int]  # px: left, first row, width, height
 
@@ -23,15 +26,19 @@ def is_empty(rectangles: np.ndarray) -> np.ndarray:
 def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
     """(n, 2, 2): where in the picture boxes with these corners (n, 8, 3) are, cut to it.
 
-    The three bits of a corner's number tell on which of opposite sides it is. `clip_world` (4, 4)
-    is world to clip coordinates of the picture.
+    The bits of a corner's number tell on which of opposite sides it is; with sixteen corners it is
+    what a box sweeps over. `clip_world` (4, 4) is world to clip coordinates of the picture.
     """
     clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
     ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
-    one, other = clip[:, _CUBE[0]], clip[:, _CUBE[1]]
-    cut = (ahead[:, _CUBE[0]] < 0) != (ahead[:, _CUBE[1]] < 0)
-    rise = np.where(cut, ahead[:, _CUBE[0]] - ahead[:, _CUBE[1]], 1.0)
-    share = np.where(cut, ahead[:, _CUBE[0]] / rise, 0.0)
+    if (ahead >= 0).all():
+        place = clip[..., :2] / clip[..., 3:]
+        return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
+    edges = _edges(corners.shape[1])
+    one, other = clip[:, edges[0]], clip[:, edges[1]]
+    cut = (ahead[:, edges[0]] < 0) != (ahead[:, edges[1]] < 0)
+    rise = np.where(cut, ahead[:, edges[0]] - ahead[:, edges[1]], 1.0)
+    share = np.where(cut, ahead[:, edges[0]] / rise, 0.0)
     points = np.concatenate([clip, one + share[..., None] * (other - one)], axis=1)
     valid = np.concatenate([ahead >= 0, cut], axis=1)[..., None]
     place = points[..., :2] / np.where(valid, points[..., 3:], 1.0)
@@ -39,12 +46,32 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
     return np.stack([np.maximum(low.min(axis=1), -1.0), np.minimum(high.max(axis=1), 1.0)], axis=1)
 
 
-def inside_and_around(place: np.ndarray, width: int,
-                      height: int) -> tuple[Scissor, list[Scissor]]:
-    """A rectangle in whole pixels, and what is left of the picture around it."""
+def tiles(places: np.ndarray, width: int, height: int) -> list[tuple[Scissor, bool]]:
+    """The picture in rectangles of whole tiles, and whether one of the places (n, 2, 2) is there.
+
+    Tiles are as large as llvmpipe's, which it draws one by one.
+    """
     size = np.array([width, height])
-    left, first = np.floor((place[0] + 1) / 2 * size).astype(int).tolist()
-    right, last = np.ceil((place[1] + 1) / 2 * size).astype(int).tolist()
-    around = [(0, 0, width, first), (0, last, width, height - last),
-              (0, first, left, last - first), (right, first, width - right, last - first)]
-    return (left, first, right - left, last - first), [one for one in around if min(one[2:]) > 0]
+    inside = np.zeros((math.ceil(height / TILE), math.ceil(width / TILE)), bool)
+    low = np.floor((places[:, 0] + 1) / 2 * size / TILE).astype(int)
+    high = np.ceil((places[:, 1] + 1) / 2 * size / TILE).astype(int)
+    for (left, first), (right, last) in zip(low.tolist(), high.tolist(), strict=True):
+        inside[first:last, left:right] = True
+    return [
+        ((left * TILE, first * TILE, min(right * TILE, width) - left * TILE,
+          min(last * TILE, height) - first * TILE), bool(inside[first, left]))
+        for first, last in _alike(inside) for left, right in _alike(inside[first][:, None])]
+
+
+def _alike(rows: np.ndarray) -> list[tuple[int, int]]:
+    """From where to where rows are the same."""
+    changes = np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1
+    return list(itertools.pairwise([0, *changes.tolist(), len(rows)]))
+
+
+@functools.cache
+def _edges(corners: int) -> np.ndarray:
+    """(2, n): which corners of a box in so many dimensions edges go between."""
+    bits = [1 << bit for bit in range(corners.bit_length() - 1)]
+    return np.array([(one, one | bit) for bit in bits for one in range(corners)
+                     if not one & bit]).T

@@ -19,7 +19,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.meshes.loading import load_mesh
-from bullet_sim.meshes.part import MeshPart, join_parts
+from bullet_sim.meshes.part import MeshPart, box_corners, join_parts
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.primitives import primitive_part
 
@@ -27,6 +27,7 @@ log = logging.getLogger(__name__)
 
 LinkKey = tuple[str, str]  # model, link
 
+_THINNEST = 0.001  # m, of a box: each of its edges has a direction
 # What a surface without any material looks like: a whitish grey.
 DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7, 1.0))
 
@@ -210,10 +211,12 @@ def _placed(part: MeshPart, visual: Visual) -> MeshPart:
         normals=normals.astype(np.float32),
         material=material,
         casts_shadows=visual.cast_shadows,
+        boxes=matrix[None] @ box_corners(part, _THINNEST),
     )
     return join_parts([placed, _turned_over(placed)]) if material.double_sided else placed
 
 
 def _turned_over(part: MeshPart) -> MeshPart:
     """The same triangles, seen from behind."""
-    return replace(part, normals=-part.normals, faces=np.ascontiguousarray(part.faces[:, ::-1]))
+    return replace(part, normals=-part.normals, faces=np.ascontiguousarray(part.faces[:, ::-1]),
+                   boxes=part.boxes[:0])

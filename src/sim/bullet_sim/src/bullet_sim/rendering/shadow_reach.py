@@ -1,8 +1,9 @@
-"""What the shadow map of a light covers, and where in a picture its shadows can fall."""
+"""What the shadow map of a light covers, and where in a picture the shadows of its casters fall."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,122 +11,123 @@ from bullet_sim.description import LightDescription
 from bullet_sim.rendering.lights import light_direction
 from bullet_sim.rendering.rectangles import NOWHERE, rectangles_of
 
-FINEST = 0.002  # m, of a texel
+FINEST = 0.0015  # m, of a texel
 SIDES = (256, 512, 1024, 2048)  # texels, of a map
 MARGIN = 2  # texels that stay free round what casts, so that nothing leaks from the next map
-_ENDS = np.indices((2, 2)).reshape(2, 4)  # picks of the four edges of a beam
-_PARALLEL = 1e-9
+_STEPS = 8  # of a map's side, in which it follows what moves: between them it need not change
+_COARSER = 1.25  # from one size of texels to the next
+_PARALLEL = 1e-6
 _NEAREST = 0.01  # m, from a spot light
 _WIDEST = math.radians(160)  # of a spot light's map
-
-Boxes = tuple[np.ndarray, np.ndarray]  # low and high corners (n, 3), along the world's axes
-
-
-class Beam:
-    """Of a directional light, what meets casters: a box along the light, without an end."""
-
-    def __init__(self, light: LightDescription, every: np.ndarray, fitted: np.ndarray):
-        """Corners (4, n) in the world of all that casts, and of what the map is fitted to."""
-        self._axes = _axes(light_direction(light))
-        across, along = self._axes[:2] @ fitted[:3], self._axes[2] @ every[:3]
-        self._low = np.array([*across.min(axis=1), along.min()])
-        high = np.array([*across.max(axis=1), along.max()])
-        self._span = np.maximum(high - self._low, FINEST)
-        self.side = _side(self._span[:2].max())
-
-    def matrix(self, side: int) -> np.ndarray:
-        """(4, 4) from the world to clip coordinates of a map with so many texels a side."""
-        fill = 1 - 2 * MARGIN / side
-        scale = np.array([fill, fill, 1.0]) * 2 / self._span
-        matrix = np.eye(4)
-        matrix[:3, :3] = self._axes * scale[:, None]
-        matrix[:3, 3] = -(self._low + self._span / 2) * scale
-        return matrix
-
-    def grain(self, side: int) -> float:
-        """The size in m of a texel of such a map, along its longer side."""
-        return float(self._span[:2].max()) / (side - 2 * MARGIN)
-
-    def seen_on(self, boxes: Boxes, clip_world: np.ndarray) -> np.ndarray:
-        """(n, 2, 2): rectangles of the picture that shadows on what is in the boxes cannot leave.
-
-        `clip_world` (4, 4) is world to clip coordinates of the picture.
-        """
-        low, high = boxes
-        blur = MARGIN * self._span[:2] / (self.side - 2 * MARGIN)
-        sides = np.array([self._low[:2] - blur, self._low[:2] + self._span[:2] + blur])
-        middle, half = (low + high) / 2 @ self._axes.T, (high - low) / 2 @ np.abs(self._axes.T)
-        met = ((middle - half)[:, :2] <= sides[1]).all(axis=1)
-        met &= ((middle + half)[:, :2] >= sides[0]).all(axis=1)
-        edges = np.array([sides[_ENDS[0], 0], sides[_ENDS[1], 1]]).T @ self._axes[:2]  # (4, 3)
-        begin, end = self._slabs(low, high, edges)
-        met &= begin.min(axis=2).max(axis=1) <= end.max(axis=2).min(axis=1)
-        met &= end.max(axis=2).min(axis=1) >= self._low[2]
-        thinnest = np.argmin((end - begin)[..., 0], axis=1)[:, None, None]
-        ends = np.concatenate([np.take_along_axis(begin, thinnest, axis=1),
-                               np.take_along_axis(end, thinnest, axis=1)], axis=1)  # (n, 2, 4)
-        corners = edges + ends[..., None] * self._axes[2]
-        rectangles = rectangles_of(corners.reshape(len(low), 8, 3), clip_world)
-        rectangles[~met] = NOWHERE
-        return rectangles
-
-    def _slabs(self, low: np.ndarray, high: np.ndarray,
-               edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """From where to where along the light its edges are between opposite sides of boxes.
-
-        Each (n, sides, 4): of a box, of its pairs of sides that are not along the light, of edges.
-        """
-        slanting = np.abs(self._axes[2]) > _PARALLEL
-        both = np.stack([low, high])[:, :, slanting, None] - edges.T[slanting]
-        both /= self._axes[2, slanting, None]
-        return both.min(axis=0), both.max(axis=0)
+_SIGNS = np.indices((2, 2, 2)).reshape(3, 8) * 2.0 - 1  # of a box's corners, along its edges
 
 
-class Cone:
-    """Of a spot light, all that it lights, in a pyramid."""
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """What the map of one light covers."""
 
-    def __init__(self, light: LightDescription, every: np.ndarray):
-        """Corners (4, n) in the world of all that casts."""
-        self._place = np.array(light.pose.position)
-        self._axes = _axes(light_direction(light))
-        self._half = min(light.outer_angle, _WIDEST) / 2
-        self._range = light.range
-        along = self._axes[2] @ (every[:3] - self._place[:, None])
-        self._near = max(along.min(), _NEAREST)
-        self._far = max(min(along.max(), light.range), self._near + _NEAREST)
-        self.side = _side(2 * math.tan(self._half) * self._far)
+    clip_world: np.ndarray  # (4, 4) from the world to clip coordinates of the map
+    side: int  # texels
+    grain: float  # m, of a texel; of a spot light at a depth of 1 m
+    source: np.ndarray  # (4,) homogeneous, in the world: where the light comes from
+    # How far lines from the light can be followed, from what casts, in gaps between the two.
+    follow: tuple[float, float]
+    blur: float  # m, by which shadows can be wider than what casts
 
-    def matrix(self, side: int) -> np.ndarray:
-        """(4, 4) from the world to clip coordinates; w is the depth along the light in m."""
-        near, far = self._near, self._far
-        scale = (1 - 2 * MARGIN / side) / math.tan(self._half)
-        project = np.array([[scale, 0, 0, 0], [0, scale, 0, 0],
-                            [0, 0, (far + near) / (far - near), -2 * far * near / (far - near)],
-                            [0, 0, 1, 0]])
-        turn = np.eye(4)
-        turn[:3] = np.column_stack([self._axes, -self._axes @ self._place])
-        return project @ turn
 
-    def grain(self, side: int) -> float:
-        """The size in m of a texel at a depth of 1 m, seen as aslant as at the cone's edge."""
-        return 2 * math.tan(self._half) / math.cos(self._half) / (side - 2 * MARGIN)
+def reach_of(light: LightDescription, every: np.ndarray, fitted: np.ndarray) -> Reach:
+    """Corners (n, 3) in the world of all that casts, and of what the map is fitted to."""
+    return _cone(light, every) if light.type == "spot" else _beam(light, every, fitted)
 
-    def seen_on(self, boxes: Boxes, clip_world: np.ndarray) -> np.ndarray:
-        """As `Beam.seen_on`."""
-        low, high = boxes
-        reach = math.tan(self._half) * self._range
-        ends = np.array([-1, 1])[_ENDS].T @ self._axes[:2] * reach + self._axes[2] * self._range
-        corners = self._place + np.concatenate([np.zeros((4, 3)), ends])
-        met = ((low <= corners.max(axis=0)) & (high >= corners.min(axis=0))).all(axis=1)
-        rectangles = np.repeat(rectangles_of(corners[None], clip_world), len(low), axis=0)
-        rectangles[~met] = NOWHERE
-        return rectangles
+
+def _beam(light: LightDescription, every: np.ndarray, fitted: np.ndarray) -> Reach:
+    """Of a directional light: a box along it. Its shadows have no end."""
+    axes = _axes(light_direction(light))
+    across, along = fitted @ axes[:2].T, every @ axes[2]
+    span = np.ptp(across, axis=0).max() / (1 - 1 / _STEPS)
+    side = _side(span)
+    grain = FINEST * _COARSER ** max(0, _power(span / (side - 3 * MARGIN) / FINEST, _COARSER))
+    step = grain * side / _STEPS
+    low = np.floor(across.min(axis=0) / step) * step
+    step = 2.0 ** _power(max(np.ptp(along), FINEST), 2.0)
+    near, far = math.floor(along.min() / step) * step, math.ceil(along.max() / step + 1e-3) * step
+    scale = 2 / np.array([grain * side, grain * side, far - near])
+    middle = np.array([*(low + grain * (side / 2 - MARGIN)), (near + far) / 2])
+    matrix = np.eye(4)
+    matrix[:3] = np.column_stack([axes * scale[:, None], -middle * scale])
+    return Reach(matrix, side, grain, np.array([*-axes[2], 0.0]), (-math.inf, math.inf),
+                 MARGIN * grain)
+
+
+def _cone(light: LightDescription, every: np.ndarray) -> Reach:
+    """Of a spot light: all that it lights, in a pyramid."""
+    place = np.array(light.pose.position)
+    axes = _axes(light_direction(light))
+    slope = math.tan(min(light.outer_angle, _WIDEST) / 2)
+    along = (every - place) @ axes[2]
+    near = 2.0 ** (_power(max(along.min(), 2 * _NEAREST), 2.0) - 1)
+    far = 2.0 ** _power(max(min(along.max(), light.range), 2 * near), 2.0)
+    side = _side(2 * slope * far)
+    scale = (1 - 2 * MARGIN / side) / slope
+    project = np.array([[scale, 0, 0, 0], [0, scale, 0, 0],
+                        [0, 0, (far + near) / (far - near), -2 * far * near / (far - near)],
+                        [0, 0, 1, 0]])
+    turn = np.eye(4)
+    turn[:3] = np.column_stack([axes, -axes @ place])
+    grain = 2 * slope * math.hypot(1, slope) / (side - 2 * MARGIN)
+    return Reach(project @ turn, side, grain, np.array([*place, 1.0]),
+                 (-0.9, light.range / near), MARGIN * grain * far)
+
+
+def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receivers: np.ndarray,
+                  clip_world: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Numbers of a caster (k,) and of a receiver (k,), and where the one's shadow can be on it.
+
+    That is a rectangle (k, 2, 2) of the picture. Casters and receivers are corners (n, 8, 3) in the
+    world of boxes around them, `in_map` (n, 2, 2) the rectangles of the map where casters are, and
+    `clip_world` (4, 4) is world to clip coordinates of the picture.
+    """
+    # A directional light is followed backwards, too: nothing is cut off before its map begins.
+    lit = rectangles_of(receivers, np.diag([1, 1, reach.source[3], 1]) @ reach.clip_world)
+    meet = (in_map[:, None, 0] <= lit[:, 1]) & (in_map[:, None, 1] >= lit[:, 0])
+    one, other = np.nonzero(meet.all(axis=2))
+    start = casters[one]
+    ray = start * reach.source[3] - reach.source[:3]  # (k, 8, 3)
+    # From where to where corners' rays are between two sides of the receiver's box, (k, 8, 3).
+    slanting = ((ray > _PARALLEL).all(axis=1) | (ray < -_PARALLEL).all(axis=1))[:, None]
+    sides = np.stack([receivers.min(axis=1), receivers.max(axis=1)])[:, other, None]
+    both = (sides - start) / np.where(slanting, ray, 1.0)
+    begin, end = both.min(axis=0), both.max(axis=0)
+    first, last = reach.follow
+    begin = np.where(slanting & (begin > first).all(axis=1, keepdims=True), begin, first)
+    end = np.where(slanting & (end < last).all(axis=1, keepdims=True), end, last)
+    until = end.max(axis=1).min(axis=1)
+    met = (begin.min(axis=1).max(axis=1) <= until) & (until >= 0)
+    thinnest = np.argmin((end - begin).max(axis=1), axis=1)[:, None, None]
+    ends = [start + np.take_along_axis(along, thinnest, axis=2) * ray for along in (begin, end)]
+    places = rectangles_of(np.concatenate(ends, axis=1), clip_world)
+    places[~met] = NOWHERE
+    depths = start @ reach.clip_world[3, :3] + reach.clip_world[3, 3]
+    places[depths.min(axis=1) < _NEAREST] = -NOWHERE  # a spot light in the caster's box
+    return one, other, places
+
+
+def widened(boxes: np.ndarray, by: float) -> np.ndarray:
+    """Corners (n, 8, 3) of boxes that are so many m larger on each side."""
+    edges = boxes[:, [4, 2, 1]] - boxes[:, :1]
+    return boxes + np.einsum("nij,ic->ncj", edges * by / np.linalg.norm(
+        edges, axis=2, keepdims=True), _SIGNS)
 
 
 def _side(extent: float) -> int:
     """Texels a side of a map of that many m."""
-    wanted = extent / FINEST + 2 * MARGIN
+    wanted = extent / FINEST + 3 * MARGIN
     return next((side for side in SIDES if side >= wanted), SIDES[-1])
+
+
+def _power(value: float, base: float) -> int:
+    """The least power of the base that is no less."""
+    return math.ceil(math.log(value, base) - 1e-9) if value > 0 else 0
 
 
 def _axes(forward: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Shadows: how far each light that casts them sees, drawn into maps side by side in one texture.
 
-A map is as large as what casts needs, not as the scene: what is outside it lies in no shadow. It is
-drawn again when something that casts has moved, and only if a shadow can be in the picture. The
-edges of shadows are smoothed over two texels.
+A map is as large as what casts needs, not as the scene: what is outside it lies in no shadow. Drawn
+into it is what has a shadow that can be in the picture; when that moves, its part of the map is
+drawn again. The edges of shadows are smoothed over two texels.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import LightDescription
+from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.gpu_surfaces import SHADOWS_BINDING, SHADOWS_UNIT, Surface
 from bullet_sim.rendering.lights import warn_once
 from bullet_sim.rendering.own_memory import own_blocks
-from bullet_sim.rendering.rectangles import NOWHERE, is_empty
+from bullet_sim.rendering.rectangles import is_empty, rectangles_of
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shaders import MAX_LIGHTS, shader
-from bullet_sim.rendering.shadow_reach import Beam, Boxes, Cone
-from bullet_sim.rendering.visibility import box_corners
+from bullet_sim.rendering.shadow_reach import Reach, reach_of, shadow_places, widened
 
 MAX_SHADOWS = 4
 _GROUND = 20.0  # m; a wider plane shades what is in a map, which is not widened for it
@@ -51,7 +51,8 @@ class _Caster:
     """The surfaces of a node that cast shadows."""
 
     node: int  # its number in the scene
-    corners: np.ndarray  # (4, n) homogeneous, of boxes around them, in the node's frame
+    boxes: np.ndarray  # (k, 4, 8) homogeneous corners of boxes around them, in the node's frame
+    parts: list[int]  # number in the scene of the part that each box belongs to
     ground: bool  # a plane so wide that maps are not made for it
     arrays: list[moderngl.VertexArray]
 
@@ -68,92 +69,151 @@ class ShadowPass:
     def of(self, scene: SceneState, surfaces: Sequence[Sequence[Surface]]) -> Shadows | None:
         """The shadows of a scene with these surfaces of its nodes; None if there are none."""
         lights = casting_lights(scene)
-        casters = []
+        casters, first = [], 0
         for number, (node, own) in enumerate(zip(scene.nodes.values(), surfaces, strict=True)):
             cast = [index for index, surface in enumerate(own) if surface.casts_shadows]
             if cast:
-                boxes = [box_corners(node.shape.parts[index]) for index in cast]
-                arrays = [self._array(own[index]) for index in cast]
+                boxes = [node.shape.parts[index].boxes for index in cast]
+                parts = [first + index for index in cast for _ in node.shape.parts[index].boxes]
+                arrays = [self._array(node.shape.parts[index]) for index in cast]
                 ground = node.shape.plane_size > _GROUND
-                casters.append(_Caster(number, np.hstack(boxes), ground, arrays))
-        return Shadows(self, lights, casters) if lights and casters else None
+                casters.append(_Caster(number, np.concatenate(boxes), parts, ground, arrays))
+            first += len(own)
+        convex = np.array([surface.convex for own in surfaces for surface in own])
+        return Shadows(self, lights, casters, convex) if lights and casters else None
 
-    def _array(self, surface: Surface) -> moderngl.VertexArray:
+    def _array(self, part: MeshPart) -> moderngl.VertexArray:
+        """Its triangles, with each place only once, whatever the normals are there."""
+        places, numbers = np.unique(part.vertices, axis=0, return_inverse=True)
+        faces = numbers.reshape(-1)[part.faces].astype(np.uint32)
         return self.context.vertex_array(
-            self.program, [(surface.vertices, "3f 5x4", "in_position")], surface.indices)
+            self.program, [(self.context.buffer(places), "3f", "in_position")],
+            self.context.buffer(faces))
 
 
 class Shadows:
     """The maps of one version of a scene."""
 
     def __init__(self, drawing: ShadowPass, lights: list[LightDescription],
-                 casters: list[_Caster]):
+                 casters: list[_Caster], convex: np.ndarray):
         self.lights = lights
         self._pass = drawing
         self._casters = casters
+        self._convex = convex  # (parts of the scene,), which have no shadow of their own on them
+        self._parts = np.concatenate([caster.parts for caster in casters])
+        self._owner = np.repeat(np.arange(len(casters)), [len(one.boxes) for one in casters])
+        self._fitted = np.array([not caster.ground for caster in casters])[self._owner]
         self._block = drawing.context.buffer(reserve=80 * len(lights), dynamic=True)
         self._side = 0
-        self._standing: list[Node] = []  # the casters' nodes as the beams have them
-        self._beams: list[Beam | Cone] = []
-        self._drawn = False
+        self._standing: list[Node] = []  # the casters' nodes as the reaches have them
+        self._reaches: list[Reach] = []
+        self._wanted: list[Node | None] = []  # the casters' nodes that should be in the maps
+        self._drawn: list[Node | None] = []  # and that are
+        self._areas: np.ndarray  # (lights, casters, 2, 2) px, of the maps, where they are
 
-    def seen_on(self, nodes: Sequence[Node], boxes: Boxes,
-                clip_world: np.ndarray) -> np.ndarray:
-        """(n, 2, 2): rectangles of the picture that no shadow on what is in the boxes leaves."""
+    def seen_on(self, nodes: Sequence[Node], boxes: np.ndarray, seen: np.ndarray,
+                clip_world: np.ndarray) -> dict[int, np.ndarray]:
+        """Rectangles (k, 2, 2) of the picture that shadows on a part do not leave, by its number.
+
+        Boxes (n, 8, 3) are around the scene's parts, and `seen` (n,) are in the picture.
+        """
         self._follow([nodes[caster.node] for caster in self._casters])
-        places = np.array([beam.seen_on(boxes, clip_world) for beam in self._beams])
-        places[is_empty(places)] = NOWHERE
-        return np.stack([places[:, :, 0].min(axis=0), places[:, :, 1].max(axis=0)], axis=1)
+        parts = np.flatnonzero(seen)
+        found = [shadow_places(reach, casters, in_map, boxes[parts], clip_world)
+                 for reach, casters, in_map in zip(
+                     self._reaches, self._wide, self._in_map, strict=True)]
+        one, other, places = (np.concatenate(column) for column in zip(*found, strict=True))
+        other = parts[other]
+        there = ~is_empty(places) & ~((self._parts[one] == other) & self._convex[other])
+        casting = np.isin(np.arange(len(self._casters)), self._owner[one[there]])
+        self._wanted = [node if casts else None
+                        for node, casts in zip(self._standing, casting, strict=True)]
+        return {part: places[there & (other == part)] for part in np.unique(other[there]).tolist()}
 
     def use(self) -> None:
         """Let surfaces that are drawn next have these shadows, as of the last `seen_on`."""
-        if not self._drawn:
-            self._draw()
-            self._drawn = True
+        changed = [new is not old for new, old in zip(self._wanted, self._drawn, strict=True)]
+        if any(changed):
+            self._draw(np.array(changed))
+            self._pass.context.finish()  # llvmpipe takes far longer for both when they overlap
         self._texture.use(SHADOWS_UNIT)
         self._block.bind_to_uniform_block(SHADOWS_BINDING)
 
     def _follow(self, standing: list[Node]) -> None:
-        if self._beams and all(new is old for new, old in
-                               zip(standing, self._standing, strict=True)):
+        if self._reaches and all(new is old for new, old in
+                                 zip(standing, self._standing, strict=True)):
             return
-        corners = [node.matrix @ caster.corners
-                   for node, caster in zip(standing, self._casters, strict=True)]
-        fitted = [box for box, caster in zip(corners, self._casters, strict=True)
-                  if not caster.ground]
-        every = np.hstack(corners)
-        near = np.hstack(fitted) if fitted else every
-        self._beams = [Cone(light, every) if light.type == "spot" else Beam(light, every, near)
-                       for light in self.lights]
-        self._standing, self._drawn = standing, False
+        self._standing = standing
+        boxes = np.concatenate([
+            (node.matrix @ caster.boxes)[:, :3].swapaxes(1, 2)
+            for node, caster in zip(standing, self._casters, strict=True)])
+        fitted = boxes[self._fitted] if self._fitted.any() else boxes
+        reaches = [reach_of(light, boxes.reshape(-1, 3), fitted.reshape(-1, 3))
+                   for light in self.lights]
+        self._wide = [widened(boxes, reach.blur) for reach in reaches]
+        self._in_map = [rectangles_of(wide, reach.clip_world)
+                        for wide, reach in zip(self._wide, reaches, strict=True)]
+        if not self._reaches or any(not np.array_equal(new.clip_world, old.clip_world) for
+                                    new, old in zip(reaches, self._reaches, strict=True)):
+            self._reaches = reaches
+            self._begin()
 
-    def _draw(self) -> None:
-        self._resize(max(beam.side for beam in self._beams))
+    def _begin(self) -> None:
+        """Empty maps."""
+        side = max(reach.side for reach in self._reaches)
+        if side != self._side:
+            self._side = side
+            with own_blocks():
+                self._texture = self._pass.context.depth_texture((side * len(self.lights), side))
+            self._texture.compare_func = "<="
+            self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            self._texture.repeat_x = self._texture.repeat_y = False
+            self._framebuffer = self._pass.context.framebuffer(depth_attachment=self._texture)
+        self._drawn = [None] * len(self._casters)
+        self._areas = np.empty((len(self.lights), len(self._casters), 2, 2), int)
+        self._areas[..., 0, :], self._areas[..., 1, :] = side, 0
+        self._framebuffer.use()
+        self._framebuffer.scissor = None
+        self._framebuffer.clear()
+        block = np.zeros((len(self._reaches), 5, 4), np.float32)
+        for row, reach in zip(block, self._reaches, strict=True):
+            row[:4] = (np.diag([reach.side / side, reach.side / side, 1, 1]) @ _UNIT_CLIP
+                       @ reach.clip_world).T
+            row[4, 0] = reach.grain
+        self._block.write(block.tobytes())
+
+    def _draw(self, changed: np.ndarray) -> None:
+        """Draw again where casters that changed were and are."""
         context, side = self._pass.context, self._side
         context.enable_only(moderngl.DEPTH_TEST)
         context.polygon_offset = (0.0, _ROUNDING)
         self._framebuffer.use()
-        self._framebuffer.clear()
-        matrices = [beam.matrix(side) for beam in self._beams]
-        for number, clip_world in enumerate(matrices):
-            self._framebuffer.viewport = (number * side, 0, side, side)
-            for node, caster in zip(self._standing, self._casters, strict=True):
-                clip_node = clip_world @ node.matrix
+        for number, reach in enumerate(self._reaches):
+            areas = self._areas_of(number)
+            both = np.concatenate([areas[changed], self._areas[number, changed]])
+            low, high = both[:, 0].min(axis=0), both[:, 1].max(axis=0)
+            self._areas[number] = areas
+            if (low >= high).any():
+                continue
+            place = (number * side + int(low[0]), int(low[1]), *(high - low).tolist())
+            self._framebuffer.viewport = (number * side, 0, reach.side, reach.side)
+            self._framebuffer.scissor = place
+            self._framebuffer.clear(viewport=place)
+            meets = ((areas[:, 0] < high) & (areas[:, 1] > low)).all(axis=1)
+            for index in np.flatnonzero(meets).tolist():
+                clip_node = reach.clip_world @ self._standing[index].matrix
                 self._pass.map_model.write(clip_node.T.astype(np.float32).tobytes())
-                for array in caster.arrays:
+                for array in self._casters[index].arrays:
                     array.render()
-        block = np.zeros((len(matrices), 5, 4), np.float32)
-        block[:, :4] = [(_UNIT_CLIP @ matrix).T for matrix in matrices]
-        block[:, 4, 0] = [beam.grain(side) for beam in self._beams]
-        self._block.write(block.tobytes())
+        self._drawn = self._wanted
 
-    def _resize(self, side: int) -> None:
-        if side == self._side:
-            return
-        self._side = side
-        with own_blocks():
-            self._texture = self._pass.context.depth_texture((side * len(self.lights), side))
-        self._texture.compare_func = "<="
-        self._texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-        self._texture.repeat_x = self._texture.repeat_y = False
-        self._framebuffer = self._pass.context.framebuffer(depth_attachment=self._texture)
+    def _areas_of(self, number: int) -> np.ndarray:
+        """(casters, 2, 2) px: in which part of a light's map each is drawn; empty if it is not."""
+        places = (self._in_map[number] + 1) / 2 * self._reaches[number].side
+        areas = np.empty((len(self._casters), 2, 2), int)
+        areas[:, 0], areas[:, 1] = self._side, 0
+        np.minimum.at(areas[:, 0], self._owner, np.floor(places[:, 0]).astype(int))
+        np.maximum.at(areas[:, 1], self._owner, np.ceil(places[:, 1]).astype(int))
+        unwanted = np.array([node is None for node in self._wanted])
+        areas[unwanted] = [[self._side, self._side], [0, 0]]
+        return areas

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import box_corners
 from bullet_sim.rendering.scene import LinkShape, Node
 
 
@@ -44,19 +44,11 @@ class Outlines:
         order = np.lexsort((self._radii, gaps)).tolist()
         return Visibility(clip_node, parts, [index for index in order if parts[index].any()])
 
-    def boxes(self, nodes: Sequence[Node]) -> tuple[np.ndarray, np.ndarray]:
-        """Low and high corners (n, 3), along the world's axes, of every part of every node."""
+    def boxes(self, nodes: Sequence[Node]) -> np.ndarray:
+        """(n, 8, 3): corners in the world of boxes around every part of every node."""
         world_node = np.array([node.matrix for node in nodes]).reshape(-1, 4, 4)
-        corners = (world_node[self._owner] @ self._corners)[:, :3]
-        return corners.min(axis=2), corners.max(axis=2)
+        return (world_node[self._owner] @ self._corners)[:, :3].swapaxes(1, 2)
 
     def by_node(self, of_parts: np.ndarray) -> list[np.ndarray]:
         """What there is one of for each part, as an array for each node."""
         return np.split(of_parts, self._ends)
-
-
-def box_corners(part: MeshPart) -> np.ndarray:
-    """(4, 8) homogeneous corners of the box around a part, in the node's frame."""
-    bounds = np.array([part.vertices.min(axis=0), part.vertices.max(axis=0)], float)
-    picks = np.indices((2, 2, 2)).reshape(3, 8)
-    return np.vstack([bounds[picks[axis], axis] for axis in range(3)] + [np.ones(8)])
