@@ -16,7 +16,7 @@ DEBIANS = "/usr/lib/nodelet/nodelet"
 
 # Packages of nodelets that Debian has, and what to install for them.
 INSTALLABLE = {"depth_image_proc": "libdepth-image-proc-dev", "image_proc": "libimage-proc-dev",
-               "image_rotate": "libimage-rotate-dev", "image_view": "libimage-view-dev",
+               "image_rotate": "libimage-rotate-dev",
                "image_publisher": "libimage-publisher-dev",
                "stereo_image_proc": "libstereo-image-proc-dev"}
 
