@@ -40,7 +40,8 @@ class DiffDrivePlugin:
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
         self._updated = self._commanded = context.world.time
-        self._timeout = p.number("commandTimeout", 0.0)  # s; 0: never
+        # s; 0: never. Nobody misses it: upstream has none.
+        self._timeout = context.parameters.number("commandTimeout", 0.0)
         self._publish_tf = p.flag("publishTf", True)
         odom_tf = p.flag("publishOdomTF", True)
         self._publish_wheel_tf = p.flag("publishWheelTF", False)
