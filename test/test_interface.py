@@ -64,3 +64,9 @@ def test_a_bad_file_is_named_with_its_key(tmp_path, text, problem):
     (tmp_path / "a.yaml").write_text(text)
     with pytest.raises(InterfaceError, match=re.escape(problem)):
         read_interface(tmp_path)
+
+
+def test_a_report_that_was_cut_off_counts_for_nothing(tmp_path):
+    (tmp_path / "whole.xml").write_text("<testsuite><testcase name='test_a[b]'/></testsuite>")
+    (tmp_path / "cut.xml").write_text("<testsuite><testcase name='test_c'")
+    assert script("conformance").outcomes(tmp_path) == {"test_a": "ok"}
