@@ -10,7 +10,7 @@ from bullet_sim.control.controllers.mobile_base import BaseOptions
 from bullet_sim.control.controllers.speed_limiter import SpeedLimits
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
-from bullet_sim.description import WorldDescription
+from bullet_sim.description import JointLimits, WorldDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.world import World
 
@@ -120,15 +120,17 @@ def test_without_ackermann_wheels_are_parallel_and_equally_fast():
     assert parallel.middle(0.3, 0.5) == pytest.approx(0.4)
 
 
-@pytest.fixture
-def hardware():
+@pytest.fixture(params=[{}])
+def hardware(request):
+    """`request.param`: limits by joint."""
+    limits = {name: JointLimits(**options) for name, options in request.param.items()}
     world = World(WorldDescription(gravity=(0.0, 0.0, 0.0)))
     rear = [hinge(name, (0, 1, 0)) for name in ("right_wheel", "left_wheel")]
     front = [hinge(name) for name in ("right_steer", "left_steer")]
     model = world.spawn(rig(*rear, *front))
     yield world, model, SteerBotHardware(
         model, "rear_wheel", "front_steer", ["right_wheel", "left_wheel"],
-        ["right_steer", "left_steer"], CAR, {})
+        ["right_steer", "left_steer"], CAR, limits)
     world.close()
 
 
@@ -162,10 +164,12 @@ def test_beyond_the_steepest_angle_the_wheels_still_have_one(hardware):
     assert angles == pytest.approx(CAR.angles(math.radians(89.0)), abs=1e-3)
 
 
-def test_after_a_reset_limits_start_from_where_the_joint_is(hardware):
+@pytest.mark.parametrize("hardware", [{"left_wheel": {"acceleration": 10.0}}], indirect=True)
+def test_after_a_reset_a_ramp_begins_anew(hardware):
     world, model, hardware = hardware
-    act(world, hardware, 5.0, 0.4, 10)
+    act(world, hardware, 5.0, 0.0, 100)
+    assert model.joints["left_wheel"].motor[0] == pytest.approx(1.0)  # 10 rad/s^2 for 0.1 s
     model.reset()
     hardware.reset()
-    act(world, hardware, 0.0, 0.0, 2)
-    assert hardware.joint_handle("front_steer").position == pytest.approx(0.0, abs=1e-6)
+    act(world, hardware, 5.0, 0.0, 1)
+    assert model.joints["left_wheel"].motor[0] == pytest.approx(0.01)

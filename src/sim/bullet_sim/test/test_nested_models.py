@@ -104,8 +104,9 @@ def test_a_link_is_found_by_scoped_name_or_by_one_that_is_unique(world):
 
 
 def test_the_longest_name_of_a_model_wins(world):
-    world.spawn(body("robot"), name="robot::arm")
-    assert world.link("robot::arm::l").model.name == "robot::arm"
+    assert world.link("robot::arm::turn_link").model.name == "robot"
+    world.spawn(ModelDescription("robot::arm", links=(part("turn_link"),)))
+    assert world.link("robot::arm::turn_link").model.name == "robot::arm"
     assert world.link("robot::base").model.name == "robot"
 
 
