@@ -1,4 +1,4 @@
-"""Lets the tests import prop_models.py and snapshots.py beside them."""
+"""Lets the tests import prop_models.py, rigs.py and snapshots.py beside them."""
 
 import sys
 from pathlib import Path

@@ -21,7 +21,7 @@ class JointPose:
 class JointPoses:
     """`update` at every step; times as in gazebo_ros_joint_pose_trajectory.cpp, UpdateStates.
 
-    A point is shown as soon as those before it have had their durations; the last one for a step.
+    A point is shown as soon as those before it have had their durations, for its own.
     """
 
     def __init__(self, world: World):

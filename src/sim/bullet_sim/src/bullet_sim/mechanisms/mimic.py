@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 from bullet_sim.control.pid import Pid
 from bullet_sim.joint import Joint
+from bullet_sim.physics.auto_disable import REST_RATE, REST_SPEED
 
 FOLLOWING_EFFORT = 1e3  # N m or N: more than any finger; the joint is to be where it belongs
 CATCH_UP = 5  # steps in which a gap is closed
-SETTLED = 1e-4  # rad or m: nearer than this the joint is only held, so that a world comes to rest
+SETTLED = 1e-4  # rad or m: nearer than this to a leader at rest it is held: the world may rest, too
 
 
 @dataclass(frozen=True)
@@ -39,9 +40,13 @@ class MimicJoint:
                 self._follower.drive_effort(max(-p.max_effort, min(p.max_effort, effort)))
             return
         rate = 0.0
-        if abs(gap) >= max(p.sensitiveness, SETTLED):
+        if abs(gap) >= max(p.sensitiveness, SETTLED if self._leader_rests() else 0.0):
             rate = gap / (CATCH_UP * timestep) + p.multiplier * self._leader.velocity
         self._follower.drive_velocity(rate, FOLLOWING_EFFORT)
+
+    def _leader_rests(self) -> bool:
+        slides = self._leader.description.type == "prismatic"
+        return abs(self._leader.velocity) < (REST_SPEED if slides else REST_RATE)
 
     def _target(self) -> float:
         p, limits = self._parameters, self._follower.description
