@@ -116,6 +116,7 @@ def use_node(path: Path) -> None:
     failed: list[BaseException] = []
     with (without_master("/node") as graph, mock.patch("rospy.init_node"), mock.patch("rospy.spin"),
           mock.patch("sys.argv", ["node"]), mock.patch("rosgraph.Master.lookupService"),
+          mock.patch("rospy.sleep", pass_time),
           mock.patch("threading.excepthook", lambda args: failed.append(args.exc_value))):
         for topic in LISTENED:
             graph.topics[rospy.resolve_name(topic)].listeners = 1
@@ -132,6 +133,11 @@ def use_node(path: Path) -> None:
                 node.update()
         if failed:
             raise failed[0]
+
+
+def pass_time(duration: rospy.Duration) -> None:
+    """The simulated clock goes on by what somebody sleeps."""
+    rospy.rostime._set_rostime(rospy.Time.now() + duration)
 
 
 def begin(graph: Graph) -> None:

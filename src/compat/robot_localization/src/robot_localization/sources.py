@@ -21,6 +21,7 @@ from robot_localization.filtering.rotations import angles_of, matrix_of, pose_ma
 
 KINDS = {"odom": Odometry, "imu": Imu, "pose": PoseWithCovarianceStamped,
          "twist": TwistWithCovarianceStamped}
+FAR = 2.0e9  # s from now; a process in which tf2 subtracts stamps of 68 years apart is aborted
 
 
 class Frames:
@@ -32,10 +33,17 @@ class Frames:
         self.listener = tf2_ros.TransformListener(self.buffer)
 
     def transform(self, target, source, stamp):
-        """The matrix (4, 4) that takes points of `source` to `target`; the newest, if none then."""
+        """The matrix (4, 4) that takes points of `source` to `target`; the newest, if none then.
+
+        Raises TransformException.
+        """
         source = source.lstrip("/")
         if source in ("", target):
             return np.eye(4)
+        ahead = stamp.to_sec() - rospy.get_time()
+        if "\0" in source or (abs(ahead) > FAR and not stamp.is_zero()):
+            raise tf2_ros.TransformException(
+                f"frame {source!r} at {stamp.secs} s cannot be looked up")
         try:
             found = self.buffer.lookup_transform(target, source, stamp)
         except tf2_ros.ExtrapolationException:
