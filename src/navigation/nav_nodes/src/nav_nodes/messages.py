@@ -26,9 +26,9 @@ def quaternion_of(yaw: float) -> Quaternion:
 
 
 def is_valid(q: Quaternion) -> bool:
-    """Finite, not nearly 0, and not tipping the robot out of the plane by more than a degree."""
+    """Neither nearly 0 nor huge, and not tipping the robot out of the plane by more than a degree."""
     length = math.hypot(q.x, q.y, q.z, q.w)
-    if not math.isfinite(length) or length < 1e-6:
+    if not 1e-6 <= length <= 1e6:
         return False
     upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) / (length * length)
     return upright > math.cos(math.radians(1.0)) - 1e-3
