@@ -14,7 +14,7 @@ THIS_FILE = b"THIS_FILE"  # in an input: the path of its own file
 
 @dataclass(frozen=True)
 class Target:
-    """One reader of files that a user may name."""
+    """One reader of what strangers may send: files, messages, requests."""
 
     name: str
     file: str  # how the input's file is called: readers look at its end

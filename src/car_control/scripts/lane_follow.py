@@ -10,6 +10,7 @@ import time
 import cv2
 import cv_bridge
 import rospy
+from car_control.images import picture_of
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
 from car_control.lane.lane_settings import LaneSettings
 from car_control.lane.line_finding import find_line
@@ -37,10 +38,8 @@ class LaneFollow:
         self.timer = rospy.Timer(rospy.Duration(CHECK_PERIOD), self.check_images, reset=True)
 
     def take_image(self, msg):
-        try:
-            image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
-        except cv_bridge.CvBridgeError as error:
-            rospy.logerr_throttle(5, f"an image that cannot be used: {error}")
+        image = picture_of(msg)
+        if image is None:
             return
         with self.lock:
             self.arrival, self.standing = rospy.get_time(), False

@@ -4,8 +4,8 @@
 import threading
 
 import cv2
-import cv_bridge
 import rospy
+from car_control.images import picture_of
 from sensor_msgs.msg import Image
 
 WINDOW = "SHOW"
@@ -18,7 +18,6 @@ class Camera:
     """Keeps the newest image for the main thread: windows belong to the thread that made them."""
 
     def __init__(self):
-        self.bridge = cv_bridge.CvBridge()
         self.msg = None
         self.arrived = threading.Event()
         self.image_sub = rospy.Subscriber(
@@ -30,11 +29,11 @@ class Camera:
         self.arrived.set()
 
     def next_image(self):
-        """The newest image as BGR, or None after a moment without a new one."""
+        """The newest image as BGR, or None after a moment without a new one, or of a bad one."""
         if not self.arrived.wait(KEY_WAIT_MS / 1000):
             return None
         self.arrived.clear()
-        return self.bridge.imgmsg_to_cv2(self.msg, desired_encoding="bgr8")
+        return picture_of(self.msg)
 
 
 def is_closed():

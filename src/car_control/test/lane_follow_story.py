@@ -5,6 +5,7 @@ import math
 import signal
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -80,6 +81,15 @@ class LaneFollowStory(unittest.TestCase):
     def test_it_stands_still_without_images(self):
         self.camera.sends = False
         self.commands.wait_until(stands, "standing")
+
+    def test_a_message_that_is_no_picture_ends_nothing(self):
+        self.camera.sends = False
+        self.commands.wait_until(stands, "standing")
+        self.camera.publisher.publish(Image(height=360, width=640, encoding="bgr8", data=b"few"))
+        time.sleep(1.0)  # nobody says that it has come
+        self.camera.sends = True
+        self.commands.wait_until(lambda v, _a: v > 1, "driving")
+        rospy.wait_for_message("/show/windows/SHOW", Image, LIMIT)
 
     def test_gains_change_while_it_runs(self):
         self.camera.beside = 0.05

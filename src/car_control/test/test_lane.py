@@ -59,6 +59,11 @@ def test_no_line_is_no_points():
     assert len(find_line(np.zeros((360, 640, 3), np.uint8), sky).ground) == 0
 
 
+@pytest.mark.parametrize("shape", [(0, 0), (360, 0), (1, 640), (2, 2), (3, 3)])
+def test_next_to_no_picture_is_no_points(shape):
+    assert find_line(np.zeros((*shape, 3), np.uint8), SETTINGS).ground.shape == (0, 2)
+
+
 @pytest.mark.parametrize("radius", [-1.0, 1.2, 5.0])
 def test_bends_of_an_arc(radius):
     bends = bends_along(arc(radius), 0.2, 0.6)

@@ -32,6 +32,15 @@ def quiet():
     return Ekf(process_noise=np.zeros((SIZE, SIZE)))
 
 
+@pytest.mark.parametrize("between", [1.0, np.nan])  # singular, and no number
+def test_a_measurement_without_a_covariance_changes_nothing(between):
+    ekf = quiet()
+    ekf.covariance = np.zeros((SIZE, SIZE))
+    covariance = np.array([[1.0, between], [between, 1.0]])
+    assert not ekf.correct(np.array([0, 1]), np.ones(2), covariance)
+    assert not ekf.state.any() and not ekf.covariance.any()
+
+
 def test_constant_acceleration_ahead():
     state = np.zeros(SIZE)
     state[[VX, 12]] = 2.0, 0.5

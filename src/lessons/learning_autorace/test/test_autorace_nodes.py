@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from learning_autorace import node
 from learning_autorace.calibration import load_calibration
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Image, LaserScan
 
 PACKAGE = Path(__file__).resolve().parent.parent
 SCRIPTS = sorted(PACKAGE.glob("scripts/0[2-7]*.py"))
@@ -32,6 +32,15 @@ def test_beams_that_meet_nothing_are_left_out_without_a_warning():
     with np.errstate(all="raise"):
         points = node.laser_points(scan)
     assert points == pytest.approx(np.array([[node.LASER_FORWARD, 1.0]]))
+
+
+@pytest.mark.parametrize("encoding, length", [("bgr8", 3), ("nonsense", 24)])
+def test_a_message_that_is_no_picture_is_one_line(monkeypatch, encoding, length):
+    said, robot = [], object.__new__(node.Node)  # its topics need a master
+    robot._bridge = node.cv_bridge.CvBridge()
+    monkeypatch.setattr(node.rospy, "logwarn_throttle", lambda _, line: said.append(line))
+    robot._take_image(Image(encoding=encoding, width=4, height=2, step=12, data=bytes(length)))
+    assert len(said) == 1 and said[0].startswith("an image that cannot be used: ")
 
 
 def test_all_lessons_are_there_and_small():

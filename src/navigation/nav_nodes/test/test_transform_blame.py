@@ -51,6 +51,14 @@ def test_a_lookup_that_succeeds_in_the_past_does_not_say_that_all_is_well(late):
     assert late._complaints.back == []
 
 
+@pytest.mark.parametrize(("child", "second"), [("la\0ser", 9), ("laser", 2**32 - 1)])
+def test_what_tf2_does_not_take_is_missed_like_any_other(late, child, second):
+    """Asked for the first it raises ValueError, for the second it ends the process."""
+    assert late.find("odom", child, rospy.Time(second)) is None
+    assert late.pose("odom", child, rospy.Time(second), wait_s=0.1) is None
+    assert late._complaints.missed
+
+
 def test_when_nobody_misses_it_any_more_it_is_back(late):
     late.newest_pose("odom", "base", 0.5)
     late.find("odom", "laser", rospy.Time(9))

@@ -70,6 +70,17 @@ def test_a_thousand_malformed_messages_harm_nobody(visit, seed):
     visit(story, control=True)
 
 
+def test_a_malformed_request_is_refused_and_not_logged(visit, caplog):
+    async def story(_http, port):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"GET / HTTP/1.1\r\nHost: localhost\r\n\x01\x88\r\n\r\n")
+        answer = await reader.readline()
+        writer.close()
+        assert b" 400 " in answer
+    visit(story)
+    assert not caplog.records, "whoever reaches the port could fill the log with tracebacks"
+
+
 def test_more_than_a_mebibyte_ends_its_own_connection_only(visit):
     async def story(http, port):
         neighbour, link = await http.ws_connect("/ws"), await http.ws_connect("/ws")

@@ -44,6 +44,8 @@ def find_line(image: np.ndarray, settings: LaneSettings, expected: float = 0.0) 
 
     expected: m to the left, about where the line's nearest point should be.
     """
+    if min(image.shape[:2]) < BAND:
+        return Line(np.empty((0, 2)), np.empty((0, 2)))
     rows = plan_rows(image.shape[0], image.shape[1], settings)
     yellow = _yellowness(image, rows.row)
     pieces = _bright_pieces(yellow, rows.px_per_m * settings.line_width, settings.line_contrast)

@@ -32,7 +32,7 @@ from robot_localization.filtering.rotations import (
     pose_matrix,
     quaternion_of,
 )
-from robot_localization.sources import Frames, open_sources
+from robot_localization.sources import Frames, check_stamp, open_sources
 
 NOT_HERE = ("use_control", "smooth_lagged_data", "dynamic_process_noise_covariance",
             "disabled_at_startup")
@@ -92,6 +92,7 @@ class LocalizationNode:
     def on_set_pose(self, message):
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         try:
+            check_stamp(message.header.stamp)
             world = self.frames.transform(self.world, message.header.frame_id,
                                           message.header.stamp)
         except tf2_ros.TransformException as error:
@@ -99,11 +100,14 @@ class LocalizationNode:
             return
         pose = world @ pose_matrix([place.x, place.y, place.z],
                                    matrix_of([turn.x, turn.y, turn.z, turn.w]))
+        covariance = np.array(message.pose.covariance).reshape(6, 6)
+        if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
+            rospy.logwarn(f"{rospy.get_name()}: set_pose: it holds nan or inf; nothing is changed")
+            return
         with self.lock:
             self.waiting.clear()
             self.filter.place((message.header.stamp or rospy.Time.now()).to_sec(),
-                              np.concatenate([pose[:3, 3], angles_of(pose[:3, :3])]),
-                              np.array(message.pose.covariance).reshape(6, 6))
+                              np.concatenate([pose[:3, 3], angles_of(pose[:3, :3])]), covariance)
 
     def on_jump_back(self):
         if self.reset_on_jump:

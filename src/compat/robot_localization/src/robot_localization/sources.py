@@ -21,6 +21,7 @@ from robot_localization.filtering.rotations import angles_of, matrix_of, pose_ma
 
 KINDS = {"odom": Odometry, "imu": Imu, "pose": PoseWithCovarianceStamped,
          "twist": TwistWithCovarianceStamped}
+FAR = 2.0e9  # s; a process in which tf2 subtracts stamps of 68 years apart is aborted
 
 
 class Frames:
@@ -32,16 +33,27 @@ class Frames:
         self.listener = tf2_ros.TransformListener(self.buffer)
 
     def transform(self, target, source, stamp):
-        """The matrix (4, 4) that takes points of `source` to `target`; the newest, if none then."""
+        """The matrix (4, 4) that takes points of `source` to `target`; the newest, if none then.
+
+        Raises TransformException.
+        """
         source = source.lstrip("/")
         if source in ("", target):
             return np.eye(4)
+        if "\0" in source:
+            raise tf2_ros.TransformException(f"no frame can be called {source!r}")
         try:
             found = self.buffer.lookup_transform(target, source, stamp)
         except tf2_ros.ExtrapolationException:
             found = self.buffer.lookup_transform(target, source, rospy.Time(0))
         move, turn = found.transform.translation, found.transform.rotation
         return pose_matrix([move.x, move.y, move.z], matrix_of([turn.x, turn.y, turn.z, turn.w]))
+
+
+def check_stamp(stamp):
+    """Raise TransformException for one too far from now for tf2; 0 means the newest."""
+    if abs(stamp.to_sec() - rospy.get_time()) > FAR and not stamp.is_zero():
+        raise tf2_ros.TransformException(f"a stamp of {stamp.secs} s is too far from now")
 
 
 class Source:
@@ -68,6 +80,7 @@ class Source:
     def guarded(self, message, handler):
         """One line for a sensor that cannot be placed; it counts from when it can."""
         try:
+            check_stamp(message.header.stamp)
             measurements = [found for found in handler(message) if found is not None]
         except tf2_ros.TransformException as error:
             rospy.logwarn_throttle(10.0, f"{rospy.get_name()}: {self.name}: {error}")

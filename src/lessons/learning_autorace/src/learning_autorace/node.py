@@ -72,7 +72,11 @@ class Node:
         self._seen.pose = place.x, place.y, 2 * math.atan2(turn.z, turn.w)
 
     def _take_image(self, message: Image) -> None:
-        image = self._bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
+        try:
+            image = self._bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
+        except TypeError as error:  # CvBridgeError is one, and NumPy's for too few bytes
+            rospy.logwarn_throttle(5.0, f"an image that cannot be used: {error}")
+            return
         if self._maps is None:
             self._maps = floor_maps(image.shape[1], image.shape[0], self._calibration)
         self._seen.time, self._seen.image = message.header.stamp.to_sec(), image

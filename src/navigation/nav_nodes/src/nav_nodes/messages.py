@@ -17,7 +17,7 @@ from nav_algorithms.grid import OccupancyGrid
 
 def yaw_of(q: Quaternion) -> float:
     """Yaw, rad, of a quaternion message that need not be of length 1."""
-    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), q.w**2 + q.x**2 - q.y**2 - q.z**2)
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
 
 
 def quaternion_of(yaw: float) -> Quaternion:
@@ -26,11 +26,11 @@ def quaternion_of(yaw: float) -> Quaternion:
 
 
 def is_valid(q: Quaternion) -> bool:
-    """Finite, not nearly 0, and not tipping the robot out of the plane by more than a degree."""
-    length = math.sqrt(q.x**2 + q.y**2 + q.z**2 + q.w**2)
-    if not math.isfinite(length) or length < 1e-6:
+    """Neither nearly 0 nor huge, and not tipping the robot out of the plane by more than a degree."""
+    length = math.hypot(q.x, q.y, q.z, q.w)
+    if not 1e-6 <= length <= 1e6:
         return False
-    upright = 1.0 - 2.0 * (q.x**2 + q.y**2) / length**2
+    upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) / (length * length)
     return upright > math.cos(math.radians(1.0)) - 1e-3
 
 

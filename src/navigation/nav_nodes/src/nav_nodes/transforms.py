@@ -53,7 +53,7 @@ class Transforms:
              wait_s: float = 0.0) -> np.ndarray | None:
         """(x, y, yaw) of `child` in `parent` at `stamp` (0: the newest), waited for `wait_s`."""
         end = time.monotonic() + wait_s
-        while (not is_far(stamp) and not self.buffer.can_transform(parent, child, stamp)
+        while (_is_askable(child, stamp) and not self.buffer.can_transform(parent, child, stamp)
                and time.monotonic() < end and not rospy.is_shutdown()):
             time.sleep(POLL)
         found = self.find(parent, child, stamp)
@@ -73,7 +73,7 @@ class Transforms:
 
     def _look_up(self, parent: str, child: str, stamp: rospy.Time) -> TransformStamped | None:
         try:
-            if not is_far(stamp):
+            if _is_askable(child, stamp):
                 return self.buffer.lookup_transform(parent, child, stamp)
         except tf2_ros.TransformException:
             pass
@@ -122,6 +122,11 @@ def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
 def is_far(stamp: rospy.Time) -> bool:
     """Whether it is too far from now to be asked of tf2; 0, the newest, never is."""
     return not stamp.is_zero() and abs(stamp.to_sec() - rospy.Time.now().to_sec()) > FAR
+
+
+def _is_askable(child: str, stamp: rospy.Time) -> bool:
+    """Whether tf2 answers rather than ends the process or refuses the name."""
+    return not is_far(stamp) and "\0" not in child
 
 
 def _in_the_plane(found: Transform) -> np.ndarray:

@@ -1,6 +1,7 @@
 """The web server: the page's files, the WebSocket, and what other modules serve over HTTP."""
 
 import errno
+import logging
 from collections.abc import Awaitable, Callable
 from ipaddress import ip_address
 from pathlib import Path
@@ -8,6 +9,7 @@ from urllib.parse import quote
 
 import rospkg
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 
 from sim_viewer.access import Access
 from sim_viewer.context import Node
@@ -36,7 +38,7 @@ class Server:
             app.router.add_get(path, handler)
         app.router.add_get("/", self._index)
         app.router.add_static("/", self._folder)
-        self._runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
+        self._runner = web.AppRunner(app, access_log=None, logger=_logger(), shutdown_timeout=1.0)
 
     async def start(self) -> int:
         """Bind and serve; returns the port, the next free one if that one is taken, or NoPort."""
@@ -60,6 +62,17 @@ class Server:
 
     async def _index(self, request: web.Request) -> web.FileResponse:
         return web.FileResponse(self._folder / "index.html")
+
+
+def _logger() -> logging.Logger:
+    """Of faults in the server: a malformed request is the client's, which gets status 400."""
+    logger = logging.getLogger("sim_viewer.http")
+    logger.addFilter(_is_fault_of_server)
+    return logger
+
+
+def _is_fault_of_server(record: logging.LogRecord) -> bool:
+    return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 
 def page_url(options: Options, port: int) -> str:

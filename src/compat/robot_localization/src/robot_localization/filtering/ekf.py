@@ -66,6 +66,8 @@ class Ekf:
                 rejection: float = np.inf) -> bool:
         """Take in a measurement of some entries of the state; False if it is too far off.
 
+        False, too, if no finite estimate comes of it: then its covariance is none.
+
         indices, values: (m,); covariance: (m, m); rejection: Mahalanobis distance.
         """
         noise = np.array(covariance, dtype=float)
@@ -75,13 +77,19 @@ class Ekf:
         angular = np.isin(indices, np.arange(SIZE)[ANGLES])
         innovation[angular] = wrapped(innovation[angular])
         spread = self.covariance[np.ix_(indices, indices)] + noise
-        inverse = np.linalg.inv(spread)
+        try:
+            inverse = np.linalg.inv(spread)
+        except np.linalg.LinAlgError:
+            return False
         if innovation @ inverse @ innovation >= rejection * rejection:
             return False
         gain = self.covariance[:, indices] @ inverse
         kept = np.eye(SIZE)
         kept[:, indices] -= gain
-        self.state = self.state + gain @ innovation
-        self.state[ANGLES] = wrapped(self.state[ANGLES])
-        self.covariance = kept @ self.covariance @ kept.T + gain @ noise @ gain.T
+        state = self.state + gain @ innovation
+        state[ANGLES] = wrapped(state[ANGLES])
+        covariance = kept @ self.covariance @ kept.T + gain @ noise @ gain.T
+        if not (np.isfinite(state).all() and np.isfinite(covariance).all()):
+            return False
+        self.state, self.covariance = state, covariance
         return True

@@ -1,0 +1,23 @@
+"""Pictures of a camera's messages."""
+
+from __future__ import annotations
+
+import cv_bridge
+import numpy as np
+import rospy
+from sensor_msgs.msg import Image
+
+REPEAT = 5.0  # s between two lines about messages that are no pictures
+_bridge = cv_bridge.CvBridge()
+
+
+def picture_of(message: Image) -> np.ndarray | None:
+    """(h, w, 3) uint8 BGR; None, and a line, of a message that is no picture."""
+    try:
+        picture = _bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
+        why = "it has no pixels"
+    except TypeError as error:  # CvBridgeError is one, and NumPy's for too few bytes
+        picture, why = None, " ".join(str(error).split())
+    if picture is None:
+        rospy.logerr_throttle(REPEAT, f"an image that cannot be used: {why}")
+    return picture
