@@ -76,7 +76,7 @@ viewer: ## the course, and a page in the browser that shows it [CONTROL=1] [RVIZ
 test: ## run every check and test [JOBS=3], or those of what has changed, in 90 s [FAST=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)") $(if $(filter-out 0 no false,$(FAST)),--fast)
 
-fuzz: ## give spoilt files to all readers [MINUTES=10] [TARGET=urdf] [SEED=n], or one file again [INPUT=out/fuzz/…]
+fuzz: ## give spoilt files, requests and messages to what takes them [MINUTES=10] [TARGET=urdf] [SEED=n], or one again [INPUT=out/fuzz/…]
 	@scripts/fuzz.sh $(if $(MINUTES),--minutes "$(MINUTES)") $(if $(TARGET),--target "$(TARGET)") \
 	  $(if $(SEED),--seed "$(SEED)") $(if $(INPUT),--input "$(INPUT)")
 

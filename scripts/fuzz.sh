@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Gives spoilt files to every reader: sets up what is missing, then keeps what it finds in out/fuzz/.
+# Gives spoilt files, requests and messages to what takes them: sets up what is missing, then keeps what it finds in out/fuzz/.
 #
 #   scripts/fuzz.sh [--minutes M] [--target NAME] [--seed N]
 #   scripts/fuzz.sh --target NAME --input FILE    one input once more

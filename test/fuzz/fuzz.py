@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Gives spoilt input to every reader, and says what it did with it.
+"""Gives spoilt input to what takes it from strangers, and says what came of it.
 
     fuzz.py [--minutes M] [--target NAME] [--seed N]
     fuzz.py --target NAME --input FILE     one input once more
