@@ -143,12 +143,24 @@ def test_a_loop_without_end_is_one_line(tmp_path):
                            " end?\n")
 
 
+def hinge(joint, pid):
+    """A controllers' file."""
+    return f"racecar: {{left: {{type: a/JointPositionController, joint: {joint}, pid: {pid}}}}}"
+
+
 def test_a_table_that_is_no_controllers_file(tmp_path, capsys):
     file = tmp_path / "mine.yaml"
     for text, code, said in (("a: [", 2, "no YAML"), ("a: !!int ''", 2, "no YAML"),
                              ("a: 2020-13-45", 2, "no YAML"), ("[" * 1000, 2, "no YAML"),
                              ("robot: {}", 1, "first key must be `racecar`"),
-                             ("racecar: {left: {type: x}}", 1, "left: lacks `joint`")):
+                             ("racecar: {left: {type: x}}", 1, "left: lacks `joint`"),
+                             ("racecar: {left: 3}", 1, "left: lacks `type`"),
+                             ("racecar: {left: {type: 3}}", 1, "left: lacks `type`"),
+                             (hinge("[a]", "{}"), 1, "left: lacks `joint`"),
+                             (hinge("a", "3"), 1, "left: lacks `pid`"),
+                             (hinge("a", "{p: 1, i: 0}"), 1, "left: `d` of its `pid` must be"),
+                             (hinge("a", "{p: x, i: 0, d: 0}"), 1, "`p` of its `pid` must be"),
+                             (hinge("a", "{p: .inf, i: 0, d: 0}"), 1, "`p` of its `pid` must")):
         file.write_text(text, encoding="utf-8")
         assert main(["steering", str(file)]) == code
         assert said in "".join(capsys.readouterr())

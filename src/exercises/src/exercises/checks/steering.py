@@ -21,6 +21,7 @@ from exercises.errors import CannotCheck, Mistake
 from exercises.finding import Finding, near
 
 JOINTS = "left_steering_joint", "right_steering_joint"
+MOST_GAIN = 1e9  # of any kind
 
 
 def read(file: Path) -> None:
@@ -32,10 +33,25 @@ def read(file: Path) -> None:
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
         raise Mistake(f"{file}: its first key must be `racecar`, with controllers below it")
     for name, entry in table["racecar"].items():
-        publishes = "JointStateController" in str(entry)  # it moves nothing
-        for key in ("type",) if publishes else ("type", "joint", "pid"):
-            if not isinstance(entry, dict) or key not in entry:
-                raise Mistake(f"{file}: {name}: lacks `{key}`")
+        if wrong := _wrong_in(entry):
+            raise Mistake(f"{file}: {name}: {wrong}")
+
+
+def _wrong_in(entry: object) -> str | None:
+    """What a controller lacks, or has of another kind than it must be."""
+    if not isinstance(entry, dict) or not isinstance(entry.get("type"), str):
+        return "lacks `type`"
+    if "JointStateController" in entry["type"] and "pid" not in entry:  # it moves nothing
+        return None
+    if not isinstance(entry.get("joint"), str):
+        return "lacks `joint`"
+    gains = entry.get("pid")
+    if not isinstance(gains, dict):
+        return "lacks `pid`"
+    for key in ("p", "i", "d"):
+        if type(gains.get(key)) not in (int, float) or not abs(gains[key]) < MOST_GAIN:
+            return f"`{key}` of its `pid` must be a number"
+    return None
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
