@@ -192,6 +192,15 @@ def test_a_policy_is_read_as_it_was_written(tmp_path):
         load_policy(tmp_path / "p.json")
 
 
+@pytest.mark.parametrize("weights", ["[" * 10**5, "[1, 2]", "[[1], [1" + "0" * 400 + "]]", "{}"])
+def test_a_file_without_two_rows_of_weights_is_no_policy(tmp_path, weights):
+    path = tmp_path / "p.json"
+    path.write_text('{"course": "race", "action": "ackermann", "score": {}, "bias": [0, 0],'
+                    f' "low": [0, 0], "high": [1, 1], "weights": {weights}}}')
+    with pytest.raises(CourseError, match=r"p\.json: [^\n]+$"):
+        load_policy(path)
+
+
 def test_the_shipped_policy_drives_as_its_file_says():
     policy = load_policy(POLICY)
     _, info = drive(make("LineFollow", observation="features"),

@@ -40,15 +40,16 @@ def load_policy(path: str | Path) -> LinearPolicy:
     """The policy of a file; CourseError names file and key."""
     try:
         values = json.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise CourseError(f"{path}: no policy: {error}") from error
     known = [field.name for field in fields(LinearPolicy)]
     if not isinstance(values, dict) or set(values) != set(known):
         raise CourseError(f"{path}: no policy: it must have the keys {', '.join(known)}")
     try:
         shapes = [np.asarray(values[key], float).shape for key in ("bias", "low", "high")]
-        if shapes != [(2,)] * 3 or np.asarray(values["weights"], float).shape[:1] != (2,):
+        rows = np.asarray(values["weights"], float)
+        if shapes != [(2,)] * 3 or rows.ndim != 2 or len(rows) != 2:
             raise ValueError("not two rows")
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise CourseError(f"{path}: weights, bias, low, high: {error}") from error
     return LinearPolicy(**values)
