@@ -119,9 +119,9 @@ def test_the_clock_jumps_for_a_round_s_programs_alone(chaos, tmp_path):
 
 
 @pytest.mark.parametrize("words, said", [
-    (["--rounds", "0"], "'0' is not a whole number, 1 or more"),
-    (["--seed", "x"], "'x' is not a whole number"),
-    (["--course", "moon"], "no course 'moon'; there are: course, race, lane_empty"),
+    (["--rounds", "0"], "--rounds (ROUNDS=) must be a whole number, 1 to "),
+    (["--seed", "x"], "--seed (SEED=) must be a whole number"), (["--loud"], "scripts/chaos.sh"),
+    (["--course", "moon"], "no course 'moon' (COURSE=); there are: course, race, lane_empty"),
     (["--only", "flood"], "no fault begins with 'flood' (ONLY=); there are: kill follower, ")])
 def test_a_mistake_is_one_line(words, said):
     done = subprocess.run([sys.executable, CHAOS / "chaos.py", *words], capture_output=True,

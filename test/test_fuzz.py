@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from run_session.failure import RunError
+
 pytestmark = pytest.mark.processes
 FUZZ = Path(__file__).parent / "fuzz"
 SEED = 1
@@ -71,9 +73,9 @@ def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
 
 
 @pytest.mark.parametrize("words, said", [
-    (["--target", "none"], "no target 'none'; there are: urdf, "),
-    (["--minutes", "soon"], "'soon' is not a number of minutes"),
-    (["--minutes", "-1"], "'-1' is not a number of minutes"),
+    (["--target", "none"], "no target 'none' (TARGET=); there are: urdf, "),
+    (["--minutes", "soon"], "--minutes (MINUTES=) must be a number of minutes"),
+    (["--minutes=-1"], "--minutes (MINUTES=) must be a number of minutes"),
     (["--input", "nowhere"], "INPUT= needs the TARGET="),
     (["--target", "stl", "--input", "nowhere"], "nowhere cannot be read")])
 def test_a_mistake_is_one_line(words, said):
@@ -82,12 +84,11 @@ def test_a_mistake_is_one_line(words, said):
     assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_a_folder_that_can_hold_no_finding_is_one_line(tmp_path, monkeypatch, capsys):
+def test_a_folder_that_can_hold_no_finding_is_one_line(tmp_path, monkeypatch):
     (tmp_path / "out").write_text("")
     monkeypatch.syspath_prepend(str(FUZZ))
     import fuzz as command
 
     monkeypatch.setattr(command, "OUT", tmp_path / "out")
-    assert command.main(["--target", "ogre", "--minutes", "0.001"]) == 2
-    said = capsys.readouterr().err
-    assert said == f"fuzz: nothing can be kept in {tmp_path / 'out'}: File exists\n"
+    with pytest.raises(RunError, match=f"^nothing can be kept in {tmp_path / 'out'}: File exists$"):
+        command.main(["--target", "ogre", "--minutes", "0.001"])

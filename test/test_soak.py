@@ -1,15 +1,21 @@
 """`make soak`: what counts as growth, and one short run."""
 
 import csv
+import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from run_session.cpu import Process
+from run_session.failure import RunError
+
 sys.path.insert(0, str(Path(__file__).parent / "soak"))
+import samples
 from growth import judge
-from samples import CLOCK, PERIOD, Sample
+from samples import ALL, CLOCK, PERIOD, Sample
 
 PROGRAM = Path(__file__).parent / "soak" / "soak.py"
 HOUR = 3600.0
@@ -18,9 +24,9 @@ HOUR = 3600.0
 def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _: 1.0):
     """Samples of a process and the clock; each figure is a function of the time, s."""
     found = []
-    for time in (number * PERIOD for number in range(int(count * HOUR / PERIOD))):
-        found.append(Sample(time, CLOCK, 0.0, 0, 0, pace(time), 100.0))
-        found.append(Sample(time, "gazebo", memory(time), descriptors(time), 12, 0.0, 0.0))
+    for now in (number * PERIOD for number in range(int(count * HOUR / PERIOD))):
+        found.append(Sample(now, CLOCK, 0.0, 0, 0, pace(now), 100.0))
+        found.append(Sample(now, "gazebo", memory(now), descriptors(now), 12, 0.0, 0.0))
     return found
 
 
@@ -32,11 +38,31 @@ def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _
     ({"memory": lambda time: 100.0 - 5 * time / HOUR}, []),
     ({"descriptors": lambda time: 20 + int(time // 600)}, ["gazebo descriptors"]),
     ({"pace": lambda time: 1.0 - 0.05 * time / HOUR}, ["clock pace"]),
+    ({"pace": lambda _: 0.0}, ["clock pace"]),  # it stands still
 ])
 def test_growth_is_more_than_two_percent_after_the_warm_up(figures, changed):
     table, verdict = judge(hours(1.5, **figures))
     rows = [" ".join(line.split()[:2]) for line in table.splitlines() if line.endswith("CHANGES")]
     assert rows == changed and verdict is bool(changed)
+
+
+@pytest.mark.parametrize("count", [0.0, 5 * PERIOD / HOUR])
+def test_too_few_samples_are_no_verdict(count):
+    with pytest.raises(RunError, match="too few samples"):
+        judge(hours(count))
+
+
+def test_ever_more_processes_of_other_names_are_growth(monkeypatch):
+    monkeypatch.setattr(samples.rospy, "Subscriber", lambda *_, **__: None)
+    monkeypatch.setattr(samples.rospy, "get_time", time.monotonic)
+    monkeypatch.setattr(samples, "processes", lambda: left)
+    sampler, left, found = samples.Sampler(), [], []
+    for number in range(24):
+        left.append(Process(os.getpid(), f"node{number}", 0.0, 1 << 20))
+        found += sampler.look()
+    changed = [line.split()[:2] for line in judge(found)[0].splitlines() if "CHANGES" in line]
+    assert [["all", kind] for kind in ("memory", "descriptors", "threads")] == [
+        row for row in changed if row[0] == "all"]
 
 
 @pytest.mark.processes
@@ -47,7 +73,7 @@ def test_a_short_run_is_sampled_and_leaves_its_files(tmp_path):
     out = Path(run.stdout.strip().splitlines()[-1].split()[2].rstrip(":"))
     with (out / "samples.csv").open(encoding="utf-8") as file:
         names = {row["name"] for row in csv.DictReader(file)}
-    assert {CLOCK, "gazebo", "follower", "sim_viewer", "rosmaster"} <= names
+    assert {CLOCK, ALL, "gazebo", "follower", "sim_viewer", "rosmaster"} <= names
     assert (out / "growth.png").stat().st_size > 10_000
 
 
@@ -55,4 +81,4 @@ def test_a_short_run_is_sampled_and_leaves_its_files(tmp_path):
 def test_a_mistake_is_said_and_nothing_starts(words):
     run = subprocess.run([sys.executable, str(PROGRAM), *words],
                          capture_output=True, text=True, timeout=60, check=False)
-    assert run.returncode == 2 and words[0] in run.stderr.splitlines()[-1]
+    assert run.returncode == 2 and run.stderr.count("\n") == 1 and words[1] in run.stderr

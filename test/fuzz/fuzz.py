@@ -10,31 +10,34 @@ Exit code 0: nothing found; 1: something, kept in out/fuzz/; 2: could not run.
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 from campaign import Report, replay, run
 from target import ROOT
 from targets import TARGETS
 
+from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
+from evaluation.trial.program import run_program
+from run_session.failure import RunError
+
 OUT = ROOT / "out" / "fuzz"
-USUAL = 10.0  # minutes
 EXAMPLES = 50  # of a target before it is the next one's turn
 
 
 def main(words: list[str] | None = None) -> int:
     """The exit code."""
-    options = _parser().parse_args(words)
+    options = _options(words)
     if options.input:
         return _replay(options)
     try:
         OUT.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=OUT).close()
     except OSError as error:
-        return _wrong(f"nothing can be kept in {OUT}: {error.strerror}")
+        raise RunError(f"nothing can be kept in {OUT}: {error.strerror}") from error
     chosen = [TARGETS[options.target]] if options.target else list(TARGETS.values())
     reports = {target.name: Report(target, OUT) for target in chosen}
     until, seed = time.monotonic() + options.minutes * 60, options.seed
@@ -58,53 +61,28 @@ def main(words: list[str] | None = None) -> int:
 
 def _replay(options: argparse.Namespace) -> int:
     if not options.target:
-        return _wrong("INPUT= needs the TARGET= that reads it")
+        raise RunError("INPUT= needs the TARGET= that reads it")
     try:
         content = options.input.read_bytes()
     except OSError as error:
-        return _wrong(f"{options.input} cannot be read: {error.strerror}")
+        raise RunError(f"{options.input} cannot be read: {error.strerror}") from error
     fault = replay(TARGETS[options.target], content)
     print(f"{options.target}: {fault or 'nothing is wrong'}")
     return int(fault is not None)
 
 
-def _wrong(text: str) -> int:
-    print(f"fuzz: {text}", file=sys.stderr)
-    return 2
-
-
-class _Parser(argparse.ArgumentParser):
-    """One line for a mistake."""
-
-    def error(self, message: str) -> None:
-        sys.exit(_wrong(message))
-
-
-def _minutes(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value <= 100_000:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of minutes above 0")
-    return value
-
-
-def _target(text: str) -> str:
-    if text not in TARGETS:
-        raise argparse.ArgumentTypeError(f"no target {text!r}; there are: {', '.join(TARGETS)}")
-    return text
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="fuzz", description=__doc__,
-                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=_minutes, default=USUAL)
-    parser.add_argument("--target", type=_target)
-    parser.add_argument("--seed", type=int, default=int(time.time()))
-    parser.add_argument("--input", type=Path)
-    return parser
+def _options(words: list[str] | None) -> argparse.Namespace:
+    parser = Parser("", prog="fuzz.sh", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", default=10.0, metavar="M", help="(10)", type=partial(
+        number, "--minutes (MINUTES=)", least=0.001, most=100_000.0, what="a number of minutes"))
+    parser.add_argument("--target", help="one of them alone",
+                        type=partial(one_of, "target", "TARGET", TARGETS))
+    parser.add_whole("--seed", int(time.time()) % LARGEST_SEED, "of the first inputs",
+                     variable="SEED", most=LARGEST_SEED)
+    parser.add_argument("--input", type=Path, help="a file to give to the target once more")
+    return parser.parse_args(words)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_program("fuzz", main))

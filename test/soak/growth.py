@@ -10,6 +10,7 @@ from samples import CLOCK, Sample
 
 from evaluation.picture import chart
 from evaluation.trial.report import grouped, table
+from run_session.failure import RunError
 
 WARM_UP = 600.0  # s, wall; of shorter runs a third
 SHARE = 5  # the first and the last of so many parts of what follows are held against each other
@@ -19,7 +20,12 @@ MOST_DRIFT = 0.02  # of pace and rate
 
 
 def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
-    """The table, and whether anything grows, or simulated time or its messages change pace."""
+    """The table, and whether anything grows, or simulated time or its messages change pace.
+
+    RunError where there are too few samples for an opinion.
+    """
+    if _ends([(each.time, each.pace) for each in samples if each.name == CLOCK]) is None:
+        raise RunError("too few samples to say whether anything grows: let it run on")
     rows, changes = [("process", "", "first", "last", "change", "")], False
     for name, found in grouped(samples, lambda each: each.name).items():
         for kind in (("pace", "rate") if name == CLOCK else tuple(LEAST)):
@@ -28,7 +34,7 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
                 continue
             first, last = parts
             change = (last - first) / first if first else 0.0
-            bad = (abs(change) > MOST_DRIFT if name == CLOCK else
+            bad = (abs(change) > MOST_DRIFT or not last if name == CLOCK else
                    change > MOST_GROWTH and last - first >= LEAST[kind])
             changes |= bad
             rows.append((name, kind, f"{first:.2f}", f"{last:.2f}", f"{change:+.1%}",
@@ -38,7 +44,7 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
 
 def _ends(seen: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
     """Medians of the first and the last part after the warm-up; None of too few samples."""
-    begin = min(WARM_UP, seen[-1][0] / 3)
+    begin = min(WARM_UP, seen[-1][0] / 3) if seen else 0.0
     values = [value for when, value in seen if when >= begin]
     part = len(values) // SHARE
     return (statistics.median(values[:part]), statistics.median(values[-part:])) if part else None

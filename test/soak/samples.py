@@ -13,12 +13,14 @@ from rosgraph_msgs.msg import Clock
 from run_session.cpu import processes
 
 PERIOD = 10.0  # s, wall, between two samples
+FEWEST = 30  # samples of a short run
 CLOCK = "clock"  # the row of simulated time
+ALL = "all"  # the row of all processes together: what leaves ever more of them behind
 MEBIBYTE = 2**20
 
 
 class Sample(NamedTuple):
-    """Of one process, by its ROS name; or of CLOCK, with 0 for what it does not have."""
+    """Of one process, by its ROS name; of ALL; or of CLOCK, with 0 for what it does not have."""
 
     time: float  # s, wall, since the first
     name: str
@@ -39,7 +41,7 @@ class Sampler:
         self._simulated = rospy.get_time()
 
     def look(self) -> list[Sample]:
-        """A row for each process, processes of one name added up, and one for the clock."""
+        """A row for the clock, one for ALL, one for each process, those of one name added up."""
         now, simulated = time.monotonic(), rospy.get_time()
         elapsed, passed = now - self._looked, simulated - self._simulated
         clock = Sample(now - self._began, CLOCK, 0.0, 0, 0, passed / elapsed,
@@ -49,11 +51,12 @@ class Sampler:
         for each in processes():
             with contextlib.suppress(psutil.NoSuchProcess):
                 process = psutil.Process(each.pid)
-                before = found.get(each.name) or Sample(clock.time, each.name, 0.0, 0, 0, 0.0, 0.0)
-                found[each.name] = before._replace(
-                    memory=before.memory + each.memory / MEBIBYTE,
-                    descriptors=before.descriptors + process.num_fds(),
-                    threads=before.threads + process.num_threads())
+                held = (each.memory / MEBIBYTE, process.num_fds(), process.num_threads())
+                for name in (each.name, ALL):
+                    before = found.get(name) or Sample(clock.time, name, 0.0, 0, 0, 0.0, 0.0)
+                    found[name] = before._replace(
+                        memory=before.memory + held[0], descriptors=before.descriptors + held[1],
+                        threads=before.threads + held[2])
         return [clock, *found.values()]
 
     def _count(self, _: Clock) -> None:

@@ -15,15 +15,16 @@ import csv
 import sys
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import rospy
 from beside import Beside
 from growth import draw, judge
-from samples import PERIOD, Sample, Sampler
+from samples import FEWEST, PERIOD, Sample, Sampler
 
-from run_session.failure import RunError
-from run_session.interruption import interruptible
+from evaluation.trial.command_line import Parser, number, one_of
+from evaluation.trial.program import run_program
 from run_session.launch import Launched
 from run_session.session import Session
 from run_session.simulator import models
@@ -41,26 +42,22 @@ COURSES = {  # the robot, and the words of each roslaunch
 
 def main(words: Sequence[str] | None = None) -> int:
     """The exit code."""
-    parser = argparse.ArgumentParser(prog="soak", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--hours", type=float, default=4.0, help="(4)")
-    parser.add_argument("--course", choices=COURSES, default="course", help="(course)")
+    parser = Parser("", prog="soak.sh", description=__doc__,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--hours", default=4.0, metavar="H", help="(4)", type=partial(
+        number, "--hours (HOURS=)", least=0.001, most=1000.0, what="a number of hours"))
+    parser.add_argument("--course", default="course", help=f"{', '.join(COURSES)} (course)",
+                        type=partial(one_of, "course", "COURSE", COURSES))
     options = parser.parse_args(words)
-    if not 0 < options.hours <= 1000:
-        parser.error("--hours (HOURS=) must be more than 0 and at most 1000")
     out = ROOT / "out" / "soak" / options.course
     out.mkdir(parents=True, exist_ok=True)
-    try:
-        with interruptible(), Session(out) as session:
-            samples = _run(session, options)
-    except (RunError, OSError) as failure:
-        print(f"soak: {failure}", file=sys.stderr)
-        return 2
+    with Session(out) as session:
+        samples = _run(session, options)
     return _report(samples, out)
 
 
 def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
-    """One sample a process every PERIOD s; an interruption keeps what there is."""
+    """One sample a process every PERIOD s, or FEWEST; an interruption keeps what there is."""
     robot, launches = COURSES[options.course]
     launched = session.launched(robot)
     launched.start_roscore()
@@ -69,10 +66,12 @@ def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
         launched.wait_for(f"model {robot}", lambda: robot in models(), START_LIMIT)
     beside = Beside(launched, session.out / "log")
     session.at_end(beside.end)
-    sampler, samples, until = Sampler(), [], time.monotonic() + options.hours * 3600
+    seconds = options.hours * 3600
+    period, until = min(PERIOD, seconds / FEWEST), time.monotonic() + seconds
+    sampler, samples = Sampler(), []
     try:
         while (left := until - time.monotonic()) > 0:
-            _wait(launched, beside, min(PERIOD, left))
+            _wait(launched, beside, min(period, left))
             samples += sampler.look()
             session.progress.status(f"{left / 60:.0f} min left, {len(samples)} samples")
     except KeyboardInterrupt:
@@ -93,11 +92,11 @@ def _report(samples: Sequence[Sample], out: Path) -> int:
         writer = csv.writer(file)
         writer.writerow(Sample._fields)
         writer.writerows(samples)
-    draw(samples, out / "growth.png")
     table, grows = judge(samples)
+    draw(samples, out / "growth.png")
     print(f"{table}\nwritten to {out}: samples.csv, growth.png")
     return int(grows)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_program("soak", main))

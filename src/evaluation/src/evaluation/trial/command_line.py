@@ -20,12 +20,13 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, package: str = "evaluation", **settings: object) -> None:
         super().__init__(**{"allow_abbrev": False, **settings})
-        self._package = package  # that the program belongs to
+        self._package = package  # that the program belongs to; none: it is a script in scripts/
 
     def error(self, message: str) -> None:
         """RunError that says where the options are listed."""
         program = self.prog.split()[0]  # a verb follows
-        raise RunError(f"{message} (see: rosrun {self._package} {program} --help)")
+        start = f"rosrun {self._package} {program}" if self._package else f"scripts/{program}"
+        raise RunError(f"{message} (see: {start} --help)")
 
     def add_whole(self, flag: str, default: int | None, text: str, *, variable: str = "",
                   least: int = 0, most: int = MOST) -> None:
