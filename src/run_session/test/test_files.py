@@ -4,6 +4,11 @@ import errno
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
+
+import pytest
+
+from run_session.files import write_whole
 
 # In a process of its own, whose files may get no longer than 1000 bytes: as on a full disk.
 WRITE_TWICE = textwrap.dedent("""
@@ -27,3 +32,21 @@ def test_what_cannot_be_written_leaves_the_file_of_before(tmp_path):
                           text=True, timeout=60, check=False)
     assert done.stdout.split() == [str(errno.EFBIG), str(path)], done.stderr
     assert path.read_bytes() == b"{}" and list(tmp_path.iterdir()) == [path]
+
+
+def test_an_interruption_leaves_nothing_beside_the_file(tmp_path, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    (tmp_path / "report.json").write_bytes(b"{}")
+    monkeypatch.setattr(Path, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(tmp_path / "report.json", b"[]")
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"{}"]
+
+
+def test_an_error_names_the_file_that_was_asked_for(tmp_path):
+    (tmp_path / "out").write_bytes(b"")
+    with pytest.raises(NotADirectoryError) as refused:
+        write_whole(tmp_path / "out" / "report.json", b"{}")
+    assert refused.value.filename == str(tmp_path / "out" / "report.json")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Written beside it first: a run that is killed, or a full disk, leaves the last file whole.
+    """Written beside it first: a run that is ended, or a full disk, leaves the last file whole.
 
     OSError names the file.
     """
@@ -15,5 +16,7 @@ def write_whole(path: Path, content: bytes) -> None:
         half.write_bytes(content)
         half.replace(path)
     except OSError as error:
-        half.unlink(missing_ok=True)
         raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        with contextlib.suppress(OSError):  # it has become the file, or never was
+            half.unlink()
