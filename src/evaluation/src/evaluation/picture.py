@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,6 +82,13 @@ def write_png(path: Path, picture: np.ndarray) -> None:
     write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
 
 
+def write_figure(figure: Figure, path: Path, dpi: int) -> None:
+    """As a PNG; OSError, and no file, where it cannot be written."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=dpi)
+    write_whole(path, content.getvalue())
+
+
 def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: str) -> np.ndarray:
     """The driven path over the course (rows, 1400, 3), BGR, a colour for each lap."""
     yellow = build_track(track_file)
@@ -140,7 +148,7 @@ def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tu
         axes.set(xticks=(), yticks=(), aspect="equal")
         caption, good = draw(axes, tile)
         axes.set_title(caption, fontsize=7, color=TEXT if good else colours.CAR)
-    figure.savefig(path)
+    write_figure(figure, path, DPI)
 
 
 @contextlib.contextmanager
@@ -155,7 +163,7 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
         axes.tick_params(labelsize=8, length=0)
         axes.grid(alpha=0.3)
     sheet.tight_layout()
-    sheet.savefig(path, dpi=PANEL_DPI)
+    write_figure(sheet, path, PANEL_DPI)
 
 
 def _finish(axes: Axes) -> None:
