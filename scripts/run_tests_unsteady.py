@@ -33,8 +33,8 @@ def is_known(result: Result, known: list[dict]) -> bool:
 def remember(new: list[str], history: Path = HISTORY) -> list[str]:
     """Add this run's files to the history; returns those that were unsteady in it before."""
     before: list[list[str]] = []
-    with contextlib.suppress(OSError, ValueError):
-        before = json.loads(history.read_text(encoding="utf-8"))[1 - RUNS:]
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):  # or it is no such list
+        before = [list(map(str, run)) for run in json.loads(history.read_text("utf-8"))[1 - RUNS:]]
     with contextlib.suppress(OSError):  # a home that is full or cannot be written
         history.parent.mkdir(parents=True, exist_ok=True)
         history.write_text(json.dumps([*before, new]) + "\n", encoding="utf-8")

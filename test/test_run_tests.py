@@ -87,7 +87,20 @@ def test_a_file_that_is_unsteady_twice_in_ten_runs_fails_the_second_run(runner, 
     assert runner.judge_unsteady(unsteady, []) == [f"{FILES[0]}: unsteady twice in 10 runs"]
 
 
-@pytest.mark.parametrize("text", ["", "[[", "a folder"])
+@pytest.mark.parametrize("fast", [True, False])
+def test_a_fast_run_is_none_of_the_ten(runner, monkeypatch, tmp_path, fast):
+    for name in ("run_fast", "run_whole"):
+        monkeypatch.setattr(runner, name, lambda *_: [])
+    monkeypatch.setattr(runner, "run_ruff", lambda: runner.Result("ruff check", passed=1))
+    monkeypatch.setattr(runner, "show_conformance", lambda: None)
+    monkeypatch.setattr(runner.signal, "signal", lambda *_: None)
+    monkeypatch.setattr(runner, "OUT", tmp_path / "out")
+    monkeypatch.setattr(sys, "argv", ["run_tests.py", *(["--fast"] if fast else [])])
+    assert runner.main() == 0
+    assert any((tmp_path / "cache").rglob("unsteady.json")) is not fast
+
+
+@pytest.mark.parametrize("text", ["", "[[", "a folder", "{}", "7", "[7]", "[[[]]]"])
 def test_a_history_that_cannot_be_read_is_none(runner, monkeypatch, tmp_path, text):
     second(runner, monkeypatch, passed=True)
     history = tmp_path / "unsteady.json"
