@@ -49,11 +49,22 @@ def test_every_target_has_its_turn_here(fuzz):
     assert set(marks.args[1]) == set(fuzz[1])
 
 
+def test_every_form_and_map_is_read_before_it_is_spoilt(fuzz):
+    import forms
+    import maps
+
+    for kind in forms.KINDS:
+        assert forms.kind_of(forms.template(kind)) is kind
+    beside = {path.name for path in fuzz[1]["map"].beside}
+    for path in maps.found("**/maps/*.yaml", "**/map/*.yaml"):
+        assert maps.read_map(path) and path.with_suffix(".pgm").name in beside
+
+
 @pytest.mark.parametrize("read, fault", [
     ("lambda path: 1 / 0", "ZeroDivisionError"), ("lambda path: os.abort()", "crashes: SIGABRT"),
     ("lambda path: [0] * 2**30", "MemoryError"), ("lambda path: spin()", "hangs"),
     ("lambda path: refuse('a\\nb')", "more than a line"), ("lambda path: refuse('a')", None),
-    ("lambda path: None", None)])
+    ("lambda path: refuse(' ')", "without a word"), ("lambda path: None", None)])
 def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
     import os
     from dataclasses import replace

@@ -87,4 +87,4 @@ class Drive:
 
 PATTERNS = {"simulator": r"__name:=gazebo\b", "master": r"bin/rosmaster\b",
             "roscore": r"bin/roscore\b", "roslaunch": r"bin/roslaunch\b",
-            "encoder": r"^ffmpeg\b", "spawner": r"spawn_model"}
+            "encoder": r"^ffmpeg\b"}

@@ -19,8 +19,13 @@ KINDS = (SpawnModel._request_class, SetModelState._request_class,
 def fill_in(path: Path) -> None:
     """A form of the kind that takes it, and the message as it would be sent."""
     text = path.read_text("utf-8", errors="replace")
-    kind = next((one for one in KINDS if one.__slots__[0] in text), KINDS[0])
-    fill(kind, text).serialize(io.BytesIO())
+    fill(kind_of(text), text).serialize(io.BytesIO())
+
+
+def kind_of(text: str) -> type:
+    """The kind of which the text has the most fields, for how many there are."""
+    return max(KINDS, key=lambda kind: sum(
+        f"{name}:" in text for name in kind.__slots__) / len(kind.__slots__))
 
 
 TARGETS = (

@@ -16,7 +16,8 @@ ALIASES = b"a: &a [1]\n" + b"".join(
 
 TARGETS = (
     Target("map", "input.yaml", spoilt([*found("**/maps/*.yaml", "**/map/*.yaml"), ALIASES], TEXT),
-           read_map, (MapFileError,), tuple(found("**/map/*.pgm"))),
+           read_map, (MapFileError,),
+           tuple(found("**/map/*.pgm", "**/maps/*.pgm", largest=1_000_000))),
     Target("track", "input.yaml", spoilt([*found("**/tracks/*.yaml"), ALIASES], TEXT),
            load_centre_line, (TrackError,)),
 )

@@ -145,6 +145,8 @@ def _try(target: Target, file: Path) -> str | None:
     try:
         target.read(file)
     except target.refusals as error:
+        if not str(error).strip():
+            return f"{type(error).__name__} without a word"
         if not _is_line(str(error)):
             return f"{type(error).__name__} of more than a line: {_one_line(str(error))}"
     except BaseException as error:
