@@ -1,6 +1,7 @@
 """What `make chaos` looks at, and what its command refuses; its rounds take minutes each."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -22,20 +23,8 @@ for _ in sys.stdin:
 
 
 @pytest.fixture(scope="module")
-def chaos():
-    """The modules of chaos/, which find each other by name."""
-    sys.path.insert(0, str(CHAOS))
-    try:
-        import checks
-        import clock
-        import course
-        import members
-        import rounds
-        import states
-    finally:
-        sys.path.remove(str(CHAOS))
-    return {"checks": checks, "clock": clock, "course": course, "members": members,
-            "rounds": rounds, "states": states}
+def chaos(modules):
+    return modules("chaos", "checks", "clock", "course", "members", "rounds", "states")
 
 
 def test_half_a_file_is_noticed(chaos, tmp_path):
@@ -62,10 +51,18 @@ def test_who_ends_early_says_one_line(chaos, said, code, faults):
 
 @pytest.mark.parametrize("said, faults", [
     (f"{TRACEBACK}ValueError\n", 1), (f"{TRACEBACK}KeyboardInterrupt\n", 0),
+    (f"{TRACEBACK}  except KeyboardInterrupt:\nValueError\n", 1),
+    (f"{TRACEBACK}KeyboardInterrupt: KeyboardInterrupt\n{TRACEBACK}ValueError\n", 1),
     (f"--- Logging error ---\n{TRACEBACK}OSError\n", 0), ("all is well\n", 0)])
 def test_a_traceback_in_a_log_is_noticed(chaos, tmp_path, said, faults):
     (tmp_path / "roslaunch.log").write_text(said)
     assert len(list(chaos["checks"].wrong_logs(tmp_path))) == faults
+
+
+def state(now, x, yaw=0.0):
+    """A line of the simulator's."""
+    turn = [0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)]
+    return json.dumps({"time": now, "poses": {"car": [x, 0.0, 0.0, *turn]}})
 
 
 @pytest.mark.parametrize("stop, until, fault", [
@@ -73,14 +70,23 @@ def test_a_traceback_in_a_log_is_noticed(chaos, tmp_path, said, faults):
 def test_a_car_that_drives_on_is_noticed(chaos, tmp_path, stop, until, fault):
     """Its driver is gone at 1 s; it stands `stop` s later, the simulation ends `until` s later."""
     times = np.arange(0.0, 1.0 + min(until, 9.0), 0.04)
-    lines = [json.dumps({"time": now, "poses": {"car": [min(now, 1.0 + stop) * 0.2, 0, 0]}})
-             for now in times]
+    lines = [state(now, min(now, 1.0 + stop) * 0.2) for now in times]
     path = tmp_path / "states"
     path.write_text("\n".join([*lines, '{"time": 3']), encoding="utf-8")
     seen = chaos["states"].places(path, "car")
     assert len(seen) == len(times)
     assert (chaos["states"].drives_on(seen, 1.0, 9.9) is not None) == fault
     assert chaos["states"].driven(seen) > 0.02
+
+
+@pytest.mark.parametrize("place, fault", [
+    (lambda now: (0.0, 0.1 * now), True), (lambda now: (0.0, 0.0), False),  # it turns; it stood
+    (lambda now: (0.1 * max(0.0, now - 2.5), 0.0), True)])  # it stands, and sets off again
+def test_a_car_that_turns_or_sets_off_again_is_noticed(chaos, tmp_path, place, fault):
+    path = tmp_path / "states"
+    path.write_text("".join(f"{state(now, *place(now))}\n" for now in np.arange(0.0, 9.0, 0.04)))
+    seen = chaos["states"].places(path, "car")
+    assert (chaos["states"].drives_on(seen, 1.0, 9.9) is not None) == fault
 
 
 @pytest.mark.parametrize("name", ["course", "race", "lane_empty"])

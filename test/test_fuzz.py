@@ -16,15 +16,8 @@ USUAL = 100  # of each other target: about a minute of processor time in all
 
 
 @pytest.fixture(scope="module")
-def fuzz():
-    """The modules of fuzz/, which find each other by name."""
-    sys.path.insert(0, str(FUZZ))
-    try:
-        import campaign
-        import targets
-    finally:
-        sys.path.remove(str(FUZZ))
-    return campaign, targets.TARGETS
+def fuzz(modules):
+    return modules("fuzz", "campaign", "forms", "maps", "targets")
 
 
 @pytest.mark.parametrize("name", [
@@ -32,11 +25,10 @@ def fuzz():
     "texture", "map_image", "drawing", "onnx", "bag_info", "bag_map", "form", "page", "http",
     "simulator", "nodes"])
 def test_spoilt_input_is_taken_or_refused_by_one_line(fuzz, tmp_path, name):
-    campaign, targets = fuzz
     examples = EXAMPLES.get(name, USUAL)
-    report = campaign.Report(targets[name], tmp_path)
+    report = fuzz["campaign"].Report(fuzz["targets"].TARGETS[name], tmp_path)
     try:
-        campaign.run(report, SEED, examples)
+        fuzz["campaign"].run(report, SEED, examples)
     finally:
         report.close()
     assert report.inputs > examples // 2
@@ -46,16 +38,14 @@ def test_spoilt_input_is_taken_or_refused_by_one_line(fuzz, tmp_path, name):
 def test_every_target_has_its_turn_here(fuzz):
     (marks,) = (mark for mark in test_spoilt_input_is_taken_or_refused_by_one_line.pytestmark
                 if mark.name == "parametrize")
-    assert set(marks.args[1]) == set(fuzz[1])
+    assert set(marks.args[1]) == set(fuzz["targets"].TARGETS)
 
 
 def test_every_form_and_map_is_read_before_it_is_spoilt(fuzz):
-    import forms
-    import maps
-
+    forms, maps = fuzz["forms"], fuzz["maps"]
     for kind in forms.KINDS:
         assert forms.kind_of(forms.template(kind)) is kind
-    beside = {path.name for path in fuzz[1]["map"].beside}
+    beside = {path.name for path in fuzz["targets"].TARGETS["map"].beside}
     for path in maps.found("**/maps/*.yaml", "**/map/*.yaml"):
         assert maps.read_map(path) and path.with_suffix(".pgm").name in beside
 
@@ -76,10 +66,9 @@ def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
         while True:
             pass
 
-    campaign, targets = fuzz
-    spoilt = replace(targets["ogre"], refusals=(KeyboardInterrupt,),
+    spoilt = replace(fuzz["targets"].TARGETS["ogre"], refusals=(KeyboardInterrupt,),
                      read=eval(read, {"os": os, "spin": spin, "refuse": refuse}))
-    found = campaign.replay(spoilt, b"x")
+    found = fuzz["campaign"].replay(spoilt, b"x")
     assert found is None if fault is None else fault in found
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 import cv2
 
 COMPLAINT = "course_run: "
-# Of a Ctrl-C while modules load, and of a log that the disk has no room for.
-PYTHON_S_OWN = ("KeyboardInterrupt", "--- Logging error ---")
+TRACEBACK = "Traceback (most recent call last):\n"
 NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 
@@ -25,11 +24,17 @@ def wrong_words(said: str, code: int | None) -> Iterator[str]:
 
 
 def wrong_logs(folder: Path) -> Iterator[str]:
-    """Nor does anybody else print a traceback; Python does, see PYTHON_S_OWN."""
+    """Nor does anybody else print a traceback; Python does, see `_is_pythons_own`."""
     for path in sorted(folder.glob("*.log")):
-        text = path.read_text(encoding="utf-8", errors="replace")
-        if text.count("Traceback (most recent") > sum(map(text.count, PYTHON_S_OWN)):
+        parts = path.read_text(encoding="utf-8", errors="replace").split(TRACEBACK)
+        if not all(map(_is_pythons_own, parts, parts[1:])):
             yield f"a traceback in {path.name}"
+
+
+def _is_pythons_own(before: str, after: str) -> bool:
+    """A traceback of a Ctrl-C while modules load, or of a log that the disk has no room for."""
+    return (before.endswith("--- Logging error ---\n")
+            or any(line.startswith("KeyboardInterrupt") for line in after.splitlines()))
 
 
 def half_files(folder: Path) -> Iterator[str]:

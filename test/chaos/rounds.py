@@ -91,6 +91,9 @@ class Play:
             if not self._wait_for_moment(drive):
                 yield f"never came so far: {_last_line(drive)}"
                 return
+            if not self._is_victim_there(drive):
+                yield f"there is no {played.fault.victim} that it could happen to"
+                return
             since, until = self._act(drive)
             code = drive.wait(END_LIMIT)
             if code is None:
@@ -118,6 +121,12 @@ class Play:
             time.sleep(played.delay)  # a random moment: nothing is waited for
         return there
 
+    def _is_victim_there(self, drive: Drive) -> bool:
+        """Near its end there need be none."""
+        victim = self._round.fault.victim
+        return bool(not victim or drive.pids(victim) or drive.judge.poll() is not None
+                    or _is_late(_now(drive)))
+
     def _act(self, drive: Drive) -> tuple[float, float]:
         """From when until when, s, simulated, it lasted."""
         fault = self._round.fault
@@ -135,8 +144,12 @@ class Play:
 
     def _codes(self, since: float) -> tuple[int, ...]:
         """Near its end it may have ended before."""
-        late = since > DURATION / 2
-        return (*self._round.fault.codes, 0, 1) if late else self._round.fault.codes
+        codes = self._round.fault.codes
+        return (*codes, 0, 1) if _is_late(since) else codes
+
+
+def _is_late(now: float) -> bool:
+    return now > DURATION / 2
 
 
 def _wait(condition: Callable[[], bool], limit: float) -> None:

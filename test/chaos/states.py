@@ -7,10 +7,10 @@ import json
 import math
 from pathlib import Path
 
-STANDS = 0.02  # m/s
+STANDS, TURNS = 0.02, 0.05  # m/s, rad/s: less is none
 STOP_TIME = 0.7  # s, simulated, in which a car without a driver is to stand
 SETTLED = 0.5  # s, simulated: a car that is put down drops and rolls a little
-Place = tuple[float, float, float]  # s, simulated; x, y, m
+Place = tuple[float, float, float, float]  # s, simulated; x, y, m; yaw, rad
 
 
 def places(path: Path, robot: str) -> list[Place]:
@@ -21,28 +21,28 @@ def places(path: Path, robot: str) -> list[Place]:
             if line.startswith('{"time"') and line.endswith("\n"):
                 state = json.loads(line)
                 if pose := state["poses"].get(robot):
-                    found.append((state["time"], pose[0], pose[1]))
+                    yaw = 2 * math.atan2(pose[5], pose[6])
+                    found.append((state["time"], pose[0], pose[1], yaw))
     return found
 
 
-def speed(before: Place, after: Place) -> float:
-    """m/s, of simulated time."""
-    return math.dist(before[1:], after[1:]) / max(after[0] - before[0], 1e-9)
+def moves(before: Place, after: Place) -> bool:
+    """Whether it drove or turned between two places."""
+    passed = max(after[0] - before[0], 1e-9)
+    turn = abs(math.remainder(after[3] - before[3], math.tau))
+    return math.dist(before[1:3], after[1:3]) > STANDS * passed or turn > TURNS * passed
 
 
 def driven(seen: list[Place]) -> float:
     """m, as the crow flies, after it was put down."""
     settled = [place for place in seen if place[0] > seen[0][0] + SETTLED]
-    return math.dist(settled[0][1:], settled[-1][1:]) if settled else 0.0
+    return math.dist(settled[0][1:3], settled[-1][1:3]) if settled else 0.0
 
 
 def drives_on(seen: list[Place], since: float, until: float) -> str | None:
     """What is wrong with a car without a driver between these times, s; None: it stood in time."""
-    window = [place for place in seen if since <= place[0] <= until]
-    for before, after in itertools.pairwise(window):
-        if speed(before, after) < STANDS:
-            return None
-        if after[0] > since + STOP_TIME:
-            return (f"drives at {speed(before, after):.2f} m/s {after[0] - since:.2f} s after its"
-                    " driver was gone")
+    late = [place for place in seen if since + STOP_TIME <= place[0] <= until]
+    for before, after in itertools.pairwise(late):
+        if moves(before, after):
+            return f"drives or turns {after[0] - since:.2f} s after its driver was gone"
     return None
