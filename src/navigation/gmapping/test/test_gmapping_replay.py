@@ -5,6 +5,7 @@ import pytest
 import rosbag
 import rospy
 from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from gmapping.replay import main
@@ -127,6 +128,25 @@ def test_scans_of_no_use_are_counted_and_the_rest_is_mapped(tmp_path, capsys):
     said, line = capsys.readouterr()
     assert "4 scans of 3 s" in said
     assert "2 scans of no use, the first: a scan of 1e+06 m" in line and line.count("\n") == 1
+
+
+@pytest.mark.parametrize("topic, kind", [("/scan", "sensor_msgs/LaserScan"),
+                                         ("/tf", "tf2_msgs/TFMessage")])
+def test_a_topic_of_another_type_is_said_in_one_line(tmp_path, capsys, topic, kind):
+    with rosbag.Bag(str(tmp_path / "other.bag"), "w") as out:
+        out.write(topic, String("hello"), rospy.Time(1))
+    assert replay(tmp_path / "other.bag", "none") == 1
+    said = capsys.readouterr().err
+    assert said.endswith(f"other.bag: {topic} is of std_msgs/String, not {kind}\n")
+
+
+def test_a_fault_of_ours_is_not_taken_for_one_of_the_bag(bag, monkeypatch):
+    def fail(*_):
+        raise ValueError("shapes do not fit")
+
+    monkeypatch.setattr("gmapping.mapper.Mapper.take", fail)
+    with pytest.raises(ValueError, match="shapes do not fit"):
+        replay(bag, "none")
 
 
 def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 import time
 from collections import deque
@@ -20,21 +21,29 @@ from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import LaserScan
 
 from gmapping.mapper import TABLE, Mapper, ScanError
+from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from nav_nodes.ignored import ignored
 from nav_nodes.messages import yaw_of
 from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
 
+SCANS = ("sensor_msgs/LaserScan",)
+TRANSFORMS = ("tf2_msgs/TFMessage", "tf/tfMessage")
 WAITING = 5.0  # s between stamps; a scan so far behind the newest, without odometry, is left out
+
+
+class BagError(Exception):
+    """A bag that cannot be read, or of which no map can be made."""
 
 
 class BagScans:
     """The scans of a bag with odometry and mount, in the bag's order."""
 
     def __init__(self, path: Path, topic: str, odom_frame: str, base_frame: str) -> None:
-        """Raises OSError or rosbag's errors where there is no readable bag."""
-        self._bag = rosbag.Bag(str(path))
+        """Raises BagError where there is no readable bag; so does whoever reads on."""
+        with _bag_errors():
+            self._bag = rosbag.Bag(str(path))
         self._topics = [topic.lstrip("/"), "/" + topic.lstrip("/")]
         self._frames = odom_frame.lstrip("/"), base_frame.lstrip("/")
         self._transforms = tf2_py.BufferCore(rospy.Duration(30.0))
@@ -42,8 +51,7 @@ class BagScans:
 
     def __iter__(self) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         waiting: deque[LaserScan] = deque()
-        for topic, message, _ in self._bag.read_messages(
-                topics=[*self._topics, "tf", "/tf", "tf_static", "/tf_static"]):
+        for topic, message in self._messages():
             if topic in self._topics:
                 waiting.append(message)
                 while abs((message.header.stamp - waiting[0].header.stamp).to_sec()) > WAITING:
@@ -53,6 +61,15 @@ class BagScans:
                 self._keep(message, topic.endswith("static"))
             yield from self._ready(waiting)
         self.left_out += len(waiting)
+
+    def _messages(self) -> Iterator[tuple[str, Any]]:
+        transforms = ("tf", "/tf", "tf_static", "/tf_static")
+        kinds = dict.fromkeys(self._topics, SCANS) | dict.fromkeys(transforms, TRANSFORMS)
+        with _bag_errors():
+            for topic, message, _ in self._bag.read_messages(topics=list(kinds)):
+                if message._type not in kinds[topic]:
+                    raise BagError(f"{topic} is of {message._type}, not {kinds[topic][0]}")
+                yield topic, message
 
     def _keep(self, message: Any, is_static: bool) -> None:
         keep = (self._transforms.set_transform_static if is_static
@@ -75,6 +92,15 @@ class BagScans:
             at = pose.transform
             yield (scan, np.array([at.translation.x, at.translation.y, yaw_of(at.rotation)]),
                    Mount.of(laser.transform))
+
+
+@contextlib.contextmanager
+def _bag_errors() -> Iterator[None]:
+    """What rosbag raises while it reads, as a BagError."""
+    try:
+        yield
+    except (OSError, ValueError, rosbag.ROSBagException) as error:
+        raise BagError(error) from error
 
 
 def _own(transform: Any) -> TransformStamped:
@@ -136,7 +162,7 @@ def main(arguments: list[str] | None = None) -> int:
         scans = BagScans(options.bag, options.scan_topic, values["odom_frame"],
                          values["base_frame"])
         return _replay(scans, Mapper(values), options)
-    except (OSError, ValueError, rosbag.ROSBagException) as error:
+    except (OSError, BagError, MapFileError, ParameterError, UnicodeDecodeError) as error:
         print(f"slam_gmapping_replay: {options.bag}: {error}", file=sys.stderr)
         return 1
 
@@ -153,8 +179,8 @@ def _replay(scans: BagScans, mapper: Mapper, options: argparse.Namespace) -> int
             stamps.append(scan.header.stamp.to_sec())
     of_no_use = f"{len(refused)} scans of no use, the first: {refused[0]}" if refused else ""
     if mapper.slam is None:
-        raise ValueError(of_no_use or f"no scan on {options.scan_topic} with transforms to it from "
-                                      f"the odometry; {scans.left_out} without")
+        raise BagError(of_no_use or f"no scan on {options.scan_topic} with transforms to it from "
+                                    f"the odometry; {scans.left_out} without")
     if refused:
         print(f"slam_gmapping_replay: {options.bag}: {of_no_use}", file=sys.stderr)
     write_map(options.map, mapper.slam.grid())
