@@ -140,6 +140,15 @@ def test_a_topic_of_another_type_is_said_in_one_line(tmp_path, capsys, topic, ki
     assert said.endswith(f"other.bag: {topic} is of std_msgs/String, not {kind}\n")
 
 
+def test_a_message_that_is_cut_off_is_said_in_one_line(tmp_path, capsys):
+    cut = (LaserScan._type, b"\0" * 30, LaserScan._md5sum, LaserScan)
+    with rosbag.Bag(str(tmp_path / "cut.bag"), "w") as out:
+        out.write("/scan", cut, rospy.Time(1), raw=True)
+    assert replay(tmp_path / "cut.bag", "none") == 1
+    said = capsys.readouterr().err
+    assert "cut.bag: unpack requires a buffer" in said and said.count("\n") == 1
+
+
 def test_a_fault_of_ours_is_not_taken_for_one_of_the_bag(bag, monkeypatch):
     def fail(*_):
         raise ValueError("shapes do not fit")

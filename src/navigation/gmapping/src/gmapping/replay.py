@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import genpy
 import numpy as np
 import rosbag
 import rospkg
@@ -99,7 +100,7 @@ def _bag_errors() -> Iterator[None]:
     """What rosbag raises while it reads, as a BagError."""
     try:
         yield
-    except (OSError, ValueError, rosbag.ROSBagException) as error:
+    except (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException) as error:
         raise BagError(error) from error
 
 
