@@ -250,6 +250,16 @@ def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkey
     assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
 
 
+@pytest.mark.parametrize("pose", [Pose((np.nan, 0.0, 0.0)), Pose((0.0, 0.0, np.inf)),
+                                  Pose((0.0, 0.0, 0.4), (0.0, 0.0, np.nan, 1.0))])
+@pytest.mark.parametrize("light", [sun(), spot((0.5, 0.4, 3.0))])
+def test_what_is_nowhere_for_a_moment_stays_in_the_picture(renderer, light, pose):
+    scene = stage(light)
+    first = renderer.draw(scene, slanting()).rgb
+    scene.set_pose(BOX, pose)
+    assert np.array_equal(renderer.draw(scene, slanting()).rgb, first)
+
+
 def crowd(seed):
     """Things of all kinds in shadow of one another, and a view of them."""
     random = np.random.default_rng(seed)

@@ -2,6 +2,7 @@
 
 import itertools
 import logging
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from weakref import WeakValueDictionary
@@ -149,11 +150,16 @@ class Scene(SceneState):
             self.version = next(_versions)
 
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
-        """Move a link, pose in the world; UnknownName if it is not in the scene."""
+        """Move a link, pose in the world; UnknownName if it is not in the scene.
+
+        It stays where it was while its pose is not finite: the engine's can be NaN for a moment.
+        """
         node = self.nodes.get(key)
         if node is None:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
-        if node.pose is not pose:  # what stands still keeps its node, and the matrix in it
+        if node.pose is pose:
+            return  # what stands still keeps its node, and the matrix in it
+        if math.isfinite(sum((*pose.position, *pose.orientation))):
             self.nodes[key] = Node(node.shape, pose)
 
 
