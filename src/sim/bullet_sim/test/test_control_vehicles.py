@@ -92,10 +92,11 @@ def test_mecanum_wheels_brake_at_once(brake):
     assert (wheels[1].command == 0.0) is (brake == "start")  # start forgets the command, too
 
 
+@pytest.mark.parametrize("geometry", [MecanumGeometry, SteerBotGeometry])
 @pytest.mark.parametrize("lengths", [(0.0, 0.1), (0.1, -1.0)])
-def test_mecanum_geometry_has_lengths(lengths):
+def test_a_geometry_has_lengths(geometry, lengths):
     with pytest.raises(SimulationError, match="it must be above 0"):
-        MecanumGeometry(*lengths)
+        geometry(*lengths)
 
 
 # --- a car as a bicycle: all wheels turn about one point, R = h / tan(middle) to the left

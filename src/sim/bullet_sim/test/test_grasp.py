@@ -5,6 +5,7 @@ from rigs import body, part, rig, slider
 
 from bullet_sim.description import Surface, WorldDescription
 from bullet_sim.mechanisms.grasp import Grasp, GraspParameters
+from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
@@ -90,6 +91,24 @@ def test_a_grip_is_counted_before_it_holds(make):
         assert gripper.grasp.held is None
     gripper.grasp.update()
     assert gripper.grasp.held
+
+
+@pytest.mark.parametrize("left, right, held", [
+    ((2.0, 0.0, 0.0), (-2.0, 0.0, 0.0), True), ((2.0, 0.0, 0.0), (-0.61, 0.0, 0.0), True),
+    ((2.0, 0.0, 0.0), (-0.59, 0.0, 0.0), False), ((2.0, 0.0, 0.0), (0.0, 0.0, 0.0), False),
+    ((2.0, 0.0, 0.0), (-2.0, 3.0, 0.0), True), ((2.0, 0.0, 0.0), (-2.0, 4.0, 0.0), False),
+    ((2.0, 0.0, 0.0), (2.0, 0.0, 0.0), False)])
+def test_only_forces_against_each_other_are_a_grip(make, monkeypatch, left, right, held):
+    gripper = make()
+    gripper.drive(0.1)
+    gripper.run(0.2, update=False)
+    forces = {"left_link": left, "right_link": right}
+    touches = [Contact(f"rig::{name}::c", "thing::l::c", (0, 0, 0), (1, 0, 0), 0.0, force)
+               for name, force in forces.items()]
+    monkeypatch.setattr(gripper.world, "contacts", lambda: touches)
+    for _ in range(6):
+        gripper.grasp.update()
+    assert (gripper.grasp.held is not None) is held
 
 
 def test_open_fingers_let_fall(make):

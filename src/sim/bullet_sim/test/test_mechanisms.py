@@ -155,6 +155,7 @@ def test_what_is_held_keeps_its_pose_and_the_rest_turns(make_world, held, base_y
     assert model.links["base"].pose.rpy()[2] == pytest.approx(base_yaw)
     assert model.links["a_link"].pose.rpy()[2] == pytest.approx(arm_yaw)
     assert model.pose.position == pytest.approx((1.0, 2.0, 3.0))  # both turn about this point
+    assert model.twist.linear == (0.0, 0.0, 0.0)  # it does not gather speed meanwhile
 
 
 # --- mimic
