@@ -111,6 +111,15 @@ def test_every_cut_of_a_file_is_refused(tmp_path):
         assert str(path) in complaint(path)
 
 
+@pytest.mark.parametrize("name", [b"images", b"output0", b"names"])
+def test_a_name_that_is_no_text_is_one_line(name, tmp_path):
+    path = tmp_path / "spoilt.onnx"
+    whole = (DATA / "patches_v8.onnx").read_bytes()
+    assert name in whole
+    path.write_bytes(whole.replace(name, b"\xc3" * len(name)))
+    assert "is damaged, or no ONNX file" in complaint(path)
+
+
 def test_missing_files_folders_and_torch_files_are_told(tmp_path):
     assert "there is no such file" in complaint(tmp_path / "none.onnx")
     assert "is a folder" in complaint(tmp_path)

@@ -41,12 +41,15 @@ class Model:
             held = self._session.get_modelmeta().custom_metadata_map
             names = beside.names or names_of_export(held.get("names"))
             size = beside.input_size or size_of_export(held.get("imgsz"))
+            self._input, self._type = self._checked_input()
+            self._output = self._checked_output()
         except SettingsError as error:
             raise ModelError(str(error) if str(self.path.parent) in str(error)
                              else f"{self.path}: {error}") from None
-        self._input, self._type = self._checked_input()
+        except UnicodeDecodeError as error:
+            raise ModelError(f"{self.path}: is damaged, or no ONNX file: {error}; "
+                             f"{EXPORT}") from None
         self.height, self.width = self._size(size or USUAL_SIZE)
-        self._output = self._checked_output()
         self.layout, count = self._layout(names)
         self.names = names or [f"class {number}" for number in range(count)]
 
