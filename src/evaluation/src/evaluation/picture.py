@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import io
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -82,13 +81,6 @@ def write_png(path: Path, picture: np.ndarray) -> None:
     write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
 
 
-def write_figure(figure: Figure, path: Path, dpi: int) -> None:
-    """As a PNG; OSError, and no file, where it cannot be written."""
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=dpi)
-    write_whole(path, content.getvalue())
-
-
 def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: str) -> np.ndarray:
     """The driven path over the course (rows, 1400, 3), BGR, a colour for each lap."""
     yellow = build_track(track_file)
@@ -148,7 +140,7 @@ def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tu
         axes.set(xticks=(), yticks=(), aspect="equal")
         caption, good = draw(axes, tile)
         axes.set_title(caption, fontsize=7, color=TEXT if good else colours.CAR)
-    write_figure(figure, path, DPI)
+    write_png(path, pixels(figure))
 
 
 @contextlib.contextmanager
@@ -156,14 +148,14 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
     """Axes (rows, columns) of a chart that is written when they were drawn on."""
     from matplotlib.figure import Figure
 
-    sheet = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows))
+    sheet = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows), dpi=PANEL_DPI)
     grid = sheet.subplots(rows, columns, squeeze=False, **settings)
     yield grid
     for axes in grid.flat:
         axes.tick_params(labelsize=8, length=0)
         axes.grid(alpha=0.3)
     sheet.tight_layout()
-    write_figure(sheet, path, PANEL_DPI)
+    write_png(path, pixels(sheet))
 
 
 def _finish(axes: Axes) -> None:

@@ -16,7 +16,7 @@ from evaluation.autorace import judge
 from evaluation.autorace.judge import MISSIONS, Sample, Score, off_lane, score
 from evaluation.autorace.rig import Rig
 from evaluation.colours import CAR, FAINT, LAPS, LINE, WHITE
-from evaluation.picture import DPI, legend, map_sheet, write_figure
+from evaluation.picture import legend, map_sheet, pixels, write_png
 from evaluation.trial.command_line import Parser, one_of
 from evaluation.trial.protocol import Case, ReportedTrial
 from evaluation.trial.report import cell, mean, table
@@ -184,4 +184,4 @@ def write_sheet(drives: Sequence, path: Path) -> None:
         if not drive.passed:
             axes.plot(*points[-1], "x", color=CAR, markersize=14)
     legend(axes)
-    write_figure(figure, path, DPI)
+    write_png(path, pixels(figure))

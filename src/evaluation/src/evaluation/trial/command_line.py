@@ -24,9 +24,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> None:
         """RunError that says where the options are listed."""
-        program = self.prog.split()[0]  # a verb follows
-        start = f"rosrun {self._package} {program}" if self._package else f"scripts/{program}"
-        raise RunError(f"{message} (see: {start} --help)")
+        start = f"rosrun {self._package} " if self._package else "scripts/"
+        raise RunError(f"{message} (see: {start}{self.prog.split()[0]} --help)")  # before a verb
 
     def add_whole(self, flag: str, default: int | None, text: str, *, variable: str = "",
                   least: int = 0, most: int = MOST) -> None:
