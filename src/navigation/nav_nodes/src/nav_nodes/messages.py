@@ -26,7 +26,7 @@ def quaternion_of(yaw: float) -> Quaternion:
 
 
 def is_valid(q: Quaternion) -> bool:
-    """Neither nearly 0 nor huge, and not tipping the robot out of the plane by more than a degree."""
+    """Neither nearly 0 nor huge, and not tipping the robot by more than a degree."""
     length = math.hypot(q.x, q.y, q.z, q.w)
     if not 1e-6 <= length <= 1e6:
         return False
