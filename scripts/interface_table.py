@@ -32,7 +32,7 @@ WORDS = {
            "what": "内容", "how": "说明", "tags": "其中",
            "title": "Gazebo 接口在这里的支持情况",
            "note": "由 `scripts/interface_table.py` 根据 `src/sim/bullet_sim_ros/interface/` 生成。"
-                   "每个可用或近似的条目都有以它命名的测试。",
+                   "每个可用或近似的条目都有写明它的测试。",
            "part": "部分", "colon": "：", "stop": "；"},
 }
 

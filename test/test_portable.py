@@ -5,6 +5,8 @@ import re
 import subprocess
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parent.parent
 MADE_HERE = {".git", ".venv", ".setup", "build", "devel", "install", "out", "__pycache__",
              ".pytest_cache", ".ruff_cache"}
@@ -52,6 +54,13 @@ def test_no_local_paths() -> None:
 def test_the_check_itself() -> None:
     assert local_paths("see /root/x") and local_paths("file:///home/anna/x.png")
     assert not local_paths("/home/learner/ws") and not local_paths("src/work/x $HOME/work/y")
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="no git checkout")
+@pytest.mark.parametrize("path", ["env/pyvenv.cfg", "src/evaluation/build/lib/evaluation/a.py"])
+def test_what_the_pages_have_pip_make_here_is_ignored(path) -> None:
+    done = subprocess.run(["git", "-C", str(ROOT), "check-ignore", "-q", path], check=False)
+    assert done.returncode == 0
 
 
 def test_scripts_can_be_run() -> None:

@@ -3,7 +3,7 @@
 import pytest
 from workspace_needs.build_commands import catkin_make_isolated_words, catkin_make_words
 from workspace_needs.verdicts import judge
-from workspace_needs.workspace import WorkspaceError, source_folder
+from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
 from workspaces import add_package, turtlebot3_style
 
 from workspace_needs import command
@@ -48,6 +48,17 @@ def test_a_plugin_of_gazebo_in_cpp_is_left_out_alone(tmp_path, bare):
     (folder / "src" / "p.cpp").write_text("#include <gazebo/gazebo.hh>\n", encoding="utf-8")
     verdict = of(tmp_path / "src", "plugin")
     assert verdict.builds and "includes <gazebo/gazebo.hh>" in verdict.left_out["src/p.cpp"]
+
+
+def test_a_lesson_that_is_copied_is_the_learners(tmp_path, bare):
+    repository, own = tmp_path / "repository" / "src", tmp_path / "own" / "src"
+    for folder, name in [(repository, "workspace_needs"), (repository / "lessons", "lesson"),
+                         (own, "lesson")]:
+        file = add_package(folder, name, "roscpp") / "package.xml"
+        text = file.read_text(encoding="utf-8")
+        file.write_text(text.replace("who@example.com", OUR_ADDRESS), encoding="utf-8")
+    assert judge(repository) == []
+    assert of(own, "lesson").missing["libroscpp-dev"] == "roscpp"
 
 
 def test_a_debian_name_is_its_own_key(tmp_path, bare):

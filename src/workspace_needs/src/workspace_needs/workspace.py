@@ -68,6 +68,9 @@ def source_folder(path: Path) -> Path:
 def read_workspace(source: Path) -> list[Package]:
     """All packages below `source`, by name; WorkspaceError where no build tool builds any."""
     packages = [_read(source / path) for path in sorted(find_package_paths(str(source)))]
+    home = next((each.folder.parent for each in packages if each.name == "workspace_needs"), None)
+    for package in packages:  # a copy of a lesson in somebody's own workspace is theirs
+        package.is_ours = package.is_ours and home in package.folder.parents
     by_name: dict[str, Path] = {}
     for package in packages:
         if package.problem:
