@@ -64,6 +64,26 @@ def test_a_goal_that_never_ends_has_no_end(tmp_path):
     assert "end of the goal 0: none, wanted ABORTED" in done.stdout, done.stdout + done.stderr
 
 
+SLOW_TO_SEND = """import runpy, sys, time
+import actionlib
+send_goal = actionlib.ActionClient.send_goal
+def slow(self, *what, **more):
+    handle = send_goal(self, *what, **more)
+    time.sleep(0.5)
+    return handle
+actionlib.ActionClient.send_goal = slow
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")"""
+
+
+def test_a_goal_may_end_before_the_check_has_sent_it():
+    """As on a busy machine: the server refuses at once, in another thread than the sender's."""
+    solution = find_exercises()["refuse_goal"].solution
+    done = check([sys.executable, "-c", SLOW_TO_SEND, SCRIPT[1]], "refuse_goal", solution)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "not tracking" not in done.stderr
+
+
 def test_a_node_that_ends_by_itself_is_no_fault_of_the_check(tmp_path):
     """It has gone from the master's list when Ctrl-C is to be pressed."""
     file = written("stop_at_end", tmp_path / "mine.py", ("queue_size=1", "queue_size=None"), (
