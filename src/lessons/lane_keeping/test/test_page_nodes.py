@@ -1,6 +1,7 @@
 """The page's nodes without a master, and the commands behind its verbs."""
 
 import importlib.util
+import os
 import subprocess
 from pathlib import Path
 from unittest.mock import MagicMock
@@ -76,3 +77,11 @@ def test_the_verbs_are_the_pages(verb, command):
     done = subprocess.run(["make", "-n", "-C", str(PACKAGE), verb], capture_output=True, text=True,
                           check=True)
     assert done.stdout.splitlines()[-2 if "Leaving" in done.stdout else -1].endswith(command)
+
+
+@pytest.mark.parametrize(("screen", "program"), [
+    (":0", "rviz"), ("", "rosrun sim_viewer rviz_page")])
+def test_without_a_screen_the_browser_shows_what_rviz_would(screen, program):
+    done = subprocess.run(["make", "-n", "-C", str(PACKAGE), "rv"], capture_output=True, text=True,
+                          env={"PATH": os.defpath, "DISPLAY": screen})
+    assert f"&& {program} -d {PACKAGE}/config/lane.rviz\n" in done.stdout, done.stderr
