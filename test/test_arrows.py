@@ -56,7 +56,9 @@ def imported(source: str) -> list[tuple[int, str]]:
 
 
 def rule_folder(path: str) -> str | None:
-    return max((folder for folder in RULES if path.startswith(folder + "/")), key=len, default=None)
+    """The narrowest rule that holds there; a rule may name one file."""
+    return max((folder for folder in RULES if f"{path}/".startswith(f"{folder}/")), key=len,
+               default=None)
 
 
 def own_name(path: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import shutil
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -14,6 +15,7 @@ from marking.mark import Mark
 from marking.points import mean
 from marking.rules import Rules
 from marking.sandbox import Kind
+from run_session.files import write_whole
 
 MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # which a spreadsheet would compute
@@ -27,18 +29,16 @@ STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}"
 def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, out: Path) -> None:
     """The table of all students, for a spreadsheet and for a browser."""
     cases = sorted({mark.case for rows in marks.values() for mark in rows})
-    half = out / (MARKS + ".tmp")
-    with half.open("w", encoding="utf-8-sig", newline="") as file:  # Excel needs the mark
-        writer = csv.writer(file)
-        writer.writerow(["student", "points", "of", *cases, "sandbox",
-                         "why points were lost", "note"])
-        for student, rows in marks.items():
-            points = {mark.case: mark.points for mark in rows}
-            writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
-                             *[points.get(case, "") for case in cases],
-                             "no" if kind is Kind.NONE else "yes", _cell("; ".join(_lost(rows))),
-                             _notes(rows)])
-    half.replace(out / MARKS)
+    table = io.StringIO(newline="")
+    writer = csv.writer(table)
+    writer.writerow(["student", "points", "of", *cases, "sandbox", "why points were lost", "note"])
+    for student, rows in marks.items():
+        points = {mark.case: mark.points for mark in rows}
+        writer.writerow([_cell(student), mean(list(points.values())), rules.points.most,
+                         *[points.get(case, "") for case in cases],
+                         "no" if kind is Kind.NONE else "yes", _cell("; ".join(_lost(rows))),
+                         _notes(rows)])
+    write_whole(out / MARKS, table.getvalue().encode("utf-8-sig"))  # Excel needs the mark
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
         f"<td>{mean([mark.points for mark in rows]):g}</td><td>{_list(_lost(rows))}"
@@ -48,11 +48,11 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
     warning = ("<p><b>These submissions ran without a sandbox.</b></p>" if kind is Kind.NONE
                else "")
     class_mean = mean([mean([mark.points for mark in rows]) for rows in marks.values()])
-    (out / PAGE).write_text(
-        _page("Marks", f"{warning}<p>Course: {escape(rules.course)}. Submissions: {len(marks)}; "
-              f"mean: {class_mean:g} of {rules.points.most:g} points. "
-              f'<a href="{MARKS}">{MARKS}</a></p><table><tr><th>student</th><th>points</th>'
-              f"<th>why points were lost</th><th>path</th></tr>\n{body}</table>"), encoding="utf-8")
+    write_whole(out / PAGE, _page(
+        "Marks", f"{warning}<p>Course: {escape(rules.course)}. Submissions: {len(marks)}; "
+        f"mean: {class_mean:g} of {rules.points.most:g} points. "
+        f'<a href="{MARKS}">{MARKS}</a></p><table><tr><th>student</th><th>points</th>'
+        f"<th>why points were lost</th><th>path</th></tr>\n{body}</table>").encode())
 
 
 def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: Path) -> None:
@@ -66,9 +66,8 @@ def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: 
                 if mark.folder and (out / mark.folder / made).exists():
                     shutil.copyfile(out / mark.folder / made, folder / name)
         parts = "".join(_case_part(mark, out, folder) for mark in rows)
-        (folder / STUDENT_PAGE).write_text(
-            _page(student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}"),
-            encoding="utf-8")
+        write_whole(folder / STUDENT_PAGE, _page(
+            student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}").encode())
 
 
 def _picture(mark: Mark) -> str:
