@@ -1,5 +1,7 @@
 """A made-up bag in, a map and a trajectory out."""
 
+import io
+
 import numpy as np
 import pytest
 import rosbag
@@ -147,6 +149,19 @@ def test_a_message_that_is_cut_off_is_said_in_one_line(tmp_path, capsys):
     assert replay(tmp_path / "cut.bag", "none") == 1
     said = capsys.readouterr().err
     assert "cut.bag: unpack requires a buffer" in said and said.count("\n") == 1
+
+
+def test_a_bag_does_not_say_what_a_scan_is_made_of(tmp_path, capsys):
+    md5sum = "0" * 32  # rosbag has no class for it yet
+    header = {"topic": "/scan", "type": LaserScan._type, "md5sum": md5sum,
+              "message_definition": "float32 x"}
+    whole = io.BytesIO()
+    scan_at(0.0, rospy.Time(1)).serialize(whole)
+    raw = (LaserScan._type, whole.getvalue(), md5sum, LaserScan)
+    with rosbag.Bag(str(tmp_path / "own.bag"), "w") as out:
+        out.write("/scan", raw, rospy.Time(1), raw=True, connection_header=header)
+    assert replay(tmp_path / "own.bag", "none") == 1
+    assert "no scan on scan with transforms" in capsys.readouterr().err
 
 
 def test_a_fault_of_ours_is_not_taken_for_one_of_the_bag(bag, monkeypatch):

@@ -18,8 +18,8 @@ import rospkg
 import rospy
 import tf2_py
 import yaml
-from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
 
 from gmapping.mapper import TABLE, Mapper, ScanError
 from map_server.errors import MapFileError
@@ -67,16 +67,19 @@ class BagScans:
         transforms = ("tf", "/tf", "tf_static", "/tf_static")
         kinds = dict.fromkeys(self._topics, SCANS) | dict.fromkeys(transforms, TRANSFORMS)
         with _bag_errors():
-            for topic, message, _ in self._bag.read_messages(topics=list(kinds)):
-                if message._type not in kinds[topic]:
-                    raise BagError(f"{topic} is of {message._type}, not {kinds[topic][0]}")
-                yield topic, message
+            for topic, (kind, data, *_), _ in self._bag.read_messages(topics=list(kinds), raw=True):
+                if kind not in kinds[topic]:
+                    raise BagError(f"{topic} is of {kind}, not {kinds[topic][0]}")
+                made = LaserScan() if kind in SCANS else TFMessage()
+                yield topic, made.deserialize(data)  # a bag says itself what its types are made of
 
     def _keep(self, message: Any, is_static: bool) -> None:
         keep = (self._transforms.set_transform_static if is_static
                 else self._transforms.set_transform)
         for transform in message.transforms:
-            keep(_own(transform), "bag")
+            transform.header.frame_id = transform.header.frame_id.lstrip("/")
+            transform.child_frame_id = transform.child_frame_id.lstrip("/")
+            keep(transform, "bag")
 
     def _ready(self, waiting: deque[LaserScan]) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         """Those at the queue's head whose transforms are known."""
@@ -102,18 +105,6 @@ def _bag_errors() -> Iterator[None]:
         yield
     except (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException) as error:
         raise BagError(error) from error
-
-
-def _own(transform: Any) -> TransformStamped:
-    """The same, as a message of ours: a bag makes types of its own, which tf2 dislikes."""
-    at, turned = transform.transform.translation, transform.transform.rotation
-    own = TransformStamped()
-    own.header.stamp = transform.header.stamp
-    own.header.frame_id = transform.header.frame_id.lstrip("/")
-    own.child_frame_id = transform.child_frame_id.lstrip("/")
-    own.transform.translation = Vector3(at.x, at.y, at.z)
-    own.transform.rotation = Quaternion(turned.x, turned.y, turned.z, turned.w)
-    return own
 
 
 def values_from(settings: list[str], seed: int | None, params: Path | None) -> dict[str, Any]:
