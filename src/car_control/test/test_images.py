@@ -19,7 +19,8 @@ def test_a_picture_is_bgr():
 @pytest.mark.parametrize("sent, said", [
     (message(length=7), "buffer is too small"), (message("nonsense"), "[nonsense]"),
     (message("32FC1", length=32), "[32FC1] is not a color format"), (message(""), "encoding []"),
-    (message(width=0, length=0), "it has no pixels"), (message("mono8", 0, 0, 0), "empty()")])
+    (message(width=0, length=0), "it has no pixels"), (message("mono8", 0, 0, 0), "empty()"),
+    (message(width=2**32 - 1, height=2**32 - 1), "too big")])
 def test_a_message_that_is_no_picture_is_one_line(monkeypatch, sent, said):
     lines = []
     monkeypatch.setattr(rospy, "logerr_throttle", lambda _, line: lines.append(line))

@@ -16,7 +16,7 @@ def picture_of(message: Image) -> np.ndarray | None:
     try:
         picture = _bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
         why = "it has no pixels"
-    except TypeError as error:  # CvBridgeError is one, and NumPy's for too few bytes
+    except (TypeError, ValueError) as error:  # CvBridgeError is one; of too few bytes, huge sizes
         picture, why = None, " ".join(str(error).split())
     if picture is None:
         rospy.logerr_throttle(REPEAT, f"an image that cannot be used: {why}")

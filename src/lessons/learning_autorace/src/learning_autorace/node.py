@@ -74,7 +74,7 @@ class Node:
     def _take_image(self, message: Image) -> None:
         try:
             image = self._bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
-        except TypeError as error:  # CvBridgeError is one, and NumPy's for too few bytes
+        except (TypeError, ValueError) as error:  # CvBridgeError is one; too few bytes, huge sizes
             rospy.logwarn_throttle(5.0, f"an image that cannot be used: {error}")
             return
         if self._maps is None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import genmsg
 import genpy
 import numpy as np
 import rosbag
@@ -31,6 +32,8 @@ from nav_nodes.parameters import ParameterError, load_table
 
 SCANS = ("sensor_msgs/LaserScan",)
 TRANSFORMS = ("tf2_msgs/TFMessage", "tf/tfMessage")
+BAG_ERRORS = (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException,
+              genmsg.MsgNotFound, genmsg.InvalidMsgSpec)
 WAITING = 5.0  # s between stamps; a scan so far behind the newest, without odometry, is left out
 
 
@@ -103,7 +106,7 @@ def _bag_errors() -> Iterator[None]:
     """What rosbag raises while it reads, as a BagError."""
     try:
         yield
-    except (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException) as error:
+    except BAG_ERRORS as error:
         raise BagError(error) from error
 
 
