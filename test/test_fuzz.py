@@ -1,5 +1,6 @@
 """A little of `make fuzz`, with fixed seeds; and what its command refuses."""
 
+import asyncio
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,12 @@ def test_spoilt_input_is_taken_or_refused_by_one_line(fuzz, tmp_path, name):
         report.close()
     assert report.inputs > examples // 2
     assert not report.findings, "\n".join(report.findings.values())
+
+
+def test_good_requests_are_answered(modules):
+    page = modules("fuzz", "page")["page"]
+    for request in page.REQUESTS:
+        assert asyncio.run(page._exchange(request)).startswith(b"HTTP/1.1 "), request
 
 
 def test_every_target_has_its_turn_here(fuzz):

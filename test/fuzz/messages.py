@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import random
 from typing import Any
 
@@ -83,7 +84,8 @@ def _value(kind: str, now: Any, rng: random.Random, names: tuple[str, ...], dept
     if rng.random() < 0.5:
         return now
     if kind in ("float32", "float64"):
-        return rng.choice((*FLOATS, rng.uniform(-10, 10), rng.uniform(-1, 1)))
+        special = [one for one in FLOATS if kind == "float64" or not 1e39 < one < math.inf]
+        return rng.choice((*special, rng.uniform(-10, 10), rng.uniform(-1, 1)))
     if kind == "string":
         return rng.choice(names if names and rng.random() < 0.7 else TEXTS)
     if kind in ("time", "duration"):

@@ -32,6 +32,7 @@ LISTENED = ("scan", "cloud", "/lane_keeping/annotated", "~annotated", "~picture"
 SOURCES = [{"name": name, "topic": name, "timeout": 0.5, "priority": 1} for name in "ab"]
 FUSED = {f"{kind}0{ending}": value for kind in ("odom", "imu", "pose", "twist")
          for ending, value in (("", kind), ("_config", [True] * 15), ("_differential", True))}
+FUSED |= {"pose1": "first_pose", "pose1_config": [True] * 15, "pose1_relative": True}
 COMPAT, CAR, LESSONS = "compat", "car_control/scripts", "lessons"
 
 

@@ -77,7 +77,6 @@ async def _exchange(content: bytes) -> bytes:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:
         writer.write(content)
-        writer.write_eof()
         return await asyncio.wait_for(reader.read(1 << 16), PATIENCE)
     except (ConnectionError, TimeoutError):
         return b""

@@ -41,6 +41,24 @@ def test_a_measurement_without_a_covariance_changes_nothing(between):
     assert not ekf.state.any() and not ekf.covariance.any()
 
 
+def test_a_first_measurement_without_a_covariance_is_none():
+    covariance = np.eye(6)
+    covariance[0, 1] = covariance[1, 0] = np.nan
+    config = np.arange(SIZE) < 6
+    assert of_block(1.0, config, 0, np.ones(6), covariance) is None
+    config[1] = False  # what is not used may be anything
+    assert of_block(1.0, config, 0, np.ones(6), covariance).indices.tolist() == [0, 2, 3, 4, 5]
+
+
+def test_a_prediction_that_leads_nowhere_changes_nothing():
+    ekf = quiet()
+    ekf.state[VX] = 1e308
+    before = ekf.state.copy()
+    with np.errstate(all="ignore"):
+        ekf.predict(1e10)
+    assert (ekf.state == before).all() and np.isfinite(ekf.covariance).all()
+
+
 def test_constant_acceleration_ahead():
     state = np.zeros(SIZE)
     state[[VX, 12]] = 2.0, 0.5

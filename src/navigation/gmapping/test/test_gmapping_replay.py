@@ -151,6 +151,21 @@ def test_a_message_that_is_cut_off_is_said_in_one_line(tmp_path, capsys):
     assert "cut.bag: unpack requires a buffer" in said and said.count("\n") == 1
 
 
+@pytest.mark.parametrize("frame, second", [
+    ("la\0ser", 1), ("laser", 2**32 - 1)])  # of the second tf2 ends the process
+def test_a_scan_that_tf2_does_not_take_is_left_out(tmp_path, capsys, frame, second):
+    with rosbag.Bag(str(tmp_path / "odd.bag"), "w") as out:
+        for child, parent in (("laser", "base_link"), ("base_link", "odom")):
+            for stamp in (rospy.Time(1), rospy.Time(2), rospy.Time(second, 5)):
+                out.write("/tf", TFMessage([transform_message(np.zeros(3), parent, child, stamp)]),
+                          rospy.Time(1))
+        odd = scan_at(0.0, rospy.Time(second))
+        odd.header.frame_id = frame
+        out.write("/scan", odd, rospy.Time(2))
+    assert replay(tmp_path / "odd.bag", "none") == 1
+    assert "no scan on scan with transforms" in capsys.readouterr().err
+
+
 def test_a_bag_does_not_say_what_a_scan_is_made_of(tmp_path, capsys):
     md5sum = "0" * 32  # rosbag has no class for it yet
     header = {"topic": "/scan", "type": LaserScan._type, "md5sum": md5sum,

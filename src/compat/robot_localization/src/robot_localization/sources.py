@@ -109,6 +109,8 @@ class Source:
 
     def placed(self, stamp, pose, covariance, used):
         """A pose as it is, from the first one on (relative), or as a velocity (differential)."""
+        if self.relative and self.first is None and not np.isfinite(pose).all():
+            return None  # those after it would be relative to nothing
         if self.differential:
             before, self.before = self.before, (stamp, pose, covariance)
             if before is None or stamp <= before[0]:

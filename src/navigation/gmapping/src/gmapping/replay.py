@@ -20,6 +20,7 @@ import rospy
 import tf2_py
 import yaml
 from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from gmapping.mapper import TABLE, Mapper, ScanError
@@ -34,6 +35,7 @@ SCANS = ("sensor_msgs/LaserScan",)
 TRANSFORMS = ("tf2_msgs/TFMessage", "tf/tfMessage")
 BAG_ERRORS = (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException,
               genmsg.MsgNotFound, genmsg.InvalidMsgSpec)
+FAR, END = 2.0e9, 2**32 - 100  # s: stamps so far apart, or so late, let tf2 end the process
 WAITING = 5.0  # s between stamps; a scan so far behind the newest, without odometry, is left out
 
 
@@ -51,12 +53,16 @@ class BagScans:
         self._topics = [topic.lstrip("/"), "/" + topic.lstrip("/")]
         self._frames = odom_frame.lstrip("/"), base_frame.lstrip("/")
         self._transforms = tf2_py.BufferCore(rospy.Duration(30.0))
+        self._first_stamp: float | None = None
         self.left_out = 0
 
     def __iter__(self) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         waiting: deque[LaserScan] = deque()
         for topic, message in self._messages():
             if topic in self._topics:
+                if not self._is_usable(message.header):
+                    self.left_out += 1
+                    continue
                 waiting.append(message)
                 while abs((message.header.stamp - waiting[0].header.stamp).to_sec()) > WAITING:
                     waiting.popleft()
@@ -82,7 +88,16 @@ class BagScans:
         for transform in message.transforms:
             transform.header.frame_id = transform.header.frame_id.lstrip("/")
             transform.child_frame_id = transform.child_frame_id.lstrip("/")
-            keep(transform, "bag")
+            if self._is_usable(transform.header):
+                keep(transform, "bag")
+
+    def _is_usable(self, header: Header) -> bool:
+        """Whether tf2 can be asked about it; a stamp of 0 is a static transform's."""
+        stamp = header.stamp.to_sec()
+        if stamp and self._first_stamp is None:
+            self._first_stamp = stamp
+        return "\0" not in header.frame_id and (
+            not stamp or (stamp < END and abs(stamp - self._first_stamp) < FAR))
 
     def _ready(self, waiting: deque[LaserScan]) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         """Those at the queue's head whose transforms are known."""

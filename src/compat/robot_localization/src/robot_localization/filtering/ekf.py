@@ -54,13 +54,13 @@ class Ekf:
     process_noise: np.ndarray = field(default_factory=lambda: np.diag(PROCESS_NOISE))
 
     def predict(self, dt: float) -> None:
-        """Let `dt` seconds pass."""
+        """Let `dt` seconds pass; nothing changes where no finite estimate comes of it."""
         offsets = np.vstack([np.zeros(SIZE), np.eye(SIZE) * STEP, np.eye(SIZE) * -STEP])
         after = moved(self.state + offsets, dt)
         jacobian = (after[1:SIZE + 1] - after[SIZE + 1:]).T / (2.0 * STEP)
-        self.state = after[0]
-        self.state[ANGLES] = wrapped(self.state[ANGLES])
-        self.covariance = jacobian @ self.covariance @ jacobian.T + self.process_noise * dt
+        state = after[0]
+        state[ANGLES] = wrapped(state[ANGLES])
+        self._take(state, jacobian @ self.covariance @ jacobian.T + self.process_noise * dt)
 
     def correct(self, indices: np.ndarray, values: np.ndarray, covariance: np.ndarray,
                 rejection: float = np.inf) -> bool:
@@ -89,6 +89,10 @@ class Ekf:
         state = self.state + gain @ innovation
         state[ANGLES] = wrapped(state[ANGLES])
         covariance = kept @ self.covariance @ kept.T + gain @ noise @ gain.T
+        return self._take(state, covariance)
+
+    def _take(self, state: np.ndarray, covariance: np.ndarray) -> bool:
+        """False, and nothing changes, if they are not finite."""
         if not (np.isfinite(state).all() and np.isfinite(covariance).all()):
             return False
         self.state, self.covariance = state, covariance

@@ -55,13 +55,15 @@ def of_block(stamp: float, config: np.ndarray, first: int, values: np.ndarray,
              covariance: np.ndarray, rejection: float = np.inf) -> Measurement | None:
     """What `config` (15,) chooses of the state's entries from `first` on; None if nothing.
 
-    values: (n,); covariance: (n, n). What is not a number is left out, too.
+    values: (n,); covariance: (n, n). What is not a number is left out, too; None, if it is the
+    covariance of two that are left.
     """
     used = np.flatnonzero(config[first:first + len(values)] & np.isfinite(values)
                           & np.isfinite(np.diag(covariance)))
-    if not len(used):
+    kept = covariance[np.ix_(used, used)]
+    if not len(used) or not np.isfinite(kept).all():
         return None
-    return Measurement(stamp, first + used, values[used], covariance[np.ix_(used, used)], rejection)
+    return Measurement(stamp, first + used, values[used], kept, rejection)
 
 
 def velocity_between(before: np.ndarray, after: np.ndarray, dt: float) -> np.ndarray:
