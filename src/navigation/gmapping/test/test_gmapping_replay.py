@@ -166,6 +166,16 @@ def test_a_scan_that_tf2_does_not_take_is_left_out(tmp_path, capsys, frame, seco
     assert "no scan on scan with transforms" in capsys.readouterr().err
 
 
+def test_a_connection_that_is_not_there_is_said_in_one_line(bag, capsys):
+    content = bag.read_bytes()
+    last = content.rindex(b"op=\x02")  # a message's record; rosbag writes conn before op
+    at = content.rindex(b"conn=", 0, last) + len(b"conn=")
+    bag.write_bytes(content[:at] + (3145729).to_bytes(4, "little") + content[at + 4:])
+    assert replay(bag, "none") == 1
+    said = capsys.readouterr().err
+    assert "it names a connection 3145729 that it does not have" in said and said.count("\n") == 1
+
+
 def test_a_bag_does_not_say_what_a_scan_is_made_of(tmp_path, capsys):
     md5sum = "0" * 32  # rosbag has no class for it yet
     header = {"topic": "/scan", "type": LaserScan._type, "md5sum": md5sum,

@@ -123,6 +123,8 @@ def _bag_errors() -> Iterator[None]:
         yield
     except BAG_ERRORS as error:
         raise BagError(error) from error
+    except KeyError as error:
+        raise BagError(f"it names a connection {error} that it does not have") from error
 
 
 def values_from(settings: list[str], seed: int | None, params: Path | None) -> dict[str, Any]:
