@@ -20,7 +20,7 @@ from geometry_msgs.msg import (
 )
 from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
-from sensor_msgs.msg import Image, LaserScan, PointCloud2, PointField, Range
+from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2, PointField, Range
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -106,6 +106,27 @@ def sonar() -> Range:
 
 def picture() -> Image:
     return Image(Header(), 48, 64, "rgb8", 0, 3 * 64, bytes((0, 128, 255)) * 48 * 64)
+
+
+def camera_info() -> CameraInfo:
+    """90 degrees wide; what is straight ahead is a quarter from the left, a half from above."""
+    message = CameraInfo(header=Header(frame_id="eye"), height=48, width=64)
+    message.P = [32.0, 0.0, 16.0, 0.0, 0.0, 32.0, 24.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+    return message
+
+
+def view_from_above() -> Image:
+    message = picture()
+    message.header.frame_id = "eye"
+    return message
+
+
+def eye() -> TransformStamped:
+    """2 m above the marker of `marker`, looking down, in the axes of a camera's optical frame."""
+    one = TransformStamped(Header(frame_id="map"), "eye", None)
+    one.transform.translation = Vector3(-2.0, 2.0, 2.0)
+    one.transform.rotation = Quaternion(1.0, 0.0, 0.0, 0.0)
+    return one
 
 
 def cloud(points: int = CLOUD) -> PointCloud2:

@@ -15,12 +15,13 @@ from geometry_msgs.msg import PointStamped, PoseStamped, PoseWithCovarianceStamp
 from tf2_msgs.msg import TFMessage
 from tool_link import ToolLink
 
-TOPICS = {"/tf_static": lambda: TFMessage(made_up.transforms()), "/map": made_up.grid,
-          "/scan": made_up.scan, "/plan": made_up.path, "/particlecloud": made_up.particles,
-          "/amcl_pose": made_up.estimate, "/footprint": made_up.footprint,
+TOPICS = {"/tf_static": lambda: TFMessage([*made_up.transforms(), made_up.eye()]),
+          "/map": made_up.grid, "/scan": made_up.scan, "/plan": made_up.path,
+          "/particlecloud": made_up.particles, "/amcl_pose": made_up.estimate, "/footprint": made_up.footprint,
           "/sonar": made_up.sonar, "/markers": made_up.markers, "/cloud": made_up.cloud,
           "/odom": made_up.odometry, "/marker": made_up.marker,
-          "/lost_scan": lambda: made_up.scan("nowhere"), "/picture": made_up.picture}
+          "/lost_scan": lambda: made_up.scan("nowhere"), "/picture": made_up.picture,
+          "/eye/image_raw": made_up.view_from_above, "/eye/camera_info": made_up.camera_info}
 TOLERANCE = 0.1  # m, of a click: some pixels
 
 
@@ -80,7 +81,7 @@ class RvizPage(unittest.TestCase):
             "Marker": "parts[0].children[0].count === 1 && d.namespaces.join() === 'one'",
             "Sonar": "parts[0].children[0].count === 1",
             "TF": "parts.at(-1).children.map((one) => one.name).join() === "
-                  "'base_link,laser,map,odom'",
+                  "'base_link,eye,laser,map,odom'",
             "Robot": "parts[0].children[0].children.length === 1"
                      " && parts[0].children[0].position.x === 1",
             "Markers": "parts.length === 10 && parts.flatMap((one) => one.children).reduce("
@@ -116,6 +117,37 @@ class RvizPage(unittest.TestCase):
         self.page.evaluate("""(box => { box.value = 'map'; box.dispatchEvent(new Event('change'));
             })(document.querySelector('#rviz-fixed'))""")
         self.wait("Map", "parts[0].position.x === -3")
+
+    def pixel(self, name, column, row):
+        """What a camera's display draws there, RGBA; 0 to 1 from the left and from above."""
+        return self.wait(name, f"""(() => {{
+            d.shown.render();
+            const from = d.shown.renderer.domElement, to = document.createElement("canvas");
+            [to.width, to.height] = [from.width, from.height];
+            const flat = to.getContext("2d");
+            flat.drawImage(from, 0, 0);
+            return [...flat.getImageData({column} * to.width, {row} * to.height, 1, 1).data];
+        }})()""")
+
+    def test_2_a_camera_shows_the_scene_over_its_picture(self):
+        self.page.wait_for("document.querySelector('.layers img')?.naturalWidth === 64")
+        for name in ("Grid", "Map", "TF"):  # they are there too
+            self.entry(name, "entry.querySelector('.check input').click()")
+            self.addCleanup(self.entry, name, "entry.querySelector('.check input').click()")
+        red, _, blue, alpha = self.pixel("Eye", 0.25, 0.5)  # the marker, which one sees through
+        self.assertGreater(red, blue + 50)
+        self.assertTrue(100 < alpha < 220, alpha)
+        self.assertEqual(self.pixel("Eye", 0.75, 0.5)[3], 0)  # nothing, so the picture is seen
+        self.assertEqual(self.page.evaluate(
+            "[...document.querySelectorAll('.layers img')].map((one) => one.style.opacity).join()"),
+            "1,0.25")
+        self.status("Eye", "Transform OK")
+        self.entry("Eye", """const box = entry.querySelector('[data-option="Zoom Factor"] input');
+            box.value = 2; box.dispatchEvent(new Event('change'));""")
+        # Twice as large about the picture's middle: what was a quarter from the left leaves it.
+        self.page.wait_for("document.querySelector('.layers img').style.transform === 'scale(2)'")
+        self.assertGreater(self.pixel("Eye", 0.01, 0.5)[3], 100)
+        self.assertEqual(self.pixel("Eye", 0.25, 0.5)[3], 0)
 
     def test_3_a_map_is_updated(self):
         updates = rospy.Publisher("/map_updates", type(made_up.update()), queue_size=1, latch=True)

@@ -129,10 +129,16 @@ class ImageWatch:
             self._streams.remove(self._topic, self._width, self._send)
 
 
+def source(master: MasterView, wished: str) -> str:
+    """The topic that serves for an image topic: the compressed one where somebody publishes it."""
+    compressed = wished + COMPRESSED
+    offered = compressed in master.state().publishers and master.types().get(compressed) in KINDS
+    return compressed if offered else wished
+
+
 def _find(master: MasterView, wished: str) -> tuple[str, type]:
-    published, types = master.state().publishers, master.types()
-    for topic in (wished + COMPRESSED, wished):
-        if topic in published and types.get(topic) in KINDS:
-            return topic, KINDS[types[topic]]
+    topic, types = source(master, wished), master.types()
+    if topic in master.state().publishers and types.get(topic) in KINDS:
+        return topic, KINDS[types[topic]]
     raise Refused(f"{wished!r:.80} is no image topic that somebody publishes; "
                   f"there are {', '.join(_offered(master)) or 'none'}")

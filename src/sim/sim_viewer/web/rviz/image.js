@@ -6,7 +6,7 @@ const RETRY_MS = 2000; // where nobody publishes the topic yet
 const NOTHING = ["Topic", "warning", "No messages received"];
 
 export class ShownPicture {
-  constructor(display, link, place, onStatus) {
+  constructor(display, link, viewport, onStatus, place) {
     this._picture = new Picture(display.topic, link, (error) => this._tell(error));
     this._place = place;
     this._onStatus = onStatus;

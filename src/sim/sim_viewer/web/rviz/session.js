@@ -1,9 +1,10 @@
 // What the tab RViz shows: the fixed frame and the displays, which outlive a change of tabs.
 
+import { ShownCamera } from "./camera.js";
 import { ShownPicture } from "./image.js";
 import { Shown } from "./shown.js";
 
-const IMAGE = "rviz/Image";
+const BESIDE = { "rviz/Camera": ShownCamera, "rviz/Image": ShownPicture }; // the view
 const LIKELY = ["map", "odom", "world"]; // fixed frames, where the person has chosen none
 const FIXED = "<Fixed Frame>";
 const WORST = ["ok", "warning", "error"];
@@ -62,9 +63,8 @@ export class Session {
         ...statuses];
       this._onStatus(display);
     };
-    display.shown = display.class === IMAGE
-      ? new ShownPicture(display, this._link, this._pictures, tell)
-      : new Shown(display, this._link, this._viewport, tell);
+    const Kind = BESIDE[display.class] ?? Shown;
+    display.shown = new Kind(display, this._link, this._viewport, tell, this._pictures);
     display.shown.start(this.fixed);
   }
 

@@ -51,10 +51,17 @@ export class Shown {
     }
     const { number, parts } = decodeFrame(data);
     try {
-      this._show(parts);
+      await this._draw(parts);
     } finally { // or it would be the last one
-      await this._viewport.drawn();
       this._link.tell("rviz_drawn", { display: this._args.display, frame: number });
+    }
+  }
+
+  async _draw(parts) {
+    try {
+      this._show(parts);
+    } finally {
+      await this._viewport.drawn();
     }
   }
 

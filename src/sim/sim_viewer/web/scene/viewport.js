@@ -33,8 +33,8 @@ export class Viewport {
   constructor(parent, root) {
     this.root = root;
     const slow = drawnByProcessor();
-    this._renderer = new THREE.WebGLRenderer({ antialias: !slow });
-    this._renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this._slow = slow;
+    this._renderer = this.renderer();
     this._pause = slow ? SLOW_MS : 0;
     this._renderer.setPixelRatio(slow ? COARSE : Math.min(devicePixelRatio, 2));
     parent.append(this._renderer.domElement);
@@ -62,6 +62,21 @@ export class Viewport {
 
   get canvas() {
     return this._renderer.domElement;
+  }
+
+  /** A new one, as the view's own. `alpha`: where nothing is drawn one sees through. */
+  renderer(alpha = false) {
+    const made = new THREE.WebGLRenderer({ antialias: !this._slow, alpha });
+    made.outputColorSpace = THREE.LinearSRGBColorSpace;
+    return made;
+  }
+
+  /** The scene without its background, by another renderer and camera. */
+  drawBy(renderer, camera) {
+    const { background } = this._scene;
+    this._scene.background = null;
+    renderer.render(this._scene, camera);
+    this._scene.background = background;
   }
 
   /** Resolves when the next picture is drawn. */

@@ -16,6 +16,7 @@ import rospy
 from roslib.message import get_message_class
 
 from sim_viewer.context import Context, Node
+from sim_viewer.images import source as image_source
 from sim_viewer.registry import Refused, argument, watchable
 from sim_viewer.rviz.display_type import DisplayType, Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
@@ -26,6 +27,7 @@ from sim_viewer.rviz.types import TYPES
 from sim_viewer.rviz.view import RosView
 from sim_viewer.subscription import decode
 from sim_viewer.tools.clock import SharedClock
+from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.names import is_topic
 from sim_viewer.transforms import Transforms
 
@@ -121,10 +123,14 @@ class Display:
             self._showing.fail("Topic", f"Error subscribing: {self._topic!r:.40} is no name of a "
                                         "topic")
             return
-        endings = ("", self._kind.update_topic) if self._kind.update else ("",)
+        topics = [self._topic]
+        if "sensor_msgs/CompressedImage" in self._kind.messages:
+            topics = [image_source(self._context.node.shared(MasterView), self._topic)]
+        if self._kind.beside:
+            topics.append(self._kind.beside_topic(self._topic))
         try:
-            for ending in endings:
-                one = rospy.Subscriber(self._topic + ending, rospy.AnyMsg, self._take,
+            for topic in topics:
+                one = rospy.Subscriber(topic, rospy.AnyMsg, self._take,
                                        buff_size=LARGEST_MESSAGE, tcp_nodelay=True)
                 self._closing.callback(one.unregister)
         except (ValueError, rospy.ROSException) as error:
@@ -132,14 +138,14 @@ class Display:
 
     def _take(self, raw: rospy.AnyMsg) -> None:
         """In rospy's threads."""
-        self._showing.waiting.put(raw)
+        self._showing.put(raw, raw._connection_header.get("type") == self._kind.beside)
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._context.loop.call_soon_threadsafe(self._news.set)
 
     def _read(self, raw: rospy.AnyMsg) -> tuple[Any, str]:
         header = raw._connection_header
         name = header.get("type", "")
-        if name not in (*self._kind.messages, self._kind.update):
+        if name not in (*self._kind.messages, self._kind.beside):
             raise Problem(f"{self._topic} is {name}, and this display shows "
                           f"{' or '.join(self._kind.messages)}")
         if len(raw._buff) > self._kind.most_bytes:

@@ -42,6 +42,9 @@ class View(Protocol):
     def resolve(self, uri: str) -> str:
         """The file that `package://...` or `file://...` is. Problem where there is none."""
 
+    def jpeg(self, message: Any, width: int) -> bytes:
+        """A picture's message, at most `width` px wide. Problem where it cannot be shown."""
+
     def frames(self) -> dict[str, str]:
         """All frames of tf and their parents; a root's is empty."""
 
@@ -93,8 +96,8 @@ class DisplayType:
     topic_key: str = "Topic"  # in a .rviz file
     at_stamp: bool = True  # whether a message waits for its frame's pose at its stamp
     every: bool = False  # whether each message counts, not only the newest
-    update_topic: str = ""  # what is behind the topic's name for changes of it, and
-    update: str = ""  # their type
+    beside: str = ""  # the type of a second topic: a map's changes, a camera's CameraInfo
+    beside_topic: Callable[[str], str] = str  # its name, from the first one's
     most_bytes: int = 16 << 20  # of a message: Python's objects are twenty times as large
     period: float = 0.0  # s between two looks without a message; 0: none needed
 

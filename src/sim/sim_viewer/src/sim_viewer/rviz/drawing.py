@@ -31,6 +31,7 @@ class Part:
     shapes: rows (n, 10) of pose and scale, colour (n, 4); shape: cube, sphere, cylinder, cone
     texts: texts [{text, position, height m, colour}]
     map: cells (height * width) of grey levels or palette; width, height, resolution m, ...
+    camera: jpeg, the bytes of a file; size px, focal_length, principal_point, ...
     links: rows (n, 7) of poses; links as page_scene has them
     """
 

@@ -37,6 +37,7 @@ class Showing:
         self._options = options
         self._drawer = kind.make(options)
         self.waiting = Waiting(kind.every, read)
+        self._beside: Any = None  # the last message of the second topic, raw
         self._newest: list[Any] = []  # the last message that was shown, raw
         self._sizes: deque[int] = deque(maxlen=MOST_KEPT)  # bytes, of those that are kept
         self._own: Statuses = {"Topic": (WARNING, "No messages received")} if kind.messages else {}
@@ -54,6 +55,13 @@ class Showing:
     def namespaces(self) -> list[str]:
         """Of markers, as far as they are known."""
         return self._drawer.namespaces
+
+    def put(self, raw: Any, beside: bool = False) -> None:
+        """A message has come, of its topic or of the one beside. In any thread."""
+        if beside and not self._kind.every:
+            self._beside = raw
+        else:
+            self.waiting.put(raw)
 
     def fail(self, name: str, text: str) -> None:
         """A status that something went wrong."""
@@ -108,6 +116,8 @@ class Showing:
             for raw in self.waiting.in_order():
                 self._try(lambda raw=raw: self._show(raw, *self._read(raw), None))
         elif self._kind.messages:
+            if self._beside is not None:
+                self._try(lambda: self._drawer.take(self._read(self._beside)[0], None, self._now))
             self._try(self._take_newest)
 
     def _try(self, work: Callable[[], None]) -> None:

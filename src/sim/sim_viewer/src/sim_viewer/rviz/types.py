@@ -2,6 +2,7 @@
 
 from sim_viewer.rviz.display_type import DisplayType
 from sim_viewer.rviz.displays import (
+    camera,
     cloud,
     frames,
     grid,
@@ -19,4 +20,5 @@ from sim_viewer.rviz.displays import (
 TYPES: dict[str, DisplayType] = {kind.name: kind for kind in (
     grid.GRID, grid.AXES, frames.TYPE, robot.TYPE, scan.TYPE, occupancy.TYPE, path.PATH,
     poses.ARRAY, poses.STAMPED, poses.ODOMETRY, poses.WITH_COVARIANCE, path.POLYGON,
-    markers.MARKER, markers.ARRAY, cloud.TYPE, point.TYPE, range.TYPE, image.TYPE)}
+    markers.MARKER, markers.ARRAY, cloud.TYPE, point.TYPE, range.TYPE, image.TYPE,
+    camera.TYPE)}

@@ -14,6 +14,8 @@ from bullet_sim.rendering.scene_text import SceneContent
 from sim_viewer.context import Node
 from sim_viewer.meshes import Meshes
 from sim_viewer.page_scene import page_scene
+from sim_viewer.pictures import to_jpeg
+from sim_viewer.registry import Refused
 from sim_viewer.robot_source import LIGHT, workspace_files
 from sim_viewer.rviz.display_type import NoTransform, Problem
 from sim_viewer.tools.clock import SharedClock
@@ -77,6 +79,13 @@ class RosView:
             except SimulationError as error:
                 raise Problem(f"Could not load [{uri}]: {error}") from None
         return self._files[uri]
+
+    def jpeg(self, message: Any, width: int) -> bytes:
+        """A picture's message as JPEG. Problem where it cannot be shown."""
+        try:
+            return to_jpeg(message, width)
+        except Refused as error:
+            raise Problem(str(error)) from None
 
     def robot(self, text: str) -> dict[str, tuple[Visual, ...]]:
         """Each link's visuals. FormatError of a text that is no URDF."""

@@ -111,7 +111,7 @@ def put(cells: np.ndarray, update: Any) -> None:
 
 TYPE = DisplayType(
     "rviz/Map", Map, messages=(MAP_TYPE,), topic="/map", at_stamp=False, every=True,
-    update_topic="_updates", update="map_msgs/OccupancyGridUpdate", period=0.1,
-    most_bytes=1 << 29, options=(
+    beside="map_msgs/OccupancyGridUpdate", beside_topic=lambda topic: topic + "_updates",
+    period=0.1, most_bytes=1 << 29, options=(
         Option("Alpha", "number", 0.7, high=1), Option("Color Scheme", "choice", "map", SCHEMES),
         Option("Draw Behind", "switch", False)))
