@@ -5,20 +5,10 @@ https://chromedevtools.github.io/devtools-protocol/ names every method and event
 
 from __future__ import annotations
 
-import asyncio
 import base64
-import itertools
-import os
 import shutil
-import signal
-import subprocess
-import tempfile
-from pathlib import Path
 
-import aiohttp
-import cv2
-import numpy as np
-from background import LIMIT, loop, run, wait_until
+import browser
 
 FLAGS = [
     "--headless=new", "--no-first-run", "--disable-extensions", "--hide-scrollbars",
@@ -35,24 +25,26 @@ CODES = {  # of the keys that drive: name of the place, Windows' virtual key cod
 }
 
 
-class Browser:
-    """One Chromium with a profile of its own; `close` ends it and deletes the profile."""
+class Browser(browser.Browser):
+    """One Chromium."""
+
+    name = "chromium"
 
     def __init__(self) -> None:
-        self._profile = Path(tempfile.mkdtemp(prefix="viewer-chromium-"))
-        self._numbers = itertools.count(1)
-        self._answers: dict[int, asyncio.Future] = {}
         self._pages: dict[str, Page] = {}
-        self.process = subprocess.Popen(
-            [shutil.which("chromium") or "chromium", *FLAGS,
-             f"--user-data-dir={self._profile}", "about:blank"],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True)
-        port, path = wait_until(self._address, "Chromium's DevTools port")
-        run(self._connect(f"ws://127.0.0.1:{port}{path}"))
+        super().__init__()
+
+    def command(self) -> list[str]:
+        return [shutil.which("chromium") or "chromium", *FLAGS, f"--user-data-dir={self.profile}",
+                "about:blank"]
+
+    def address(self) -> str | None:
+        """Once it has written port and path."""
+        file = self.profile / "DevToolsActivePort"
+        lines = file.read_text().splitlines() if file.exists() else []
+        return f"ws://127.0.0.1:{lines[0]}{lines[1]}" if len(lines) == 2 else None
 
     def open(self, url: str) -> Page:
-        """A new tab in front of the others."""
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         page = self._pages[session] = Page(self, session, target)
@@ -61,62 +53,19 @@ class Browser:
         page.call("Page.navigate", url=url)
         return page
 
-    def call(self, method: str, session: str | None = None, **params) -> dict:
-        """One method of the protocol and its result."""
-        return run(self._call(method, session, params))
-
-    def close(self) -> None:
-        try:
-            os.killpg(self.process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass  # all are gone already
-        self.process.wait()
-        self._reader.cancel()
-        run(self._client.close())
-        wait_until(self._forget_profile, "an end of Chromium's processes")
-
-    def _forget_profile(self) -> bool:
-        """Whether it is gone; a process that has not quite ended may still write there."""
-        shutil.rmtree(self._profile, ignore_errors=True)
-        return not self._profile.exists()
-
-    def _address(self) -> list[str] | None:
-        """Port and path, once Chromium has written both."""
-        file = self._profile / "DevToolsActivePort"
-        lines = file.read_text().splitlines() if file.exists() else []
-        return lines if len(lines) == 2 else None
-
-    async def _connect(self, url: str) -> None:
-        self._client = aiohttp.ClientSession()
-        self._socket = await self._client.ws_connect(url, max_msg_size=0)
-        self._reader = loop.create_task(self._read())
-
-    async def _call(self, method: str, session: str | None, params: dict) -> dict:
-        number = next(self._numbers)
-        answer = self._answers[number] = loop.create_future()
-        await self._socket.send_json({"id": number, "method": method, "params": params}
-                                     | ({"sessionId": session} if session else {}))
-        return await answer
-
-    async def _read(self) -> None:
-        async for message in self._socket:
-            data = message.json()
-            answer = self._answers.pop(data.get("id"), None)
-            if answer is not None and "error" in data:
-                answer.set_exception(RuntimeError(data["error"]["message"]))
-            elif answer is not None:
-                answer.set_result(data["result"])
-            elif data.get("sessionId") in self._pages:
-                self._pages[data["sessionId"]].note(data["method"], data["params"])
+    def take(self, event: dict) -> None:
+        page = self._pages.get(event.get("sessionId"))
+        if page is not None:
+            page.note(event["method"], event["params"])
 
 
-class Page:
-    """One tab. `requests`: the URLs it asked for. `errors`: what its scripts complained of."""
+class Page(browser.Page):
+    """One tab. `requests`: the URLs it asked for."""
 
-    def __init__(self, browser: Browser, session: str, target: str) -> None:
-        self._browser, self._session, self._target = browser, session, target
+    def __init__(self, of: Browser, session: str, target: str) -> None:
+        super().__init__()
+        self._browser, self._session, self._target = of, session, target
         self.requests: list[str] = []
-        self.errors: list[str] = []
 
     def note(self, method: str, params: dict) -> None:
         """One event of the protocol."""
@@ -134,32 +83,28 @@ class Page:
         return self._browser.call(method, self._session, **params)
 
     def evaluate(self, script: str):
-        """The value of a script's last expression; a promise is waited for."""
         answer = self.call("Runtime.evaluate", expression=script, awaitPromise=True,
                            returnByValue=True)
         if "exceptionDetails" in answer:
             raise AssertionError(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def wait_for(self, script: str, limit: float = LIMIT):
-        """The script's first true value."""
-        return wait_until(lambda: self.evaluate(script), script, limit)
-
     def key(self, key: str, down: bool) -> None:
-        """A key goes down or comes up, as from a keyboard."""
         code, number = CODES[key]
         self.call("Input.dispatchKeyEvent", type="rawKeyDown" if down else "keyUp", key=key,
                   code=code, windowsVirtualKeyCode=number)
+
+    def mouse(self, kind: str, x: float, y: float) -> None:
+        self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, button="left",
+                  buttons=1, clickCount=1)
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
         """`kind`: touchStart, touchMove, touchEnd, touchCancel; points in px of the page."""
         self.call("Input.dispatchTouchEvent", type=kind,
                   touchPoints=[{"x": x, "y": y} for x, y in points])
 
-    def picture(self) -> np.ndarray:
-        """What is to be seen, (height, width, 3) BGR."""
-        data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
-        return cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    def png(self) -> bytes:
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
 
     def resize(self, width: int, height: int) -> None:
         """The page's size in px."""

@@ -5,10 +5,11 @@ import sys
 import time
 import unittest
 
+import chromium
+import firefox
 import rospy
 import rostest
 from background import wait_until
-from chromium import Browser
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from page_link import PageLink
@@ -32,13 +33,15 @@ class Wheel:
         return bool(self.heard) and any(self.heard[-1][1:])
 
 
-class Driving(unittest.TestCase):
+class Keys(unittest.TestCase):
+    Browser = firefox.Browser
+
     @classmethod
     def setUpClass(cls):
         rospy.wait_for_message("odom", Odometry, 60.0)
         cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
         cls.wheel = Wheel()
-        cls.browser = Browser()
+        cls.browser = cls.Browser()
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.drive_page(cls.browser)
 
@@ -77,8 +80,6 @@ class Driving(unittest.TestCase):
         self.assertLess(stopped - ended, STOPPED_WITHIN, what)
         self.assertEqual(zeros, late[-1:], f"{what}: one zero, and nothing after it")
 
-    # --- keys and fingers
-
     def test_keys_drive_and_letting_go_stops(self):
         start = self.position()
         self.page.key("w", True)
@@ -110,6 +111,12 @@ class Driving(unittest.TestCase):
         self.assert_stops(lambda: self.page.key(" ", True), "the space bar")
         self.page.key(" ", False)
         self.page.key("w", False)
+
+
+class Driving(Keys):
+    Browser = chromium.Browser
+
+    # --- fingers
 
     def press_finger(self, *path):
         """Down, along the path, until it drives; again where a busy browser drew too slowly."""
@@ -195,7 +202,7 @@ class Driving(unittest.TestCase):
         self.page.to_front()
 
     def test_a_killed_browser_stops(self):
-        browser = Browser()
+        browser = self.Browser()
         try:
             page = self.drive_page(browser)
             page.key("w", True)
@@ -237,4 +244,5 @@ class Driving(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("driving", disable_rostime=True)
-    rostest.rosrun("sim_viewer", "driving", Driving, sys.argv)
+    kind = Keys if rospy.get_param("~browser", "") == "firefox" else Driving
+    rostest.rosrun("sim_viewer", "driving", kind, sys.argv)

@@ -47,8 +47,8 @@ def navigate(page: Page) -> None:
     time.sleep(DRAWN)
     page.evaluate("document.querySelector('#rviz-tool-goal').click()")
     begin, end = GOAL_PX
-    for kind, (x, y) in (("mousePressed", begin), ("mouseMoved", end), ("mouseReleased", end)):
-        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+    for kind, place in (("Pressed", begin), ("Moved", end), ("Released", end)):
+        page.mouse(kind, *place)
     time.sleep(NAVIGATED)
 
 

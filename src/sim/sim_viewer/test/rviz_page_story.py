@@ -6,22 +6,25 @@ import math
 import sys
 import unittest
 
+import chromium
+import firefox
 import rospy
 import rostest
 import rviz_messages as made_up
 from background import wait_until
-from chromium import Browser
 from geometry_msgs.msg import PointStamped, PoseStamped, PoseWithCovarianceStamped
 from tf2_msgs.msg import TFMessage
 from tool_link import ToolLink
 
 TOPICS = {"/tf_static": lambda: TFMessage([*made_up.transforms(), made_up.eye()]),
           "/map": made_up.grid, "/scan": made_up.scan, "/plan": made_up.path,
-          "/particlecloud": made_up.particles, "/amcl_pose": made_up.estimate, "/footprint": made_up.footprint,
+          "/particlecloud": made_up.particles, "/amcl_pose": made_up.estimate,
+          "/footprint": made_up.footprint,
           "/sonar": made_up.sonar, "/markers": made_up.markers, "/cloud": made_up.cloud,
           "/odom": made_up.odometry, "/marker": made_up.marker,
           "/lost_scan": lambda: made_up.scan("nowhere"), "/picture": made_up.picture,
           "/eye/image_raw": made_up.view_from_above, "/eye/camera_info": made_up.camera_info}
+BROWSERS = {"chromium": chromium, "firefox": firefox}
 TOLERANCE = 0.1  # m, of a click: some pixels
 
 
@@ -41,7 +44,7 @@ class RvizPage(unittest.TestCase):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.heard.update(
                 {topic: message}))
         cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
-        cls.browser = Browser()
+        cls.browser = BROWSERS[rospy.get_param("~browser", "chromium")].Browser()
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.browser.open(cls.url + "#rviz")
         cls.page.wait_for("!!window.rviz")
@@ -174,10 +177,9 @@ class RvizPage(unittest.TestCase):
         """With a tool, from the view's middle, and by further px."""
         x, y = self.look_down()
         self.page.evaluate(f"document.querySelector('#rviz-tool-{tool}').click()")
-        for kind, (right, down) in zip(("mousePressed", "mouseMoved", "mouseReleased"),
+        for kind, (right, down) in zip(("Pressed", "Moved", "Released"),
                                        ((0, 0), by or (0, 0), by or (0, 0))):
-            self.page.call("Input.dispatchMouseEvent", type=kind, x=x + right, y=y + down,
-                           button="left", buttons=1, clickCount=1)
+            self.page.mouse(kind, x + right, y + down)
 
     def test_4_a_goal_and_a_pose_are_given_by_a_drag(self):
         self.drag("goal", 0, -100)  # up, which is +y
@@ -200,8 +202,8 @@ class RvizPage(unittest.TestCase):
         self.assertLess(math.hypot(point.point.x, point.point.y), TOLERANCE)
         self.drag("measure")
         x, y = self.look_down()
-        self.page.call("Input.dispatchMouseEvent", type="mousePressed", x=x + 100, y=y,
-                       button="left", clickCount=1)
+        self.page.mouse("Pressed", x + 100, y)
+        self.page.mouse("Released", x + 100, y)
         self.page.wait_for(
             "/^1\\.[0-9]+ m$/.test(document.querySelector('#rviz-said').textContent)")
         self.drag("focus")
