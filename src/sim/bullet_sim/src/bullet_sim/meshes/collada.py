@@ -7,7 +7,6 @@ are. Skins are drawn in their bind pose.
 
 import logging
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,8 @@ import numpy as np
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
 from bullet_sim.files import find_beside
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, NamedPart, welded
+from bullet_sim.meshes.smoothing import smooth_shaded
 
 _log = logging.getLogger(__name__)
 
@@ -107,29 +107,33 @@ def _triangles(primitive: Any) -> Any:
 
 
 def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> MeshPart:
-    """Corners are not shared: positions, normals and image coordinates have separate indices."""
+    """Positions, normals and image coordinates have separate indices."""
     count = len(triangles.vertex_index) * 3
-    vertices = triangles.vertex[triangles.vertex_index].reshape(count, 3)
-    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
     faces = np.arange(count, dtype=np.uint32).reshape(-1, 3)
     mirrored = np.linalg.det(matrix[:3, :3]) < 0
-    if mirrored:
-        faces = np.ascontiguousarray(faces[:, ::-1])
+    order = (faces[:, ::-1] if mirrored else faces).reshape(-1)
+
+    def of_corners(values: np.ndarray, indices: np.ndarray) -> np.ndarray:
+        return values[indices].reshape(count, -1)[order]
+
+    vertices = of_corners(triangles.vertex, triangles.vertex_index)
+    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
     uv = None
     if len(triangles.texcoordset):
-        uv = triangles.texcoordset[0][triangles.texcoord_indexset[0]][..., :2]
-        uv = uv.reshape(count, 2).astype(np.float32)
-    part = flat_shaded(vertices, faces, None, material)
-    if mirrored:
-        part = replace(part, vertices=vertices.astype(np.float32), faces=faces)
-    part = replace(part, uv=uv)
+        uv = of_corners(triangles.texcoordset[0], triangles.texcoord_indexset[0])
+        uv = uv[:, :2].astype(np.float32)
     if triangles.normal is None or triangles.normal_index is None:
-        return part
-    normals = triangles.normal[triangles.normal_index].reshape(count, 3)
+        return smooth_shaded(vertices, faces, uv, material)
+    normals = of_corners(triangles.normal, triangles.normal_index)
     normals = normals @ np.linalg.inv(matrix[:3, :3])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = normals / np.where(length > 0, length, 1)
-    return replace(part, normals=normals.astype(np.float32))
+    return welded(MeshPart(
+        vertices=vertices.astype(np.float32),
+        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
+        uv=uv,
+        faces=faces,
+        material=material,
+    ))
 
 
 def _material(effect: Any, folder: Path) -> Material:

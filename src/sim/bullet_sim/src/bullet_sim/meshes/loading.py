@@ -13,8 +13,9 @@ from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.files import check_file
 from bullet_sim.meshes.collada import read_collada
 from bullet_sim.meshes.generated import generated_parts
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded, join_parts
+from bullet_sim.meshes.part import MeshPart, NamedPart, join_parts
 from bullet_sim.meshes.simplify import cluster
+from bullet_sim.meshes.smoothing import smooth_shaded
 from bullet_sim.meshes.stl import read_stl
 from bullet_sim.meshes.trimesh_files import read_scene
 from bullet_sim.meshes.wavefront import read_wavefront
@@ -129,7 +130,7 @@ def _with_fewer_triangles(parts: list[MeshPart], path: str) -> list[MeshPart]:
     for part in parts:
         kept, faces = cluster(part.vertices, part.faces, MOST_DRAWN * len(part.faces) // count)
         uv = None if part.uv is None else part.uv[kept]
-        fewer.append(flat_shaded(part.vertices[kept], faces, uv, part.material))
+        fewer.append(smooth_shaded(part.vertices[kept], faces, uv, part.material))
     fewer = [part for part in fewer if len(part.faces)]
     left = sum(len(part.faces) for part in fewer)
     _log.warning("mesh %s has %d triangles and is drawn with %d; export it with at most %d",

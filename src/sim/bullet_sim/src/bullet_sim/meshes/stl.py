@@ -1,4 +1,4 @@
-"""STL files, text or binary: triangles without material, flat shaded.
+"""STL files, text or binary: triangles without material.
 
 Read here and not by trimesh, whose import costs half a second of a simulator's start (measured).
 """
@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, NamedPart
+from bullet_sim.meshes.smoothing import smooth_shaded
 
 # The binary layout: 80 bytes of anything, the number of facets, and for each facet this.
 _HEADER_BYTES = 84
@@ -76,4 +77,4 @@ def _text_solids(text: str) -> list[tuple[str, np.ndarray]]:
 
 
 def _part(corners: np.ndarray) -> MeshPart:
-    return flat_shaded(corners, np.arange(len(corners)).reshape(-1, 3))
+    return smooth_shaded(corners, np.arange(len(corners)).reshape(-1, 3))

@@ -11,7 +11,8 @@ import numpy as np
 
 from bullet_sim.description import Material
 from bullet_sim.files import check_file
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, NamedPart
+from bullet_sim.meshes.smoothing import smooth_shaded
 
 LARGEST_PART = 200_000_000  # bytes
 
@@ -43,7 +44,7 @@ def _part(mesh: Any, matrix: np.ndarray) -> MeshPart:
     faces = np.asarray(mesh.faces)
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
-    return flat_shaded(vertices, faces, getattr(mesh.visual, "uv", None), _material(mesh))
+    return smooth_shaded(vertices, faces, getattr(mesh.visual, "uv", None), _material(mesh))
 
 
 def _material(mesh: Any) -> Material | None:

@@ -12,7 +12,8 @@ import numpy as np
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes.part import MeshPart, NamedPart, flat_shaded
+from bullet_sim.meshes.part import MeshPart, NamedPart, welded
+from bullet_sim.meshes.smoothing import smooth_shaded
 from bullet_sim.meshes.wavefront_materials import read_materials
 
 LISTS = ("v", "vt", "vn")  # positions, image coordinates, normals
@@ -123,13 +124,13 @@ def _part(
     vertices = arrays["v"][position]
     uv = None if (image < 0).any() else arrays["vt"][image].astype(np.float32)
     if (normal < 0).any():
-        return flat_shaded(vertices, faces, uv, material)
+        return smooth_shaded(vertices, faces, uv, material)
     normals = arrays["vn"][normal]
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return MeshPart(
+    return welded(MeshPart(
         vertices=vertices.astype(np.float32),
         normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
         uv=uv,
         faces=faces,
         material=material,
-    )
+    ))

@@ -1,0 +1,85 @@
+"""Normals for triangles that come without: smooth over curved surfaces, sharp at edges."""
+
+import math
+
+import numpy as np
+
+from bullet_sim.description import Material
+from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, welded
+
+CREASE = math.radians(30)  # between two triangles; a larger angle is an edge that is seen
+
+
+def smooth_shaded(
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    uv: np.ndarray | None = None,
+    material: Material | None = None,
+) -> MeshPart:
+    """A part whose triangles are shaded as one surface where they meet at less than `CREASE`.
+
+    `vertices` (n, 3) m, `faces` (m, 3), `uv` (n, 2). A corner's normal is the mean of those around
+    it, each weighted by its triangle's angle there, so that it does not matter how a flat face is
+    cut up. Corners that look alike are shared.
+    """
+    corners = np.asarray(vertices, np.float64)[faces]
+    normals = face_normals(corners)
+    group = _groups(corners.astype(np.float32), normals)
+    weighted = (normals[:, None] * _angles(corners)[..., None]).reshape(-1, 3)
+    summed = np.stack([np.bincount(group, weighted[:, axis]) for axis in range(3)], axis=1)[group]
+    length = np.linalg.norm(summed, axis=1, keepdims=True)
+    own = np.repeat(normals, 3, axis=0)
+    smooth = np.where(length > 0, summed / np.where(length > 0, length, 1), own)
+    return welded(MeshPart(
+        vertices=corners.reshape(-1, 3).astype(np.float32),
+        normals=smooth.astype(np.float32),
+        uv=None if uv is None else np.asarray(uv, np.float32)[faces].reshape(-1, 2),
+        faces=np.arange(len(smooth), dtype=np.uint32).reshape(-1, 3),
+        material=material,
+    ))
+
+
+def _groups(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(3 m,) of corners (m, 3, 3): equal for those of one place whose triangles hang together there
+    by edges that are no creases."""
+    place = equal_rows(corners.reshape(-1, 3))[1].reshape(-1, 3).astype(np.int64)
+    start, end = place.reshape(-1), np.roll(place, -1, axis=1).reshape(-1)
+    edge = np.minimum(start, end) * (place.max(initial=0) + 1) + np.maximum(start, end)
+    order = np.argsort(edge, kind="stable")
+    first, second = order[:-1], order[1:]
+    together = ((edge[first] == edge[second]) & (start[first] != end[first])
+                & ((normals[first // 3] * normals[second // 3]).sum(axis=1) > math.cos(CREASE)))
+    first, second = first[together], second[together]
+    # An edge i goes from corner i to the next one of its triangle; the other triangle's edge goes
+    # the same way or back.
+    back = start[first] != start[second]
+    links = np.concatenate([
+        np.stack([first, np.where(back, _next(second), second)]),
+        np.stack([_next(first), np.where(back, second, _next(second))])], axis=1)
+    return _components(start.size, *links)
+
+
+def _next(corner: np.ndarray) -> np.ndarray:
+    """The next corner of the same triangle."""
+    return corner - corner % 3 + (corner + 1) % 3
+
+
+def _components(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(count,): the least number that each can be reached from by links between two."""
+    least = np.arange(count)
+    while True:
+        before = least.copy()
+        lower = np.minimum(least[one], least[other])
+        np.minimum.at(least, one, lower)
+        np.minimum.at(least, other, lower)
+        least = least[least]
+        if (least == before).all():
+            return least
+
+
+def _angles(corners: np.ndarray) -> np.ndarray:
+    """(m, 3) rad, of triangles (m, 3, 3) at each corner."""
+    ahead = np.roll(corners, -1, axis=1) - corners
+    behind = np.roll(corners, 1, axis=1) - corners
+    across = np.linalg.norm(np.cross(ahead, behind), axis=2)
+    return np.arctan2(across, (ahead * behind).sum(axis=2))
