@@ -16,6 +16,7 @@ setup(
     package_data={"bullet_sim": ["py.typed", "data/**/*"]},
     python_requires=">=3.11",
     install_requires=[
+        "fast-simplification>=0.2,<0.3",  # tolerance by its loss-free way, see meshes/detail.py
         "moderngl>=5.10,<6",  # textures are let go by weak references, which 5.6 lacks
         "numpy>=1.26,<3",
         "opencv-python-headless>=4.8,<5",

@@ -1,8 +1,9 @@
 """The renderer people normally have: OpenGL without a screen, on a graphics card or llvmpipe.
 
 Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
-once, faces that look away and links outside the picture not drawn, near things first, light per
-corner where that is enough; no MSAA, no anisotropic filtering. Shadows are a pass of their own,
+once, faces that look away and links outside the picture not drawn, meshes in fewer triangles where
+half a pixel makes no difference (meshes/detail), near things first, light per corner where that is
+enough; no MSAA, no anisotropic filtering. Shadows are a pass of their own,
 only where something casts them (`shadows`). Back faces are not drawn, so that a camera inside its
 own housing sees out.
 """
@@ -47,6 +48,7 @@ from bullet_sim.rendering.visibility import Outlines, Visibility
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
 # A highlight of less than half a grey level is not worth working out for each pixel.
 _VISIBLE = 0.5 / 255
+_UNSEEN = 0.5  # px that what is drawn may be away from the mesh
 _MOST_DEVICES = 8
 _VERSIONS_KEPT = 2  # of scenes: the one being drawn, and the one before
 # In `polygon_offset`'s units. llvmpipe's depth of one plane is off by up to 6/2**24 (measured), and
@@ -60,6 +62,12 @@ class _Item:
     surface: Surface
     plain: Drawing
     shaded: Drawing | None  # where shadows fall
+    coarser: list[tuple[float, _Item]]  # by tolerance, m, the finest first
+
+    def within(self, tolerance: float) -> _Item:
+        """The coarsest that is no farther away from it, m."""
+        fitting = [item for own, item in self.coarser if own <= tolerance]
+        return fitting[-1] if fitting else self
 
 
 _Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the picture
@@ -154,16 +162,17 @@ class EglRenderer:
 
         numbers = itertools.count()
 
-        def item(surface: Surface) -> _Item:
+        def item(surface: Surface, number: int) -> _Item:
             per_pixel = near_lights or surface.highlight * shine > _VISIBLE
             plain, shaded = Kind(per_pixel, fog), Kind(per_pixel, fog, len(casting))
-            return _Item(next(numbers), surface, self._store.drawing(surface, plain),
-                         self._store.drawing(surface, shaded) if casting else None)
+            return _Item(number, surface, self._store.drawing(surface, plain),
+                         self._store.drawing(surface, shaded) if casting else None,
+                         [(own, item(level, number)) for own, level in surface.coarser])
 
         outlines = Outlines([node.shape for node in scene.nodes.values()])
         block = self._context.buffer(lights.lights_block(scene, casting), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
-        items = [[item(surface) for surface in own] for own in surfaces]
+        items = [[item(surface, next(numbers)) for surface in own] for own in surfaces]
         return _Prepared(block, items, outlines, recess, shadows)
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
@@ -180,9 +189,11 @@ class EglRenderer:
         for index in seen.order:
             node, clip_node = nodes[index], seen.clip_node[index]
             pieces = [
-                piece for item, visible in
-                zip(prepared.items[index], seen.parts[index], strict=True) if visible
-                for piece in _pieces(item, places.get(item.number), view)]
+                piece for item, visible, depth in
+                zip(prepared.items[index], seen.parts[index], seen.depths[index], strict=True)
+                if visible for piece in _pieces(
+                    item.within(_UNSEEN * depth / view.focal_length_px),
+                    places.get(item.number), view)]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
             target.render(node, [p for p in pieces if p[0].surface.opaque], clip_node)
             see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))

@@ -1,7 +1,7 @@
 """Triangles and materials on the graphics card, uploaded once for all links that look alike."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import cv2
@@ -9,6 +9,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import Fog, Material
+from bullet_sim.meshes.detail import levels
 from bullet_sim.meshes.images import load_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
@@ -56,6 +57,7 @@ class Surface:
     casts_shadows: bool
     convex: bool  # few triangles, as planes and boxes have, none of them in front of another
     drawings: dict[Kind, Drawing]
+    coarser: list[tuple[float, "Surface"]]  # by tolerance, m, the finest first; see meshes/detail
 
 
 class SurfaceStore:
@@ -122,14 +124,13 @@ class SurfaceStore:
 
     def _upload(self, part: MeshPart) -> Surface:
         material = part.material
-        uv = part.uv if part.uv is not None else np.zeros((len(part.vertices), 2), np.float32)
-        corners = np.concatenate([part.vertices, part.normals, uv], axis=1, dtype=np.float32)
         texture = None
         if material.texture is not None and part.uv is not None:
             texture = self._texture(material.texture)
-        return Surface(
-            vertices=self._context.buffer(np.ascontiguousarray(corners)),
-            indices=self._context.buffer(np.ascontiguousarray(part.faces)),
+        vertices, indices = self._buffers(part)
+        surface = Surface(
+            vertices=vertices,
+            indices=indices,
             material=self._context.buffer(_material_block(material)),
             texture=texture,
             opaque=material.diffuse[3] >= 1,
@@ -137,7 +138,19 @@ class SurfaceStore:
             casts_shadows=part.casts_shadows and material.diffuse[3] >= 1,
             convex=len(part.faces) <= _FEW and _is_convex(part),
             drawings={},
+            coarser=[],
         )
+        for level in levels(part):
+            vertices, indices = self._buffers(level.part)
+            surface.coarser.append((level.tolerance, replace(
+                surface, vertices=vertices, indices=indices, drawings={}, coarser=[])))
+        return surface
+
+    def _buffers(self, part: MeshPart) -> tuple[moderngl.Buffer, moderngl.Buffer]:
+        uv = part.uv if part.uv is not None else np.zeros((len(part.vertices), 2), np.float32)
+        corners = np.concatenate([part.vertices, part.normals, uv], axis=1, dtype=np.float32)
+        return (self._context.buffer(np.ascontiguousarray(corners)),
+                self._context.buffer(np.ascontiguousarray(part.faces)))
 
     def _texture(self, path: str) -> moderngl.Texture | None:
         """With mipmaps, so that thin lines far away fade instead of breaking up."""

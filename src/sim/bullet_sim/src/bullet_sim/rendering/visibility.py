@@ -15,6 +15,7 @@ class Visibility:
 
     clip_node: np.ndarray  # (n, 4, 4), node frame to clip coordinates
     parts: list[np.ndarray]  # for each node, whether each of its parts can be seen
+    depths: list[np.ndarray]  # and how far before the camera its nearest corner is, m
     order: list[int]  # nodes, nearest first; of those around the camera, small first
 
 
@@ -39,10 +40,12 @@ class Outlines:
         # Outside if all corners are beyond one and the same side of the view.
         outside = (axes < -w).all(axis=2) | (axes > w).all(axis=2)
         parts = self.by_node(~outside.any(axis=1))
+        depths = self.by_node(clip[:, 3].min(axis=1))
         centres = (world_node @ self._centres)[:, :3, 0]
         gaps = np.maximum(0.0, np.linalg.norm(centres - eye, axis=1) - self._radii)
         order = np.lexsort((self._radii, gaps)).tolist()
-        return Visibility(clip_node, parts, [index for index in order if parts[index].any()])
+        return Visibility(clip_node, parts, depths,
+                          [index for index in order if parts[index].any()])
 
     def boxes(self, nodes: Sequence[Node]) -> np.ndarray:
         """(n, 8, 3): corners in the world of boxes around every part of every node."""

@@ -1,0 +1,88 @@
+"""Coarser versions of a part, for when it is so far away that nobody can tell the difference."""
+
+import math
+from dataclasses import dataclass, replace
+
+import fast_simplification
+import numpy as np
+
+from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, welded
+
+FEWEST = 500  # triangles that are worth it
+FINEST, LEVELS = 1 / 512, 6  # of half the part's size, the first tolerance; each is twice the last
+GAIN = 0.7  # of the triangles of the level before, at most
+# A corner's squares add up over some six planes, so that a surface stays far closer than the root
+# of their sum: balls, rings and capsules within 0.9 of a level's tolerance, levels before included.
+SLACK = 1.8
+NEIGHBOURS = 8  # corners of the part whose normals a new one has
+SAME_WAY = math.cos(math.radians(40))  # between a triangle's normal and those, at least
+
+# fast_simplification's way "without loss" collapses an edge while the sum of the squares of the
+# distances to the planes that met there, in the mesh's unit, is below this.
+_SQUARE = 2.220446049250313e-16
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A part in few triangles."""
+
+    part: MeshPart
+    tolerance: float  # m, that its surface is away from the part's own, at most
+
+
+def levels(part: MeshPart) -> list[Level]:
+    """Coarser and coarser ones, none of a part of few triangles or with a texture on it."""
+    textured = part.uv is not None and part.material is not None and part.material.texture
+    low, high = part.vertices.min(axis=0), part.vertices.max(axis=0)
+    size = float(np.linalg.norm(high.astype(float) - low)) / 2
+    if len(part.faces) < FEWEST or textured or size == 0.0:
+        return []
+    found: list[Level] = []
+    shading = _Shading(part)
+    kept, place = equal_rows(part.vertices)
+    vertices, faces = part.vertices[kept].astype(float), place[part.faces]
+    for tolerance in (size * FINEST * 2 ** level for level in range(LEVELS)):
+        fewer, fewer_faces = simplified(vertices, faces, tolerance * SLACK)
+        if 0 < len(fewer_faces) <= GAIN * len(faces):
+            vertices, faces = fewer, fewer_faces
+            found.append(Level(shading.of(vertices, faces), tolerance))
+        if len(faces) < FEWEST:
+            break
+    return found
+
+
+def simplified(vertices: np.ndarray, faces: np.ndarray,
+               tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Fewer vertices (k, 3) m and faces (j, 3), in planes within `tolerance`, m, of all that they
+    stand for; edges where a surface ends stay as they are."""
+    unit = tolerance / np.sqrt(_SQUARE)  # m
+    points, left = fast_simplification.simplify(
+        vertices / unit, faces.astype(np.int32), target_reduction=1.0, lossless=True,
+        preserve_border=True)
+    return points * unit, left
+
+
+class _Shading:
+    """Gives coarser triangles the normals of the part that they stand for."""
+
+    def __init__(self, part: MeshPart):
+        from scipy.spatial import cKDTree  # takes a fifth of a second, and small meshes need none
+
+        self._part = part
+        self._near = cKDTree(part.vertices)
+
+    def of(self, vertices: np.ndarray, faces: np.ndarray) -> MeshPart:
+        """Each corner's normal is the mean of the nearest ones that point as the triangle does."""
+        corners = vertices[faces].reshape(-1, 3)
+        own = np.repeat(face_normals(vertices[faces]), 3, axis=0)
+        away, near = self._near.query(corners, NEIGHBOURS)
+        normals = self._part.normals[near]  # (3 j, NEIGHBOURS, 3)
+        alike = (normals * own[:, None]).sum(axis=2) > SAME_WAY
+        weights = alike / (away / (away.mean(axis=1, keepdims=True) + 1e-9) + 1e-3) ** 2
+        mean = (normals * weights[..., None]).sum(axis=1)
+        length = np.linalg.norm(mean, axis=1, keepdims=True)
+        return welded(replace(
+            self._part, uv=None, vertices=corners.astype(np.float32),
+            normals=np.where(length > 0, mean / np.where(length > 0, length, 1), own).astype(
+                np.float32),
+            faces=np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)))

@@ -1,0 +1,125 @@
+"""Coarser meshes: fewer triangles within a bound, shaded as before."""
+
+import itertools
+
+import numpy as np
+import pytest
+import trimesh
+
+from bullet_sim.description import Material
+from bullet_sim.meshes import detail
+from bullet_sim.meshes.detail import levels
+from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.smoothing import smooth_shaded
+
+RADIUS = 0.5  # m
+
+
+def part_of(mesh: trimesh.Trimesh) -> MeshPart:
+    return smooth_shaded(mesh.vertices, mesh.faces)
+
+
+def ball() -> MeshPart:
+    return part_of(trimesh.creation.icosphere(4, RADIUS))
+
+
+def finely_cut_box() -> MeshPart:
+    box = trimesh.creation.box((1.0, 0.5, 0.25))
+    return part_of(box.subdivide().subdivide().subdivide().subdivide())
+
+
+def sampled(part: MeshPart) -> np.ndarray:
+    """Points (n, 3) of its surface: corners, middles of edges and of triangles."""
+    corners = part.vertices[part.faces].astype(float)
+    return np.concatenate([corners.reshape(-1, 3), corners.mean(axis=1),
+                           ((corners + np.roll(corners, 1, axis=1)) / 2).reshape(-1, 3)])
+
+
+def last(part: MeshPart) -> MeshPart:
+    return levels(part)[-1].part
+
+
+def test_normals_are_the_mesh_s_own():
+    """A few triangles, and yet as round."""
+    for level in levels(ball()):
+        outwards = level.part.vertices / np.linalg.norm(level.part.vertices, axis=1, keepdims=True)
+        assert (np.sum(level.part.normals * outwards, axis=1) > np.cos(np.radians(1.5))).all()
+
+
+def test_flat_faces_are_left_with_their_corners_and_edges_stay_sharp():
+    box = finely_cut_box()
+    assert len(box.faces) == 3072
+    coarse = levels(box)[0].part
+    assert len(coarse.faces) < 60
+    np.testing.assert_allclose(coarse.vertices.min(axis=0), (-0.5, -0.25, -0.125), atol=1e-6)
+    np.testing.assert_allclose(abs(coarse.normals).max(axis=1), 1.0, atol=1e-3)
+    corners = coarse.vertices[coarse.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert (np.sum(across * coarse.normals[coarse.faces[:, 0]], axis=1) > 0).all()
+    area = np.linalg.norm(across, axis=1).sum() / 2
+    assert area == pytest.approx(2 * (0.5 + 0.25 + 0.125), rel=1e-4)
+
+
+def test_an_open_sheet_keeps_its_edge():
+    x, y = np.meshgrid(np.linspace(0, 1, 40), np.linspace(0, 1, 40))
+    grid = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    corner = np.arange(39 * 40).reshape(39, 40)[:, :39].ravel()
+    faces = np.concatenate([np.stack([corner, corner + 1, corner + 41], axis=1),
+                            np.stack([corner, corner + 41, corner + 40], axis=1)])
+    coarse = last(smooth_shaded(grid, faces))
+    corners = coarse.vertices[coarse.faces]
+    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2].sum() / 2
+    assert area == pytest.approx(1.0) and len(coarse.faces) < len(faces) / 10
+
+
+def test_both_sides_of_a_sheet_keep_their_normals():
+    one = ball()
+    both = MeshPart(np.concatenate([one.vertices, one.vertices]),
+                    np.concatenate([one.normals, -one.normals]), None,
+                    np.concatenate([one.faces, one.faces[:, ::-1] + len(one.vertices)]))
+    coarse = last(both)
+    corners = coarse.vertices[coarse.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    turned = np.sum(across * coarse.normals[coarse.faces[:, 0]], axis=1)
+    assert (turned > 0).all()
+
+
+def test_levels_are_ever_coarser_and_keep_their_word():
+    part = ball()
+    found = levels(part)
+    assert len(found) >= 3
+    for finer, coarser in itertools.pairwise(found):
+        assert coarser.tolerance >= 2 * finer.tolerance
+        assert len(coarser.part.faces) <= detail.GAIN * len(finer.part.faces)
+    for level in found:
+        # The icosphere itself is up to 0.6 mm below the sphere that its corners lie on.
+        away = abs(np.linalg.norm(sampled(level.part), axis=1) - RADIUS)
+        assert away.max() < level.tolerance + 0.0006
+    assert len(found[-1].part.faces) < len(part.faces) / 8
+
+
+def test_small_and_textured_meshes_stay_as_they_are():
+    assert levels(part_of(trimesh.creation.icosphere(2))) == []  # 320 triangles
+    made = trimesh.creation.icosphere(4)
+    uv = made.vertices[:, :2]
+    painted = Material((1.0,) * 4, (1.0,) * 4, texture="/wood.png")
+    assert levels(smooth_shaded(made.vertices, made.faces, uv, painted)) == []
+    plain = Material((1.0,) * 4, (1.0,) * 4)
+    assert levels(smooth_shaded(made.vertices, made.faces, uv, plain))
+
+
+def test_equal_meshes_give_equal_levels():
+    for one, other in zip(levels(ball()), levels(ball()), strict=True):
+        np.testing.assert_array_equal(one.part.vertices, other.part.vertices)
+        np.testing.assert_array_equal(one.part.faces, other.part.faces)
+
+
+@pytest.mark.parametrize("broken", [
+    np.zeros((600, 3, 3)),  # all in one place
+    np.repeat(np.random.default_rng(1).normal(size=(300, 3, 3)), 2, axis=0),  # each twice
+    np.random.default_rng(2).normal(size=(600, 3, 3)),  # a heap that hangs together nowhere
+])
+def test_broken_meshes_are_drawn_all_the_same(broken):
+    part = smooth_shaded(broken.reshape(-1, 3), np.arange(1800).reshape(-1, 3))
+    for level in levels(part):
+        assert np.isfinite(level.part.vertices).all() and np.isfinite(level.part.normals).all()

@@ -1,0 +1,92 @@
+"""Meshes far away are drawn in fewer triangles, and nobody sees it."""
+
+import cv2
+import numpy as np
+import pytest
+import trimesh
+
+from bullet_sim.description import LightDescription, Material, Mesh, SceneDescription, Visual
+from bullet_sim.pose import Pose
+from bullet_sim.rendering import egl
+from bullet_sim.rendering.egl import EglRenderer
+from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.scene import Scene
+
+TRIANGLES = 20480
+FOV = 1.0  # rad
+DARK = SceneDescription(ambient=(0.2, 0.2, 0.2, 1.0), background=(0.0, 0.0, 0.0, 1.0))
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    opened = EglRenderer()
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """A ball at the origin."""
+    file = tmp_path_factory.mktemp("meshes") / "ball.stl"
+    trimesh.creation.icosphere(5, 0.5).export(file)
+    made = Scene(DARK)
+    made.add_light(LightDescription("sun", type="directional", direction=(0.5, 0.3, -0.8)))
+    made.add_link(("ball", "link"), [Visual("ball", Mesh(str(file)), material=Material(
+        diffuse=(0.9, 0.6, 0.3, 1.0)))], Pose())
+    return made
+
+
+def view_from(distance, width=320):
+    return CameraView(width, width * 3 // 4, FOV, 0.05, 50.0, Pose((-distance, 0.0, 0.0)))
+
+
+@pytest.fixture
+def drawn(renderer, scene, monkeypatch):
+    """Draws a view: the frame, and how many triangles went into it."""
+    counts = []
+    render = egl._Target.render
+
+    def counted(target, node, pieces, clip_node):
+        counts.extend(item.surface.indices.size // (3 * 4) for item, *_ in pieces)
+        render(target, node, pieces, clip_node)
+
+    monkeypatch.setattr(egl._Target, "render", counted)
+
+    def draw(view):
+        counts.clear()
+        return renderer.draw(scene, view, depth=True), sum(counts)
+
+    return draw
+
+
+@pytest.mark.parametrize("distance, most", [(0.55, TRIANGLES), (2.0, 4200), (6.0, 800)])
+def test_the_picture_is_the_same(drawn, monkeypatch, distance, most):
+    view = view_from(distance)
+    frame, triangles = drawn(view)
+    monkeypatch.setattr(egl, "_UNSEEN", 0.0)
+    whole, all_of_them = drawn(view)
+    assert all_of_them == TRIANGLES and triangles <= most
+    # The outline differs by less than a pixel, in few of its pixels.
+    inside, inside_of_whole = np.isfinite(frame.depth), np.isfinite(whole.depth)
+    wider = cv2.dilate(inside_of_whole.astype(np.uint8), np.ones((3, 3)))
+    smaller = cv2.erode(inside_of_whole.astype(np.uint8), np.ones((3, 3)))
+    assert not (inside & (wider == 0)).any() and not (~inside & (smaller == 1)).any()
+    # Within it depths agree within half a pixel's width there, more where the ball turns away.
+    deep = cv2.erode(inside_of_whole.astype(np.uint8), np.ones((9, 9))) == 1
+    width_of_pixel = whole.depth[deep] / view.focal_length_px
+    assert (abs(frame.depth[deep] - whole.depth[deep]) < width_of_pixel).mean() > 0.99
+    changes = abs(frame.rgb[deep].astype(int) - whole.rgb[deep]).max(axis=1)
+    assert np.mean(changes) < 1.5 and np.percentile(changes, 99) <= 8
+
+
+def test_who_comes_near_sees_all_of_it(drawn):
+    triangles = [drawn(view_from(distance))[1] for distance in (8, 4, 2, 1, 0.55)]
+    assert triangles == sorted(triangles) and len(set(triangles)) >= 4
+    assert drawn(view_from(2.0, 1280))[1] > drawn(view_from(2.0, 160))[1]
+
+
+def test_a_camera_inside_a_mesh_sees_no_less(drawn):
+    view = CameraView(64, 48, FOV, 0.01, 50.0, Pose((0.0, 0.0, 0.0)))
+    frame, triangles = drawn(view)
+    assert triangles == TRIANGLES
+    assert np.isinf(frame.depth).all()  # from inside it is not seen
