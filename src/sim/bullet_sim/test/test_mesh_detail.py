@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import trimesh
 
-from bullet_sim.description import Material
 from bullet_sim.meshes import detail
 from bullet_sim.meshes.detail import levels
 from bullet_sim.meshes.part import MeshPart
@@ -98,14 +97,8 @@ def test_levels_are_ever_coarser_and_keep_their_word():
     assert len(found[-1].part.faces) < len(part.faces) / 8
 
 
-def test_small_and_textured_meshes_stay_as_they_are():
+def test_small_meshes_stay_as_they_are():
     assert levels(part_of(trimesh.creation.icosphere(2))) == []  # 320 triangles
-    made = trimesh.creation.icosphere(4)
-    uv = made.vertices[:, :2]
-    painted = Material((1.0,) * 4, (1.0,) * 4, texture="/wood.png")
-    assert levels(smooth_shaded(made.vertices, made.faces, uv, painted)) == []
-    plain = Material((1.0,) * 4, (1.0,) * 4)
-    assert levels(smooth_shaded(made.vertices, made.faces, uv, plain))
 
 
 def test_equal_meshes_give_equal_levels():

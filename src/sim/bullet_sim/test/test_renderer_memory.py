@@ -83,7 +83,7 @@ def test_what_is_drawn_in_leaves_no_holes_in_the_heap():
 def test_models_that_have_gone_are_not_kept_ready(renderer, scene):
     renderer.draw(scene.frozen(), VIEW)
     (surface,) = renderer._store.of(scene.nodes["robot", "link"].shape)
-    gone = weakref.ref(surface), weakref.ref(surface.vertices)
+    gone = weakref.ref(surface), weakref.ref(surface.triangles.vertices)
     del surface
     scene.remove_model("robot")
     assert gone[0]() is not None

@@ -1,16 +1,19 @@
 """Meshes far away are drawn in fewer triangles, and nobody sees it."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 import trimesh
 
 from bullet_sim.description import LightDescription, Material, Mesh, SceneDescription, Visual
+from bullet_sim.meshes.smoothing import smooth_shaded
 from bullet_sim.pose import Pose
 from bullet_sim.rendering import egl
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.scene import LinkShape, Scene
 
 TRIANGLES = 20480
 FOV = 1.0  # rad
@@ -47,7 +50,7 @@ def drawn(renderer, scene, monkeypatch):
     render = egl._Target.render
 
     def counted(target, node, pieces, clip_node):
-        counts.extend(item.surface.indices.size // (3 * 4) for item, *_ in pieces)
+        counts.extend(array.vertices // 3 for _, (_, array), _ in pieces)
         render(target, node, pieces, clip_node)
 
     monkeypatch.setattr(egl._Target, "render", counted)
@@ -83,6 +86,20 @@ def test_who_comes_near_sees_all_of_it(drawn):
     triangles = [drawn(view_from(distance))[1] for distance in (8, 4, 2, 1, 0.55)]
     assert triangles == sorted(triangles) and len(set(triangles)) >= 4
     assert drawn(view_from(2.0, 1280))[1] > drawn(view_from(2.0, 160))[1]
+
+
+def test_a_mesh_with_a_picture_on_it_is_drawn_whole(renderer, tmp_path):
+    made = trimesh.creation.icosphere(4, 0.5)
+    part = smooth_shaded(made.vertices, made.faces, made.vertices[:, :2])
+    cv2.imwrite(str(tmp_path / "wood.png"), np.full((8, 8, 3), 90, np.uint8))
+    painted = replace(part, material=Material(texture=str(tmp_path / "wood.png")))
+    plain = replace(part, material=Material())
+    with renderer._context:
+        surfaces = renderer._store.of(LinkShape((painted, plain, plain), np.zeros(3), 0.5))
+    with_picture, one, other = (surface.triangles for surface in surfaces)
+    assert not with_picture.coarser and len(one.coarser) > 2
+    assert one is other  # uploaded once
+    assert not any(coarser.coarser for _, coarser in one.coarser)
 
 
 def test_a_camera_inside_a_mesh_sees_no_less(drawn):

@@ -31,11 +31,10 @@ class Level:
 
 
 def levels(part: MeshPart) -> list[Level]:
-    """Coarser and coarser ones, none of a part of few triangles or with a texture on it."""
-    textured = part.uv is not None and part.material is not None and part.material.texture
+    """Coarser and coarser ones without image coordinates; none of a part of few triangles."""
     low, high = part.vertices.min(axis=0), part.vertices.max(axis=0)
     size = float(np.linalg.norm(high.astype(float) - low)) / 2
-    if len(part.faces) < FEWEST or textured or size == 0.0:
+    if len(part.faces) < FEWEST or size == 0.0:
         return []
     found: list[Level] = []
     shading = _Shading(part)

@@ -31,6 +31,7 @@ from bullet_sim.rendering.gpu_surfaces import (
     Kind,
     Surface,
     SurfaceStore,
+    Triangles,
 )
 from bullet_sim.rendering.own_memory import own_array, own_blocks
 from bullet_sim.rendering.projection import (
@@ -66,7 +67,7 @@ class _Item:
 
     def within(self, tolerance: float) -> _Item:
         """The coarsest that is no farther away from it, m."""
-        fitting = [item for own, item in self.coarser if own <= tolerance]
+        fitting = [item for away, item in self.coarser if away <= tolerance]
         return fitting[-1] if fitting else self
 
 
@@ -165,15 +166,21 @@ class EglRenderer:
         def item(surface: Surface, number: int) -> _Item:
             per_pixel = near_lights or surface.highlight * shine > _VISIBLE
             plain, shaded = Kind(per_pixel, fog), Kind(per_pixel, fog, len(casting))
-            return _Item(number, surface, self._store.drawing(surface, plain),
-                         self._store.drawing(surface, shaded) if casting else None,
-                         [(own, item(level, number)) for own, level in surface.coarser])
+            return self._item(number, surface, surface.triangles, plain,
+                              shaded if casting else None)
 
         outlines = Outlines([node.shape for node in scene.nodes.values()])
         block = self._context.buffer(lights.lights_block(scene, casting), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
         items = [[item(surface, next(numbers)) for surface in own] for own in surfaces]
         return _Prepared(block, items, outlines, recess, shadows)
+
+    def _item(self, number: int, surface: Surface, triangles: Triangles, plain: Kind,
+              shaded: Kind | None) -> _Item:
+        return _Item(number, surface, self._store.drawing(triangles, plain),
+                     shaded and self._store.drawing(triangles, shaded),
+                     [(away, self._item(number, surface, coarser, plain, shaded))
+                      for away, coarser in triangles.coarser])
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
                 target: _Target) -> None:
@@ -290,7 +297,7 @@ def _pieces(item: _Item, shadows: np.ndarray | None, view: CameraView) -> list[_
     """How to draw a surface that can have shadows in rectangles of the picture."""
     if item.shaded is None or shadows is None:
         return [(item, item.plain, None)]
-    if not item.surface.convex:
+    if not item.surface.triangles.convex:
         return [(item, item.shaded, None)]
     return [(item, item.shaded if shaded else item.plain, place)
             for place, shaded in tiles(shadows, view.width, view.height)]

@@ -1,7 +1,13 @@
-"""Triangles and materials on the graphics card, uploaded once for all links that look alike."""
+"""Triangles and materials on the graphics card, uploaded once for all links that look alike.
 
+Where half a pixel makes no difference, a mesh is drawn in fewer triangles (`meshes/detail`).
+"""
+
+from __future__ import annotations
+
+import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import cv2
@@ -45,19 +51,27 @@ Drawing = tuple[Program, moderngl.VertexArray]
 
 
 @dataclass(eq=False)
-class Surface:
-    """One part of a link, ready to draw."""
+class Triangles:
+    """Of all parts that have the same."""
 
     vertices: moderngl.Buffer
     indices: moderngl.Buffer
+    textured: bool  # or the material's colour alone
+    convex: bool  # few, as planes and boxes have, none of them in front of another
+    coarser: list[tuple[float, Triangles]]  # by tolerance, m, the finest first
+    drawings: dict[Kind, Drawing]
+
+
+@dataclass(eq=False)
+class Surface:
+    """One part of a link, ready to draw."""
+
+    triangles: Triangles
     material: moderngl.Buffer
     texture: moderngl.Texture | None
     opaque: bool
     highlight: float  # brightest specular channel, 0..1
     casts_shadows: bool
-    convex: bool  # few triangles, as planes and boxes have, none of them in front of another
-    drawings: dict[Kind, Drawing]
-    coarser: list[tuple[float, "Surface"]]  # by tolerance, m, the finest first; see meshes/detail
 
 
 class SurfaceStore:
@@ -66,6 +80,7 @@ class SurfaceStore:
     def __init__(self, context: moderngl.Context):
         self._context = context
         self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
+        self._triangles: WeakValueDictionary[bytes, Triangles] = WeakValueDictionary()
         self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
         self._unreadable: set[str] = set()  # images that were warned about
         self._programs: dict[tuple[Kind, bool], Program] = {}
@@ -91,17 +106,17 @@ class SurfaceStore:
             surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]
         return surfaces
 
-    def drawing(self, surface: Surface, kind: Kind) -> Drawing:
-        """How to draw a surface."""
-        found = surface.drawings.get(kind)
+    def drawing(self, triangles: Triangles, kind: Kind) -> Drawing:
+        """How to draw them."""
+        found = triangles.drawings.get(kind)
         if found is None:
-            program = self._program(kind, surface.texture is not None)
-            layout = "3f 3f 2f" if surface.texture is not None else "3f 3f 2x4"
-            names = ["in_position", "in_normal", "in_uv"][:3 if surface.texture is not None else 2]
+            program = self._program(kind, triangles.textured)
+            layout = "3f 3f 2f" if triangles.textured else "3f 3f 2x4"
+            names = ["in_position", "in_normal", "in_uv"][:3 if triangles.textured else 2]
             array = self._context.vertex_array(
-                program.program, [(surface.vertices, layout, *names)], surface.indices
+                program.program, [(triangles.vertices, layout, *names)], triangles.indices
             )
-            found = surface.drawings[kind] = (program, array)
+            found = triangles.drawings[kind] = (program, array)
         return found
 
     def _program(self, kind: Kind, textured: bool) -> Program:
@@ -127,30 +142,30 @@ class SurfaceStore:
         texture = None
         if material.texture is not None and part.uv is not None:
             texture = self._texture(material.texture)
-        vertices, indices = self._buffers(part)
-        surface = Surface(
-            vertices=vertices,
-            indices=indices,
+        return Surface(
+            triangles=self._triangles_of(part, texture is not None, texture is None),
             material=self._context.buffer(_material_block(material)),
             texture=texture,
             opaque=material.diffuse[3] >= 1,
             highlight=max(material.specular[:3]) if material.shininess > 0 else 0.0,
             casts_shadows=part.casts_shadows and material.diffuse[3] >= 1,
-            convex=len(part.faces) <= _FEW and _is_convex(part),
-            drawings={},
-            coarser=[],
         )
-        for level in levels(part):
-            vertices, indices = self._buffers(level.part)
-            surface.coarser.append((level.tolerance, replace(
-                surface, vertices=vertices, indices=indices, drawings={}, coarser=[])))
-        return surface
 
-    def _buffers(self, part: MeshPart) -> tuple[moderngl.Buffer, moderngl.Buffer]:
-        uv = part.uv if part.uv is not None else np.zeros((len(part.vertices), 2), np.float32)
+    def _triangles_of(self, part: MeshPart, textured: bool, levelled: bool) -> Triangles:
+        """Uploaded once. `levelled`: with coarser ones."""
+        uv = part.uv if textured else np.zeros((len(part.vertices), 2), np.float32)
         corners = np.concatenate([part.vertices, part.normals, uv], axis=1, dtype=np.float32)
-        return (self._context.buffer(np.ascontiguousarray(corners)),
-                self._context.buffer(np.ascontiguousarray(part.faces)))
+        faces = np.ascontiguousarray(part.faces)
+        content = corners.tobytes() + faces.tobytes() + bytes([textured, levelled])
+        key = hashlib.blake2b(content).digest()
+        found = self._triangles.get(key)
+        if found is None:
+            coarser = [(level.tolerance, self._triangles_of(level.part, textured, False))
+                       for level in (levels(part) if levelled else ())]
+            found = self._triangles[key] = Triangles(
+                self._context.buffer(corners), self._context.buffer(faces), textured,
+                len(part.faces) <= _FEW and _is_convex(part), coarser, {})
+        return found
 
     def _texture(self, path: str) -> moderngl.Texture | None:
         """With mipmaps, so that thin lines far away fade instead of breaking up."""

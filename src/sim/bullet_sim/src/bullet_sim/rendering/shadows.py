@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import LightDescription
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import MeshPart, equal_rows
 from bullet_sim.rendering.gpu_surfaces import SHADOWS_BINDING, SHADOWS_UNIT, Surface
 from bullet_sim.rendering.lights import warn_once
 from bullet_sim.rendering.own_memory import own_blocks
@@ -79,16 +79,16 @@ class ShadowPass:
                 ground = node.shape.plane_size > _GROUND
                 casters.append(_Caster(number, np.concatenate(boxes), parts, ground, arrays))
             first += len(own)
-        convex = np.array([surface.convex for own in surfaces for surface in own])
+        convex = np.array([surface.triangles.convex for own in surfaces for surface in own])
         return Shadows(self, lights, casters, convex) if lights and casters else None
 
     def _array(self, part: MeshPart) -> moderngl.VertexArray:
         """Its triangles, with each place only once, whatever the normals are there."""
-        places, numbers = np.unique(part.vertices, axis=0, return_inverse=True)
-        faces = numbers.reshape(-1)[part.faces].astype(np.uint32)
+        kept, numbers = equal_rows(part.vertices)
+        places = part.vertices[kept]
         return self.context.vertex_array(
             self.program, [(self.context.buffer(places), "3f", "in_position")],
-            self.context.buffer(faces))
+            self.context.buffer(numbers[part.faces]))
 
 
 class Shadows:
