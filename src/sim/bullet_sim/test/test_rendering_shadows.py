@@ -250,6 +250,21 @@ def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkey
     assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
 
 
+def test_cameras_that_look_elsewhere_leave_each_other_the_map(renderer, monkeypatch):
+    drawn = []
+    draw = Shadows._draw
+    monkeypatch.setattr(Shadows, "_draw",
+                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+    scene = stage()
+    scene.add_link(("far", "link"), [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((1.8, 1.8, 0.1)))
+    views = from_above((0.0, 0.0, 1.2)), from_above((1.8, 1.8, 0.8))
+    pictures = [renderer.draw(scene, view).rgb for view in views]
+    assert len(drawn) == 2
+    for view, picture in 2 * list(zip(views, pictures)):
+        assert np.array_equal(renderer.draw(scene, view).rgb, picture)
+    assert len(drawn) == 2
+
+
 @pytest.mark.parametrize("pose", [Pose((np.nan, 0.0, 0.0)), Pose((0.0, 0.0, np.inf)),
                                   Pose((0.0, 0.0, 0.4), (0.0, 0.0, np.nan, 1.0))])
 @pytest.mark.parametrize("light", [sun(), spot((0.5, 0.4, 3.0))])

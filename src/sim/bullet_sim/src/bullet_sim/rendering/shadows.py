@@ -126,8 +126,9 @@ class Shadows:
         other = parts[other]
         there = ~is_empty(places) & ~((self._parts[one] == other) & self._convex[other])
         casting = np.isin(np.arange(len(self._casters)), self._owner[one[there]])
-        self._wanted = [node if casts else None
-                        for node, casts in zip(self._standing, casting, strict=True)]
+        # What another camera's picture needs stays: its shadows cannot be in this one.
+        self._wanted = [node if casts or drawn is node else None for node, casts, drawn in
+                        zip(self._standing, casting, self._drawn, strict=True)]
         return {part: places[there & (other == part)] for part in np.unique(other[there]).tolist()}
 
     def use(self) -> None:
