@@ -1,11 +1,13 @@
 """Conversions between readings and messages, without a master."""
 
+import io
 import math
 
 import numpy as np
 import pytest
 from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Twist as TwistMsg
+from sensor_msgs.msg import PointCloud2
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose
@@ -108,6 +110,20 @@ def test_points_are_in_optical_axes_with_colour():
     assert math.isnan(cloud[0, 0][0])
     assert not msg.is_dense
     assert [field.name for field in msg.fields] == ["x", "y", "z", "rgb"]
+
+
+@pytest.mark.parametrize("hole", [False, True])
+def test_points_go_out_as_the_generated_class_packs_them(hole):
+    depth = np.linspace(1.0, 3.0, 15, dtype=np.float32).reshape(3, 5)
+    depth[1, 1] = math.nan if hole else 2.0
+    msg = convert.points_to_msg(depth, np.full((3, 5, 3), 200, np.uint8), 4.0, 1.5, "optical")
+    sent, packed = io.BytesIO(), io.BytesIO()
+    msg.serialize(sent)
+    PointCloud2(**{name: getattr(msg, name) for name in msg.__slots__}).serialize(packed)
+    assert sent.getvalue() == packed.getvalue()
+    back = PointCloud2().deserialize(sent.getvalue())
+    assert (back.width, back.height, back.point_step, back.row_step) == (5, 3, 16, 80)
+    assert back.is_dense is not hole and back.header.stamp.to_sec() == 1.5
 
 
 def test_camera_info_has_gazebos_principal_point():

@@ -6,7 +6,7 @@ import numpy as np
 
 from bullet_sim import profiler as profiler_module
 from bullet_sim.profiler import Profiler
-from bullet_sim_ros.array_image import ArrayImage
+from bullet_sim_ros.array_messages import ArrayImage
 
 
 class Clock:

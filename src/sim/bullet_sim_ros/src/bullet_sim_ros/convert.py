@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
+import cv2
 import genpy
 import numpy as np
 import rospy
@@ -12,7 +13,7 @@ from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Quaternion as QuaternionMsg
 from geometry_msgs.msg import Twist as TwistMsg
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan, PointCloud2, PointField
+from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
@@ -21,7 +22,7 @@ from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import Twist
-from bullet_sim_ros.array_image import ArrayImage
+from bullet_sim_ros.array_messages import ArrayPointCloud2, ArrayImage
 from bullet_sim_ros.cameras.encodings import encode
 
 Message = TypeVar("Message")  # with a header
@@ -169,23 +170,18 @@ def _image(array: np.ndarray, time: float, frame: str, encoding: str,
 
 
 def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: float,
-                  frame: str) -> PointCloud2:
+                  frame: str) -> ArrayPointCloud2:
     """Organised cloud in optical axes (x right, y down, z forward); NaN where depth is NaN."""
     height, width = depth.shape
-    cloud = np.zeros((height, width), dtype=[("x", "<f4"), ("y", "<f4"), ("z", "<f4"),
-                                             ("rgb", "<u4")])
     columns = (np.arange(width, dtype=np.float32) - (width - 1) / 2) / focal_px
     rows = (np.arange(height, dtype=np.float32) - (height - 1) / 2) / focal_px
-    cloud["x"], cloud["y"], cloud["z"] = depth * columns, depth * rows[:, None], depth
-    channels = rgb.astype(np.uint32)
-    cloud["rgb"] = channels[..., 0] << 16 | channels[..., 1] << 8 | channels[..., 2]
-    msg = stamped(PointCloud2(height=height, width=width, point_step=16, row_step=16 * width),
-                  time, frame)
-    msg.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1)
-                  for i, name in enumerate(("x", "y", "z", "rgb"))]
-    msg.is_dense = not np.isnan(depth).any()
-    msg.data = cloud.tobytes()
-    return msg
+    colours = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGRA).view("<u4")[..., 0]
+    colours &= 0xFFFFFF
+    points = cv2.merge([depth * columns.astype(np.float32),
+                        depth * rows.astype(np.float32)[:, None], depth,
+                        colours.view(np.float32)])
+    return stamped(ArrayPointCloud2(points, ("x", "y", "z", "rgb"),
+                              is_dense=not np.isnan(depth).any()), time, frame)
 
 
 def camera_info_to_msg(camera: CameraDescription, time: float, frame: str, *, centre_x: float = 0,
