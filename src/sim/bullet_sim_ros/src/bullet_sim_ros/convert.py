@@ -22,7 +22,7 @@ from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import Twist
-from bullet_sim_ros.array_messages import ArrayPointCloud2, ArrayImage
+from bullet_sim_ros.array_messages import ArrayImage, ArrayPointCloud2
 from bullet_sim_ros.cameras.encodings import encode
 
 Message = TypeVar("Message")  # with a header

@@ -72,6 +72,14 @@ CRITERIA = (
     Criterion("ten robots by a launch file", "robots/launched.spawned", at_most=5),
     Criterion("memory after 1000 spawns", "respawn/memory.growth", at_most=5),
     Criterion("step after 1000 spawns", "respawn/step.last_to_first", at_most=1.05),
+    *(Criterion(f"{what}, real time", f"worlds/real_time_factor.{name}", at_least=bound)
+      for what, name, bound in (
+          ("300,000 triangles", "signs.300000", 0.99),
+          ("four cameras and 16 rings", "four_cameras_and_rings", 0.99),
+          ("depth camera, 640x480", "depth.640x480", 0.99),
+          ("depth camera, 1920x1080", "depth.1920x1080", 0.8),
+          ("playpen, four wheels", "playpen.4_wheels", 0.99),
+          ("playpen, six wheels", "playpen.6_wheels", 0.99))),
     *(Criterion(f"coarse environment against {name}, {size}, {processes} at once",
                 f"learning/ratio.coarse.{kind}.{size}.{processes}", at_least=bound)
       for kind, name, bound in (("tiny", "TinyRenderer", 20), ("plugin", "EGL plugin", 3))

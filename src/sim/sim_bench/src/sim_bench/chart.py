@@ -171,6 +171,26 @@ def _draw_fast(axes: Axes, figures: Figures) -> None:
     axes.set_ylabel("times real time")
 
 
+def _draw_triangles(axes: Axes, figures: Figures) -> None:
+    _line(axes, figures, "worlds/real_time_factor.signs.", "a camera of 320x240 at 30 Hz", OURS)
+    axes.set_xscale("log")
+    axes.set_ylim(0, 1.1)
+    axes.set_xlabel("triangles in the world")
+    axes.set_ylabel("times real time")
+    axes.legend(fontsize=8)
+
+
+def _draw_worlds(axes: Axes, figures: Figures) -> None:
+    names = {
+        "four cameras,\n16 rings": "four_cameras_and_rings", "depth\n640x480": "depth.640x480",
+        "depth\n1920x1080": "depth.1920x1080", "playpen,\n4 wheels": "playpen.4_wheels",
+        "playpen,\n6 wheels": "playpen.6_wheels",
+    }
+    found = [figures.get(f"worlds/real_time_factor.{name}") for name in names.values()]
+    _bars(axes, list(names), {"x": found})
+    axes.set_ylabel("times real time")
+
+
 def _draw_acceptance(axes: Axes, figures: Figures) -> None:
     """How far each figure is from its bound: beyond the line at 1 is good."""
     verdicts = judge(figures)[::-1]
@@ -202,5 +222,7 @@ PANELS: tuple[tuple[str, tuple[str, ...], Callable[[Axes, Figures], None]], ...]
     ("As fast as it goes", ("fast/", "robots/real_time_factor"), _draw_fast),
     ("More robots, more obstacles", ("growth/robots.", "growth/obstacles."), _draw_robots),
     ("More laser rays", ("growth/rays.",), _draw_rays),
+    ("Triangles in a world", ("worlds/real_time_factor.signs.",), _draw_triangles),
+    ("Worlds with all sensors heard", ("worlds/",), _draw_worlds),
     ("Acceptance", ("",), _draw_acceptance),
 )

@@ -9,7 +9,7 @@ from evaluation.trial.command_line import Parser
 from run_session.failure import RunError
 
 PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
-         "learning", "memory")
+         "learning", "worlds", "memory")
 DEFAULT_MEMORY_S = 300.0
 LEAST_MEMORY_S = 20.0  # below that there are too few samples for a growth
 
