@@ -162,15 +162,18 @@ class EglRenderer:
         casting = shadows.lights if shadows else []
 
         numbers = itertools.count()
+        kinds = lights.kinds(scene, casting)
 
         def item(surface: Surface, number: int) -> _Item:
             per_pixel = near_lights or surface.highlight * shine > _VISIBLE
-            plain, shaded = Kind(per_pixel, fog), Kind(per_pixel, fog, len(casting))
+            bright = surface.highlight * shine > 0
+            plain = Kind(per_pixel, kinds, bright, fog)
+            shaded = Kind(per_pixel, kinds, bright, fog, len(casting))
             return self._item(number, surface, surface.triangles, plain,
                               shaded if casting else None)
 
         outlines = Outlines([node.shape for node in scene.nodes.values()])
-        block = self._context.buffer(lights.lights_block(scene, casting), dynamic=True)
+        block = self._context.buffer(lights.lights_block(scene), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
         items = [[item(surface, next(numbers)) for surface in own] for own in surfaces]
         return _Prepared(block, items, outlines, recess, shadows)

@@ -33,9 +33,10 @@ class Kind:
     """Of drawing a surface."""
 
     per_pixel: bool  # or lit per corner
+    lights: tuple[tuple[int, int], ...]  # kind, and number of its shadow, -1: none
+    highlight: bool  # whether one can be seen on it
     fog: Fog | None = None
     shadows: int = 0  # how many lights cast them
-
 
 
 @dataclass(eq=False)
@@ -123,7 +124,8 @@ class SurfaceStore:
         if (kind, textured) not in self._programs:
             fog = kind.fog
             program = self._context.program(
-                **sources(kind.per_pixel, textured, fog is not None, kind.shadows))
+                **sources(kind.per_pixel, textured, kind.lights, kind.highlight, fog is not None,
+                          kind.shadows))
             if kind.shadows:
                 program["shadow_maps"] = SHADOWS_UNIT
                 program["Shadows"].binding = SHADOWS_BINDING

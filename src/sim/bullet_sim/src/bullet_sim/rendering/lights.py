@@ -24,23 +24,28 @@ def warn_once(text: str) -> None:
     log.warning("%s", text)
 
 
-def lights_block(scene: SceneState, casting: Sequence[LightDescription] = ()) -> bytes:
-    """All but the camera's position; lights beyond the eighth are left out.
-
-    `casting` are the lights with a shadow map, in the order of the maps.
-    """
+def lights_block(scene: SceneState) -> bytes:
+    """All but the camera's position; lights beyond the eighth are left out."""
     lights = list(scene.lights.values())
     if len(lights) > MAX_LIGHTS:
         left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])
         warn_once(f"more than {MAX_LIGHTS} lights; left out: {left_out}")
-    block = np.zeros((3 + 6 * MAX_LIGHTS, 4), np.float32)
+    block = np.zeros((2 + 6 * MAX_LIGHTS, 4), np.float32)
     block[0] = scene.description.ambient
-    block[2].view(np.int32)[0] = min(len(lights), MAX_LIGHTS)
     for index, light in enumerate(lights[:MAX_LIGHTS]):
-        block[3 + 6 * index:9 + 6 * index] = _rows(light)
-        if light in casting:
-            block[8 + 6 * index, 3] = 1 + casting.index(light)
+        block[2 + 6 * index:8 + 6 * index] = _rows(light)
     return block.tobytes()
+
+
+def kinds(scene: SceneState,
+          casting: Sequence[LightDescription]) -> tuple[tuple[int, int], ...]:
+    """Of each light in the block its kind, and its place among those `casting` shadows; -1: none.
+
+    At least one: what follows in the block is dark.
+    """
+    found = [(_kind(light), casting.index(light) if light in casting else -1)
+             for light in list(scene.lights.values())[:MAX_LIGHTS]]
+    return tuple(found or [(DIRECTIONAL, -1)])
 
 
 def needs_pixels(scene: SceneState) -> bool:
@@ -60,9 +65,13 @@ def light_direction(light: LightDescription) -> np.ndarray:
     return direction / length if 0 < length < np.inf else np.array([0.0, 0.0, -1.0])
 
 
+def _kind(light: LightDescription) -> int:
+    return _KINDS.get(light.type, POINT)
+
+
 def _rows(light: LightDescription) -> np.ndarray:
     return np.array([
-        (*light.pose.position, _KINDS.get(light.type, POINT)),
+        (*light.pose.position, 0.0),
         (*light_direction(light), light.range),
         light.diffuse,
         light.specular,

@@ -7,6 +7,7 @@ leaves little to do for each pixel. Of a light that casts shadows, a pixel then 
 its map lets through.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 MAX_LIGHTS = 8
@@ -21,10 +22,19 @@ def shader(name: str) -> str:
     return (_FOLDER / name).read_text(encoding="utf-8")
 
 
-def sources(per_pixel: bool, textured: bool, fog: bool = False,
-            shadows: int = 0) -> dict[str, str]:
-    """Arguments of moderngl's `program` for one kind of surface; `shadows` is how many cast."""
-    defined = {"MAX_LIGHTS": MAX_LIGHTS, "POINT": POINT, "SPOT": SPOT}
+def sources(per_pixel: bool, textured: bool, lights: Sequence[tuple[int, int]], highlight: bool,
+            fog: bool, shadows: int) -> dict[str, str]:
+    """Arguments of moderngl's `program` for one kind of surface.
+
+    `lights`: of each its kind and its shadow's number, -1: none. They are constants there, as
+    llvmpipe works out both branches of all that is decided for each pixel. `highlight`: whether a
+    light has one on it. `shadows`: how many cast.
+    """
+    defined = {"MAX_LIGHTS": MAX_LIGHTS, "POINT": POINT, "SPOT": SPOT, "LIGHTS": len(lights)}
+    for name, numbers in zip(("KINDS", "CASTS"), zip(*lights, strict=True), strict=True):
+        defined[name] = f"int[LIGHTS]({', '.join(map(str, numbers))})"
+    if highlight:
+        defined["HIGHLIGHT"] = ""
     if fog:
         defined |= {"FOG": "", "LINEAR": LINEAR, "EXP": EXP}
     if shadows:

@@ -1,15 +1,14 @@
 struct Light {
-    vec4 position;     // world; w: kind
+    vec4 position;     // world
     vec4 direction;    // world, unit; w: range
     vec4 diffuse;
     vec4 specular;
     vec4 attenuation;  // constant, linear, quadratic
-    vec4 cone;         // cos(inner / 2), cos(outer / 2), falloff, number of its shadow or 0
+    vec4 cone;         // cos(inner / 2), cos(outer / 2), falloff
 };
 layout(std140) uniform Lights {
     vec4 scene_ambient;
     vec4 eye;
-    ivec4 light_count;
     Light lights[MAX_LIGHTS];
 };
 layout(std140) uniform Surface {
@@ -50,11 +49,13 @@ vec3 lit(vec3 position, vec3 normal) {
 #endif
     if (emissive.w == 0.0) return min(diffuse.rgb + emissive.rgb, 1.0);
     vec3 colour = emissive.rgb + ambient.rgb * scene_ambient.rgb;
-    for (int i = 0; i < light_count.x; ++i) {
+    const int kinds[LIGHTS] = KINDS;
+    const int casts[LIGHTS] = CASTS;
+    for (int i = 0; i < LIGHTS; ++i) {
         Light light = lights[i];
         vec3 towards = -light.direction.xyz;
         float strength = 1.0;
-        int kind = int(light.position.w);
+        int kind = kinds[i];
         if (kind >= POINT) {
             vec3 gap = light.position.xyz - position;
             float distance = max(length(gap), 1e-6);
@@ -70,7 +71,7 @@ vec3 lit(vec3 position, vec3 normal) {
         }
         float facing = dot(normal, towards);
 #ifdef SHADOWS
-        int shadow = int(light.cone.w) - 1;
+        int shadow = casts[i];
 #ifdef PER_PIXEL
         if (shadow >= 0 && strength > 0.0 && facing > 0.0) {
             vec4 at = in_map(shadow, position, normal);
@@ -82,21 +83,24 @@ vec3 lit(vec3 position, vec3 normal) {
 #endif
         if (facing > 0.0) {
             colour += strength * facing * diffuse.rgb * light.diffuse.rgb;
+#ifdef HIGHLIGHT
             if (specular.w > 0.0) {
                 vec3 halfway = normalize(towards + normalize(eye.xyz - position));
                 float shine = pow(max(dot(normal, halfway), 0.0), specular.w);
                 colour += strength * shine * specular.rgb * light.specular.rgb;
             }
+#endif
         }
 #if defined(SHADOWS) && !defined(PER_PIXEL)
         if (shadow >= 0) {
             interceptable[shadow] = colour - before;
             colour = before;
         }
+#endif
     }
+#if defined(SHADOWS) && !defined(PER_PIXEL)
     return colour;  // clamped when all has come together
 #else
-    }
     return min(colour, 1.0);
 #endif
 }
