@@ -2,8 +2,10 @@
 
 import { element } from "./dom.js";
 import { t } from "./language.js";
+import { GroundShadows } from "./scene/ground_shadows.js";
 import { Links } from "./scene/links.js";
 import { Viewport } from "./scene/viewport.js";
+import * as THREE from "./vendor/three.module.min.js";
 
 export const title = "3D";
 
@@ -44,8 +46,10 @@ class Tab {
       button("Overview", "全景", () => this._overview(false)),
       button("From above", "俯视", () => this._overview(true))), this._hint);
     this._links = new Links(() => this._look());
+    this._shadows = new GroundShadows();
     try {
-      this._viewport = new Viewport(this._box, this._links.root);
+      this._viewport = new Viewport(this._box,
+        new THREE.Group().add(this._links.root, this._shadows.root));
     } catch (error) {
       this._hint.textContent = t("This browser has no WebGL: ", "此浏览器没有 WebGL：") + error.message;
       return;
@@ -97,6 +101,7 @@ class Tab {
       return;
     }
     this._links.move(new Float32Array(data.buffer, data.byteOffset, data.byteLength / 4));
+    this._shadows.follow();
     this._viewport.draw();
     if (!this._placed && data.byteLength) {
       this._placed = true;
@@ -110,6 +115,7 @@ class Tab {
   /** Models or meshes are new; until the person turns the view, it shows the robot. */
   _look() {
     if (!this._viewport) return;
+    this._shadows.show(this._links);
     if (!this._viewport.touched) this._lookAtRobot();
     this._viewport.draw();
   }

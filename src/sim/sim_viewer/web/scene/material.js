@@ -1,5 +1,7 @@
 // How surfaces look: Gazebo's arithmetic, so that the view has the colours of the robot's camera.
 // emissive + ambient x scene ambient + diffuse and specular of each light, at most 1, x texture.
+// Two things help to see shapes: what faces down gets less of the ambient light, and what is no
+// floor is brighter where it turns away, so that a dark robot stands out from a dark floor.
 
 import * as THREE from "../vendor/three.module.min.js";
 
@@ -73,12 +75,17 @@ vec3 from(Light light, vec3 normal) {
 }
 
 void main() {
-  vec3 colour = emissive + (lit ? ambient * sceneAmbient : diffuse.rgb);
+  vec3 normal = normalize(turned);
+  float fromSky = 0.8 + 0.2 * min(1.0, 1.0 + normal.z);
+  vec3 colour = emissive + (lit ? fromSky * ambient * sceneAmbient : diffuse.rgb);
 #if LIGHTS > 0
   if (lit) {
-    vec3 normal = normalize(turned);
     for (int i = 0; i < LIGHTS; ++i) colour += from(lights[i], normal);
   }
+#endif
+#ifdef RIM
+  float away = 1.0 - abs(dot(normal, normalize(cameraPosition - world)));
+  if (lit) colour += vec3(0.25 * away * away * away);
 #endif
   colour = min(colour, 1.0);
 #ifdef TEXTURED
@@ -118,7 +125,8 @@ export function surface(shared, look, picture, plane) {
   const material = new THREE.ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    defines: { LIGHTS: shared.lights.value.length, ...(picture && { TEXTURED: "" }) },
+    defines: { LIGHTS: shared.lights.value.length, ...(picture && { TEXTURED: "" }),
+      ...(plane === null && { RIM: "" }) },
     transparent: look.diffuse[3] < 1,
     depthWrite: look.diffuse[3] >= 1,
     uniforms: {

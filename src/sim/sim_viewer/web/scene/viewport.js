@@ -9,7 +9,11 @@ const FAR = 400; // m
 const OWN_BACKGROUND = new THREE.Color(0.7, 0.7, 0.7); // Gazebo's
 const SLOW_MS = 100; // between pictures where the processor draws them, at least
 const SLOWEST_MS = 2000;
-const COARSE = 0.5; // pixels of such a picture for one of the page
+const COARSE = [0.5, 1]; // pixels of such a picture for one of the page, while something moves
+const QUICK_MS = 80; // that such a picture may take; it gets coarser or finer accordingly
+const STILL_MS = 400; // after which it is drawn once more, as finely as
+const FINE_MS = 250; // allow
+const FINE = Math.min(devicePixelRatio, 2); // of a graphics card
 const BREATH = 2; // times a picture's own time, left to fingers, mice and other programs
 const BEHIND = new THREE.Vector3(-1.6, -1.2, 1.1); // from where a model is looked at, in its sizes
 
@@ -36,7 +40,9 @@ export class Viewport {
     this._slow = slow;
     this._renderer = this.renderer();
     this._pause = slow ? SLOW_MS : 0;
-    this._renderer.setPixelRatio(slow ? COARSE : Math.min(devicePixelRatio, 2));
+    this._coarse = COARSE[0];
+    this._took = FINE_MS; // ms, the last such picture
+    this._setRatio(slow ? this._coarse : FINE);
     parent.append(this._renderer.domElement);
     this._scene = new THREE.Scene();
     this._scene.background = OWN_BACKGROUND;
@@ -162,6 +168,7 @@ export class Viewport {
 
   close() {
     this._closed = true;
+    clearTimeout(this._still);
     this._sizes.disconnect();
     this._controls.dispose();
     this._renderer.dispose();
@@ -177,19 +184,36 @@ export class Viewport {
     this.draw();
   }
 
+  _setRatio(ratio) {
+    if (ratio !== this._renderer.getPixelRatio()) this._renderer.setPixelRatio(ratio);
+  }
+
   _render() {
     this._waiting = false;
     if (this._closed) return;
     this._last = performance.now();
+    if (this._slow) this._setRatio(this._coarse);
     this._renderer.render(this._scene, this._camera);
     this._whenDrawn.splice(0).forEach((resolve) => resolve());
-    if (this._pause) this._breathe(this._last);
+    if (!this._slow) return;
+    this._breathe(this._last);
+    clearTimeout(this._still);
+    this._still = setTimeout(() => this._refine(), STILL_MS + this._pause);
+  }
+
+  /** Nothing has moved for a while. */
+  _refine() {
+    if (this._closed || this._waiting) return;
+    this._setRatio(Math.min(FINE, this._coarse * Math.sqrt(FINE_MS / this._took)));
+    this._renderer.render(this._scene, this._camera);
   }
 
   /** The browser asks for the frame after next when this one is drawn. */
   _breathe(began) {
     requestAnimationFrame(() => requestAnimationFrame(() => {
-      const took = performance.now() - began;
+      const took = this._took = Math.max(performance.now() - began, 1);
+      const wanted = this._coarse * Math.sqrt(QUICK_MS / took);
+      this._coarse = Math.min(Math.max((3 * this._coarse + wanted) / 4, COARSE[0]), COARSE[1]);
       this._pause = Math.min(Math.max(SLOW_MS, (1 + BREATH) * took), SLOWEST_MS);
     }));
   }
