@@ -84,3 +84,11 @@ def test_a_connection_that_is_reset_again_and_again_is_no_network(
          f" fail() {{ echo \"setup: $1\"; exit 1; }}; state={tmp_path}; pip_failed install"],
         cwd=ROOT, text=True, capture_output=True, check=False)
     assert done.returncode == 1 and done.stdout.startswith(said), done
+
+
+def test_a_method_that_is_not_there_is_one_line():
+    done = subprocess.run([ROOT / "scripts/lane.sh", "--method", "nope"], text=True,
+                          capture_output=True, check=False)
+    assert done.returncode == 2 and not done.stdout
+    assert done.stderr.startswith("lane: no method 'nope' (METHOD=); there are: banded_centroids ")
+    assert len(done.stderr.splitlines()) == 1
