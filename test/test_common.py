@@ -92,3 +92,19 @@ def test_a_method_that_is_not_there_is_one_line():
     assert done.returncode == 2 and not done.stdout
     assert done.stderr.startswith("lane: no method 'nope' (METHOD=); there are: banded_centroids ")
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
+    def inputs():
+        script = f"root={tmp_path}; . {ROOT}/scripts/setup/workspace.sh; build_inputs"
+        return subprocess.run(["bash", "-c", script], text=True, capture_output=True,
+                              check=True).stdout
+
+    (tmp_path / "src/car").mkdir(parents=True)
+    (tmp_path / "src/car/package.xml").touch()
+    before = inputs()
+    assert "src/car/package.xml" in before
+    (tmp_path / "src/car/build/lib/car").mkdir(parents=True)
+    for name in ("package.xml", "__init__.py"):
+        (tmp_path / "src/car/build/lib/car" / name).touch()
+    assert inputs() == before
