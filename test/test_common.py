@@ -108,3 +108,18 @@ def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
     for name in ("package.xml", "__init__.py"):
         (tmp_path / "src/car/build/lib/car" / name).touch()
     assert inputs() == before
+
+
+@pytest.mark.parametrize(("stays", "who"), [("yes", "root"), ("", "person")])
+def test_with_sudo_a_verb_goes_on_as_the_folders_owner_unless_it_stays_root(
+        tmp_path: Path, stays: str, who: str) -> None:
+    (tmp_path / "scripts").mkdir()
+    common = (ROOT / "scripts/common.sh").read_text(encoding="utf-8")
+    (tmp_path / "scripts/common.sh").write_text(common, encoding="utf-8")
+    (tmp_path / "scripts/verb.sh").write_text(
+        f'stays_root={stays}\nid() {{ echo 0; }}; stat() {{ echo person; }}\n'
+        'exec() { echo person; exit; }\n. "$(dirname "$0")/common.sh"\necho root\n',
+        encoding="utf-8")
+    done = subprocess.run(["bash", tmp_path / "scripts/verb.sh"], text=True, capture_output=True,
+                          env={**os.environ, "SUDO_USER": "person"}, check=True)
+    assert done.stdout == f"{who}\n"
