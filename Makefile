@@ -4,6 +4,17 @@
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
 
+# What the verb does not take is refused, at once: `make autorace SEDS=3` would drive ten seeds.
+ifneq ($(MAKECMDGOALS),)
+ifeq ($(MAKELEVEL),0)
+rules := $(shell awk -v RS= '{ for (i = 1; i <= split("$(MAKECMDGOALS)", verb, " "); i++) if ($$1 == verb[i] ":") print }' Makefile)
+rules += $(if $(findstring $$(WHERE),$(rules)),$(value WHERE))
+given := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+unknown := $(strip $(foreach name,$(given),$(if $(findstring $$($(name)),$(rules)),,$(name))))
+$(if $(unknown),$(error make $(MAKECMDGOALS) takes no $(unknown:==); `make` shows what each verb takes))
+endif
+endif
+
 help: ## list the verbs
 	@scripts/help.sh
 

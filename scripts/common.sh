@@ -7,7 +7,7 @@ say() { printf '%s\n' "$*"; }
 fail() { printf '%s: %s\n' "$self" "$1" >&2; exit "${failure_code:-1}"; }
 
 # `sudo make course` would leave root's files in a person's folder: go on as that person.
-if [ "$(id -u)" = 0 ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
+if [ "$(id -u)" = 0 ] && [ -z "${stays_root:-}" ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
   exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
 fi
 

@@ -4,16 +4,19 @@
 #   scripts/lane.sh [--method NAME] [--empty] [--laps N] [--duration S] [--out DIR] [--fast]
 #                   [--seed N]
 #
-# --empty: nobody crosses; writes out/lane_empty/. NAME: a file of src/lane_keeping/methods.
+# --empty: nobody crosses; writes out/lane_empty/. NAME: a file of lane_keeping's methods/.
 # Exit code 0: the laps were closed; 1: the car left the lane or stalled; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-course=lane
+course=lane methods=$root/src/lessons/lane_keeping/src/lane_keeping/methods
 arguments=()
 while (($#)); do
   case $1 in
     --empty) course=lane_empty ;;
-    --method) arguments+=(--follower "${2:-}.py"); shift $(($# > 1)) ;;
+    --method)
+      [ -f "$methods/${2:-}.py" ] || fail "no method '${2:-}' (METHOD=); there are: $(
+        cd "$methods" && printf '%s ' [!_]*.py | sed 's/\.py / /g; s/ $//')"
+      arguments+=(--follower "$2.py"); shift ;;
     *) arguments+=("$1") ;;
   esac
   shift

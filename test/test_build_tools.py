@@ -124,4 +124,4 @@ def test_without_catkin_tools_a_line_says_how_to_get_it(tmp_path):
              "PYTHONNOUSERSITE": "1"})
     if done.returncode != 127:
         pytest.skip("Debian's catkin-tools is installed")
-    assert done.stderr.count("\n") == 1 and "pip install catkin_tools" in done.stderr
+    assert done.stderr.count("\n") == 1 and "apt-get install catkin-tools" in done.stderr

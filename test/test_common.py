@@ -84,3 +84,42 @@ def test_a_connection_that_is_reset_again_and_again_is_no_network(
          f" fail() {{ echo \"setup: $1\"; exit 1; }}; state={tmp_path}; pip_failed install"],
         cwd=ROOT, text=True, capture_output=True, check=False)
     assert done.returncode == 1 and done.stdout.startswith(said), done
+
+
+def test_a_method_that_is_not_there_is_one_line():
+    done = subprocess.run([ROOT / "scripts/lane.sh", "--method", "nope"], text=True,
+                          capture_output=True, check=False)
+    assert done.returncode == 2 and not done.stdout
+    assert done.stderr.startswith("lane: no method 'nope' (METHOD=); there are: banded_centroids ")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
+    def inputs():
+        script = f"root={tmp_path}; . {ROOT}/scripts/setup/workspace.sh; build_inputs"
+        return subprocess.run(["bash", "-c", script], text=True, capture_output=True,
+                              check=True).stdout
+
+    (tmp_path / "src/car").mkdir(parents=True)
+    (tmp_path / "src/car/package.xml").touch()
+    before = inputs()
+    assert "src/car/package.xml" in before
+    (tmp_path / "src/car/build/lib/car").mkdir(parents=True)
+    for name in ("package.xml", "__init__.py"):
+        (tmp_path / "src/car/build/lib/car" / name).touch()
+    assert inputs() == before
+
+
+@pytest.mark.parametrize(("stays", "who"), [("yes", "root"), ("", "person")])
+def test_with_sudo_a_verb_goes_on_as_the_folders_owner_unless_it_stays_root(
+        tmp_path: Path, stays: str, who: str) -> None:
+    (tmp_path / "scripts").mkdir()
+    common = (ROOT / "scripts/common.sh").read_text(encoding="utf-8")
+    (tmp_path / "scripts/common.sh").write_text(common, encoding="utf-8")
+    (tmp_path / "scripts/verb.sh").write_text(
+        f'stays_root={stays}\nid() {{ echo 0; }}; stat() {{ echo person; }}\n'
+        'exec() { echo person; exit; }\n. "$(dirname "$0")/common.sh"\necho root\n',
+        encoding="utf-8")
+    done = subprocess.run(["bash", tmp_path / "scripts/verb.sh"], text=True, capture_output=True,
+                          env={**os.environ, "SUDO_USER": "person"}, check=True)
+    assert done.stdout == f"{who}\n"

@@ -3,6 +3,7 @@
 readme_commands.yaml beside this says what runs it.
 """
 
+import os
 import re
 import shlex
 import shutil
@@ -68,11 +69,7 @@ def not_there(command: str) -> str | None:
     """What a make, rosrun or roslaunch line names and the workspace does not have."""
     words = shlex.split(command)
     if words[0] == "make":
-        targets = [word for word in words[1:] if "=" not in word]
-        done = in_workspace("make -n " + " ".join(targets))
-        variables = {word.split("=")[0] for word in words[1:] if "=" in word}
-        unknown = variables - set(re.findall(r"\$\((\w+)\)", (ROOT / "Makefile").read_text()))
-        return f"make does not know {unknown}" if unknown else done.stderr or None
+        return in_workspace(f"env -u MAKELEVEL -u MAKEFLAGS make -n {command[5:]}").stderr or None
     if words[0] == "roslaunch" and len(words) > 2:
         return launch_error(words[1:]) if BUILT else None
     if words[0] == "rosrun" and len(words) > 2 and BUILT:
@@ -155,6 +152,18 @@ def test_docker_services_exist() -> None:
     for command in COMMANDS:
         if re.match(r"docker compose .*\b(run|up)\b", command):
             assert command.split()[-1] in services, command
+
+
+@pytest.mark.parametrize(("words", "unknown"), [
+    ("course SEEDS=3 LAPS=2", "SEEDS="), ("autorace SEDS=3 MISION=bar", "SEDS= MISION="),
+    ("course WORKERS=2", "WORKERS="), ("autorace WORKERS=2 MISSION=bar", ""), ("course", "")])
+def test_make_refuses_what_the_verb_does_not_take(words: str, unknown: str) -> None:
+    by_hand = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
+    done = subprocess.run(["make", "-n", *words.split()], cwd=ROOT, env=by_hand, text=True,
+                          capture_output=True, check=False)
+    assert done.returncode == (2 if unknown else 0), done.stderr
+    assert len(done.stderr.splitlines()) == bool(unknown)
+    assert not unknown or f"takes no {unknown}; " in done.stderr
 
 
 def test_clean_forgets_what_was_made(tmp_path: Path) -> None:

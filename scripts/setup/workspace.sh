@@ -1,11 +1,11 @@
 # Step 5: the build.
-# What catkin reads; a change in a .py needs no build, a new package or a changed .msg does.
+# What catkin reads; a change in a .py needs no build, a new package or a changed .msg does. build/: pip's, of `pip install ./src/...`.
 build_inputs() {
   echo "$root"
-  (cd "$root" && find src -name __pycache__ -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
+  (cd "$root" && find src \( -name __pycache__ -o -name build \) -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
     -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name '*.in' -o -name '*.c' -o -name '*.cpp' \
     -o -name '*.h' -o -name '*.hpp' -o -name CATKIN_IGNORE -o -path '*/env-hooks/*' \) -print0 | sort -z | xargs -0 -r sha256sum
-    find src -name __init__.py | sort)
+    find src -name build -prune -o -name __init__.py -print | sort)
 }
 build_workspace() {
   local told

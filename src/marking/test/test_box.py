@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -52,6 +53,19 @@ def boxed(kind, tmp_path):
                      if each.status() != psutil.STATUS_ZOMBIE]:
         assert time.monotonic() < until, living
         time.sleep(0.05)
+
+
+@pytest.mark.parametrize(("user", "advice"), [
+    (1000, r"allows this user no namespaces \(Operation not permitted\); as root it works: "
+           "sudo make mark; in Docker give --privileged"),
+    (0, r"allows root no namespaces \(Operation not permitted\); in Docker give --privileged")])
+def test_a_refusal_says_what_would_allow_it(monkeypatch, user, advice):
+    monkeypatch.setattr(os, "getuid", lambda: user)
+    monkeypatch.setattr(shutil, "which", lambda name: name)
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess(
+        [], 1, "", "Operation not permitted\n"))
+    with pytest.raises(RunError, match=advice):
+        available()
 
 
 def fault_of(box: Box) -> str:

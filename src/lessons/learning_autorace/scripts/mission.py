@@ -6,6 +6,7 @@
 
 import math
 import random
+import sys
 from pathlib import Path
 
 import rospkg
@@ -70,9 +71,13 @@ class Mission:
     def work(self, _event=None):
         """Show the lamp and the bar of this moment.  显示现在的灯和栏杆。"""
         now = rospy.get_time()
-        self.show("light", f"traffic_light_{phase(self.light, now + self.begin)}")
         is_open = self.bar_wait == 0.0 or now >= self.bar_opens
-        self.show("bar", "traffic_bar_up" if is_open else "traffic_bar_down")
+        try:
+            self.show("light", f"traffic_light_{phase(self.light, now + self.begin)}")
+            self.show("bar", "traffic_bar_up" if is_open else "traffic_bar_down")
+        except (rospy.ServiceException, rospy.ROSException) as error:  # the simulator has ended
+            if not rospy.is_shutdown():
+                rospy.logwarn_throttle(5.0, f"no light and no bar: {error}")
 
 
 def phase(lengths, now):
@@ -87,8 +92,11 @@ def phase(lengths, now):
 
 def main():
     rospy.init_node("mission_control")
-    mission = Mission(rospy.get_param("~seed", 0))
-    mission.park()
+    try:
+        mission = Mission(rospy.get_param("~seed", 0))
+        mission.park()
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        sys.exit(None if rospy.is_shutdown() else f"mission_control: {error}")
     mission.work()
     rospy.Timer(rospy.Duration(TICK), mission.work, reset=True)
     rospy.spin()

@@ -2,9 +2,12 @@
 
 import runpy
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
+import rospkg
+import rospy
 from learning_autorace import node
 from learning_autorace.calibration import load_calibration
 from sensor_msgs.msg import Image, LaserScan
@@ -41,6 +44,32 @@ def test_a_message_that_is_no_picture_is_one_line(monkeypatch, encoding, length)
     monkeypatch.setattr(node.rospy, "logwarn_throttle", lambda _, line: said.append(line))
     robot._take_image(Image(encoding=encoding, width=4, height=2, step=12, data=bytes(length)))
     assert len(said) == 1 and said[0].startswith("an image that cannot be used: ")
+
+
+@pytest.mark.parametrize("ending, said", [(True, []), (False, ["no light and no bar: gone"])])
+def test_the_mission_of_a_simulator_that_is_gone_is_one_line_at_most(monkeypatch, ending, said):
+    script, lines = runpy.run_path(str(PACKAGE / "scripts" / "mission.py")), []
+    mission = object.__new__(script["Mission"])  # its services need a simulator
+    mission.light, mission.begin, mission.bar_wait, mission.shown = {"red": 1.0}, 0.0, 0.0, {}
+    mission.models = Path(rospkg.RosPack().get_path("turtlebot3_gazebo")) / "models" / (
+        "turtlebot3_autorace_2020")
+    mission.spawn = mission.delete = Mock(side_effect=rospy.ServiceException("gone"))
+    monkeypatch.setattr(rospy, "get_time", lambda: 0.0)
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: ending)
+    monkeypatch.setattr(rospy, "logwarn_throttle", lambda _, line: lines.append(line))
+    mission.work()
+    assert lines == said
+
+
+def test_a_mission_that_is_ended_at_its_start_says_nothing(monkeypatch):
+    script = runpy.run_path(str(PACKAGE / "scripts" / "mission.py"))
+    for name, value in (("init_node", None), ("get_param", 0), ("is_shutdown", True)):
+        monkeypatch.setattr(rospy, name, Mock(return_value=value))
+    monkeypatch.setitem(script["main"].__globals__, "Mission",
+                        Mock(side_effect=rospy.ROSInterruptException("rospy shutdown")))
+    with pytest.raises(SystemExit) as ended:
+        script["main"]()
+    assert ended.value.code is None
 
 
 def test_all_lessons_are_there_and_small():

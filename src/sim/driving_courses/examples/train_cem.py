@@ -14,6 +14,7 @@ import numpy as np
 from driving_courses.policy import LinearPolicy
 
 PEOPLE, ELITE = 14, 4  # candidates a generation, and how many of them are kept
+COURSES = [name.partition("/")[2].removesuffix("-v0") for name in driving_courses.ENVIRONMENTS]
 SCORE = ("outcome", "lap_times_s", "rms_lateral_m", "max_lateral_m", "rms_error_m")
 STARTS = {"sideways": (-0.05, 0.05), "turn": (-0.1, 0.1)}
 
@@ -30,7 +31,6 @@ def policy_of(numbers, course, space, score):
     made = {"action": "twist"} | driving_courses.ENVIRONMENTS[f"driving_courses/{course}-v0"]
     return LinearPolicy(made["course"], made["action"], (columns * high[:, None]).tolist(),
                         (numbers[:2] * high).tolist(), low.tolist(), high.tolist(), score)
-
 
 
 def drive(env, policy, seed):
@@ -53,10 +53,17 @@ def try_out(task):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("policy", type=Path, nargs="?", default=Path("out/policy.json"))
-    parser.add_argument("--course", default="LineFollow")
+    parser.add_argument("--course", default="LineFollow", choices=COURSES)
     parser.add_argument("--generations", type=int, default=10)
     parser.add_argument("--seconds", type=float, default=15.0, help="simulated, each try (15)")
     given, random, began = parser.parse_args(), np.random.default_rng(0), time.monotonic()
+    if given.generations < 1 or given.seconds < 0.1:
+        parser.error("--generations must be 1 or more, --seconds 0.1 or more")
+    try:
+        given.policy.parent.mkdir(parents=True, exist_ok=True)
+        given.policy.open("a", encoding="utf-8").close()
+    except OSError as error:
+        parser.error(f"{given.policy}: {error.strerror}")
     env = make(given.course, 300.0)
     bands = env.observation_space.shape[0] // 3
     mean, spread = np.r_[0.4, np.zeros(1 + bands)], np.r_[0.2, np.full(1 + bands, 0.8)]

@@ -7,12 +7,17 @@ OUT.zip is what stable-baselines3 loads again. Gray pictures of 84x84, four in a
 """
 
 import argparse
+import sys
 
 import driving_courses  # noqa: F401  (names the environments)
 import gymnasium
 from driving_courses.randomisation import TRIALS
-from stable_baselines3 import PPO
-from stable_baselines3.common.vec_env import SubprocVecEnv, VecFrameStack
+
+try:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.vec_env import SubprocVecEnv, VecFrameStack
+except ModuleNotFoundError as error:
+    sys.exit(f'train_ppo: {error}; pip install "stable-baselines3>=2.3,<3"')
 
 
 def make():

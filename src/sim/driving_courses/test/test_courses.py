@@ -212,12 +212,22 @@ def test_the_shipped_policy_drives_as_its_file_says():
 
 def test_the_search_runs_and_writes_a_policy(tmp_path):
     example = HERE / "examples" / "train_cem.py"
-    assert len(example.read_text(encoding="utf-8").splitlines()) <= 80
+    assert len(example.read_text(encoding="utf-8").splitlines()) <= 90
     done = subprocess.run(
         [sys.executable, example, tmp_path / "p.json", "--generations", "1", "--seconds", "1"],
         capture_output=True, text=True, check=False, timeout=280)
     assert done.returncode == 0, done.stderr
     assert load_policy(tmp_path / "p.json").course == "line_follow"
+
+
+@pytest.mark.parametrize(("words", "says"), [
+    (["--course", "Line"], "invalid choice: 'Line' (choose from 'LineFollow', "),
+    (["--generations", "0"], "--generations must be 1 or more"),
+    (["/proc/p.json"], "/proc/p.json: No such file or directory")])
+def test_a_search_that_cannot_begin_is_one_line(words, says):
+    done = subprocess.run([sys.executable, HERE / "examples" / "train_cem.py", *words],
+                          capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 2 and says in done.stderr.splitlines()[-1]
 
 
 @pytest.mark.skipif(importlib.util.find_spec("stable_baselines3") is None,

@@ -54,14 +54,14 @@ def catkin_make_isolated_words(args: list[str]) -> list[str]:
 
 
 def catkin() -> int:
-    """catkin_tools, from PyPI or from Debian; its `build` leaves out packages as the others do."""
+    """catkin_tools, from Debian or from PyPI; its `build` leaves out packages as the others do."""
     args = sys.argv[1:]
     try:
         from catkin_tools.commands.catkin import main
         from catkin_tools.verbs.catkin_build import cli
     except ImportError:
         _become_another_catkin(args)
-        print("catkin: catkin_tools is not installed: pip install catkin_tools osrf_pycommon "
+        print("catkin: catkin_tools is not installed: sudo apt-get install catkin-tools "
               "(or build with catkin_make)", file=sys.stderr)
         return 127
 

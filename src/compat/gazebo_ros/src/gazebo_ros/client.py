@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 HOW_TO_LOOK = (
     "No 3D window here. See the world in the browser: roslaunch sim_viewer viewer.launch, "
     "then open http://127.0.0.1:8080/ (viewer:=true starts both at once). On a screen also: "
-    "rosrun image_view image_view image:=/camera/rgb/image_raw; rviz"
+    "rosrun image_view image_view image:=TOPIC (of rostopic list); rviz"
 )
 POLL_PERIOD = 2.0  # s
 
