@@ -119,4 +119,9 @@ def test_a_changed_track_is_another_rule(tmp_path):
 
 def test_a_mistake_names_the_program_s_own_package():
     with pytest.raises(RunError, match=r"see: rosrun marking mark.py --help"):
+        MarkingTrial().parse(["--homework", "in"])
+
+
+def test_without_submissions_the_line_says_how_make_calls_them():
+    with pytest.raises(RunError, match=r"--submissions \(SUBMISSIONS=\) is missing"):
         MarkingTrial().parse([])

@@ -44,8 +44,8 @@ def available() -> Kind:
     done = subprocess.run(probe, capture_output=True, text=True, timeout=60, check=False)
     if done.returncode:
         why = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
-        raise RunError(f"no sandbox: this machine allows no namespaces ({why[0]}); in Docker give "
-                       "--privileged; --no-sandbox runs submissions unprotected")
+        raise RunError(f"no sandbox: this machine allows no namespaces ({why[0]}); run it as root, "
+                       "in Docker with --privileged; --no-sandbox runs submissions unprotected")
     return kind
 
 

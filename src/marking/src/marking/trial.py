@@ -58,7 +58,7 @@ class MarkingTrial(ReportedTrial):
     writes = "marks.csv, marks.html, report.json and a folder of each student"
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_argument("--submissions", type=Path, required=True, metavar="DIR",
+        parser.add_argument("--submissions", type=Path, metavar="DIR",
                             help="a file, folder, zip or tar of each student")
         parser.add_argument("--rules", type=Path, metavar="YAML",
                             help="what is driven and how it is marked (config/marking.yaml)")
@@ -70,6 +70,8 @@ class MarkingTrial(ReportedTrial):
                             help="run submissions unprotected, where the machine allows no sandbox")
 
     def check(self, options: argparse.Namespace) -> None:
+        if options.submissions is None:
+            raise RunError("--submissions (SUBMISSIONS=) is missing: a folder of submissions")
         path = (options.rules or find_package("marking") / "config" / "marking.yaml").resolve()
         rules = load_rules(path)
         course = options.course or rules.course
