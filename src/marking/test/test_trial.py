@@ -53,9 +53,12 @@ def mark(marking, session):
     return trial.score(trial.run())
 
 
-def test_what_answers_each_image_drives_once(marking):
+def test_what_answers_each_image_drives_once(marking, capsys):
     session = FakeSession(CLOSED)
     found = mark(marking, session)
+    trial, options = marking
+    assert trial.pictures([found], options.out) == []
+    assert f"the marks: {options.out / 'marks.csv'}, " in capsys.readouterr().out
     assert (found.points, found.note) == (100, "")
     assert [case.timed for case in session.cases] == [False]
 

@@ -24,7 +24,7 @@ from marking.mark import Mark, by_student
 from marking.points import mean, points_of
 from marking.rules import load_rules
 from marking.sandbox import Kind, available, namespace, shown
-from marking.sheets import write_marks, write_student_pages
+from marking.sheets import MARKS, PAGE, write_marks, write_student_pages
 from marking.submissions import digest, find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
@@ -195,6 +195,8 @@ class MarkingTrial(ReportedTrial):
         marks = by_student(results)
         write_student_pages(marks, self._rules, out)
         write_marks(marks, self._rules, self._kind, out)
+        print(f"the marks: {out / MARKS}, {out / PAGE}, and for each student a page below "
+              f"{out / 'students'}", flush=True)
         return []
 
     def _folder(self, case: MarkedCase) -> Path:
