@@ -107,6 +107,15 @@ def test_a_wrong_command_is_one_line(capsys, arguments, text):
     assert end.value.code == 1 and text in said and said.count("\n") == 1
 
 
+def test_names_of_a_bag_stay_on_one_line(tmp_path, capsys):
+    path = tmp_path / "names.bag"
+    with rosbag.Bag(str(path), "w") as out:
+        out.write("/a\nb", scan_at(0.0, rospy.Time(1)), rospy.Time(1))
+    assert replay(path, "none") == 1
+    said = capsys.readouterr().err
+    assert said.endswith("no scans on /scan; scans are on: /a b\n") and said.count("\n") == 1
+
+
 def test_a_bag_that_is_not_there_is_one_line(capsys):
     assert main(["nowhere.bag"]) == 1
     assert capsys.readouterr().err == (

@@ -62,9 +62,11 @@ class BagScans:
         if self.left_out:
             return (f"none of the {self.left_out} scans on {self._topics[1]} can be placed"
                     + self._missing)
-        topics = self._bag.get_type_and_topic_info().topics
+        with _bag_errors():
+            topics = self._bag.get_type_and_topic_info().topics
         others = sorted(topic for topic, info in topics.items() if info.msg_type in SCANS)
-        return f"no scans on {self._topics[1]}; scans are on: {', '.join(others) or 'no topic'}"
+        return (f"no scans on {self._topics[1]}; scans are on: "
+                + (_short(", ".join(others)) or "no topic"))
 
     def __iter__(self) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         waiting: deque[LaserScan] = deque()
@@ -121,12 +123,18 @@ class BagScans:
                 parent, child = base, frame
                 laser = self._transforms.lookup_transform_core(parent, child, scan.header.stamp)
             except tf2_py.TransformException:
-                self._missing = f": no transform from {parent} to {child} on /tf or /tf_static"
+                self._missing = (f": no transform from {_short(parent)} to {_short(child)} on /tf "
+                                 "or /tf_static")
                 return
             waiting.popleft()
             at = pose.transform
             yield (scan, np.array([at.translation.x, at.translation.y, yaw_of(at.rotation)]),
                    Mount.of(laser.transform))
+
+
+def _short(names: str) -> str:
+    """What a bag says of names, on one line."""
+    return " ".join(names.split())[:200]
 
 
 @contextlib.contextmanager
