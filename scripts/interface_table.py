@@ -27,20 +27,23 @@ WORDS = {
            "title": "What of Gazebo's interface works here",
            "note": "Made by `scripts/interface_table.py` from `src/sim/bullet_sim_ros/interface/`. "
                    "Each row and tag that works or is approximated has a test that names it.",
-           "part": "part", "colon": ": ", "stop": "; "},
+           "other": "[中文](interface.zh-CN.md)", "part": "part", "colon": ": ", "stop": "; ",
+           "reason": " ({})"},
     "zh": {WORKS: "可用", APPROXIMATED: "近似", ACCEPTED: "接受但无作用", ABSENT: "没有",
            "what": "内容", "how": "说明", "tags": "其中",
            "title": "Gazebo 接口在这里的支持情况",
            "note": "由 `scripts/interface_table.py` 根据 `src/sim/bullet_sim_ros/interface/` 生成。"
                    "每个可用或近似的条目都有写明它的测试。",
-           "part": "部分", "colon": "：", "stop": "；"},
+           "other": "[English](interface.md)", "part": "部分", "colon": "：", "stop": "；",
+           "reason": "（{}）"},
 }
 
 
 def document(sections: list[Section], language: str) -> str:
     """The summary, then the whole table, a chapter for each section."""
     words = WORDS[language]
-    lines = [f"# {words['title']}", "", words["note"], "", *summary(sections, language), ""]
+    lines = [f"# {words['title']}", "", words["other"], "", words["note"], "",
+             *summary(sections, language), ""]
     for section in sections:
         lines += [f"## {_title(section, language)}", "",
                   f"| {words['what']} | | {words['how']} | {words['tags']} |", "|---|---|---|---|"]
@@ -85,7 +88,7 @@ def _tags(tags, language: str) -> str:
         if tag.status != WORKS:
             how = _how(tag, language)
             parts.append(f"`{tag.name}`{words['colon']}{words[tag.status]}"
-                         + (f" ({how})" if how else ""))
+                         + (words["reason"].format(how) if how else ""))
     return words["stop"].join(parts)
 
 

@@ -69,6 +69,19 @@ def test_mending_apt_removes_no_package() -> None:
     assert setup.count("install -f") == setup.count("install -f --no-remove") == 1
 
 
+def test_a_file_that_root_left_behind_stops_no_build(tmp_path: Path) -> None:
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").touch()
+    (tmp_path / "build-inputs").write_text("inputs\n")
+    (tmp_path / "build-inputs.now").symlink_to("/nowhere/x")  # cannot be written either
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . scripts/setup/workspace.sh; python3() { :; };"
+         " build_inputs() { echo inputs; }; cpp=OFF force_build=no;"
+         f" root={tmp_path} state={tmp_path}; build_workspace"],
+        cwd=ROOT, text=True, capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
 @pytest.mark.parametrize(("retries", "said"), [
     (range(4, -1, -1), "setup: no network: pip cannot reach its package index"),
     (range(4, 3, -1), "setup: pip install failed: ERROR: No matching distribution"),

@@ -12,6 +12,7 @@ build_workspace() {
   told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
   if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # once built, kept up to date
   elif [ "$cpp" = ON ]; then force_build=yes; fi
+  rm -f "$state/build-inputs.now"  # root's, where make was once typed with sudo
   build_inputs >"$state/build-inputs.now"
   if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
     cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi

@@ -169,7 +169,7 @@ def test_going_on_with_another_method_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize("arguments, said", [
     (["--method", "magic"], "no method 'magic'"),
-    (["--seeds", "few"], "--seeds must be a whole number"),
+    (["--seeds", "few"], r"--seeds \(SEEDS=\) must be a whole number"),
     (["--seeds", "0", "--crossings", "0"], "nothing to drive"),
     (["--speed", "3"], "lane_trials.py --help"),
 ])

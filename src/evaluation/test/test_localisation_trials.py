@@ -50,7 +50,7 @@ def test_what_is_tried_by_default_and_when_asked_for():
 
 
 @pytest.mark.parametrize(("arguments", "said"), [
-    (["--starts", "many"], "--starts must be a whole number"),
+    (["--starts", "many"], "--starts (STARTS=) must be a whole number"),
     (["--starts=0", "--kidnaps=0", "--tracking=0", "--load=0"], "nothing to try"),
     (["--real-time-factor", "0"], "--real-time-factor (PACE=) must be"),
     (["--house", "none"], "no house 'none'"),

@@ -45,7 +45,7 @@ def test_yards_and_crossings_that_are_asked_for():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--yards", "many"], "--yards must be a whole number"),
+        (["--yards", "many"], "--yards (YARDS=) must be a whole number"),
         (["--first-crossing", "-1"], "--first-crossing"),
         (["--repeats", "0", "--crossings", "0"], "nothing to drive"),
         (["--real-time-factor", "0"], "--real-time-factor (PACE=) must be"),

@@ -50,7 +50,7 @@ def test_seeds_and_tracks_that_are_asked_for():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--seeds", "many"], "--seeds must be a whole number"),
+        (["--seeds", "many"], "--seeds (SEEDS=) must be a whole number"),
         (["--first-seed", "-1"], "--first-seed"),
         (["--tracks", "1.5"], "--tracks"),
         (["--seeds", "0", "--tracks", "0"], "nothing to drive"),

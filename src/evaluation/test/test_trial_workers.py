@@ -137,6 +137,8 @@ def test_a_killed_program_takes_its_cases_with_it(tmp_path):
     (["--workers", "2", "--scheduler", "tcp://a:1"], "give one"),
     (["--scheduler", "tcp://127.0.0.1:9"], "no Dask scheduler at tcp://127.0.0.1:9"),
     (["--scheduler", "nonsense://a:1"], "no Dask scheduler at nonsense://a:1"),
+    (["--scheduler", "127.0.0.1"], "such as tcp://192.168.0.10:8786; got '127.0.0.1'"),
+    (["--scheduler", "tcp://127.0.0.1"], "such as tcp://192.168.0.10:8786; got 'tcp://127.0.0.1'"),
 ])
 def test_a_mistake_is_one_line(tmp_path, capfd, monkeypatch, words, said):
     from evaluation.trial import workers
@@ -145,6 +147,12 @@ def test_a_mistake_is_one_line(tmp_path, capfd, monkeypatch, words, said):
     assert run(tmp_path, *words) == NOT_RUN
     (line,) = capfd.readouterr().err.strip().splitlines()
     assert said in line
+
+
+def test_dask_adds_nothing_to_the_line_when_the_program_ends(tmp_path):
+    trial = start(tmp_path, "--scheduler", "nonsense://a:1")
+    (line,) = trial.communicate(timeout=15.0)[1].strip().splitlines()
+    assert "no Dask scheduler at nonsense://a:1" in line and trial.returncode == NOT_RUN
 
 
 def test_without_dask_one_line_says_what_to_type(tmp_path, capsys, monkeypatch):

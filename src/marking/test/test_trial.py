@@ -53,9 +53,12 @@ def mark(marking, session):
     return trial.score(trial.run())
 
 
-def test_what_answers_each_image_drives_once(marking):
+def test_what_answers_each_image_drives_once(marking, capsys):
     session = FakeSession(CLOSED)
     found = mark(marking, session)
+    trial, options = marking
+    assert trial.pictures([found], options.out) == []
+    assert f"the marks: {options.out / 'marks.csv'}, " in capsys.readouterr().out
     assert (found.points, found.note) == (100, "")
     assert [case.timed for case in session.cases] == [False]
 
@@ -119,4 +122,9 @@ def test_a_changed_track_is_another_rule(tmp_path):
 
 def test_a_mistake_names_the_program_s_own_package():
     with pytest.raises(RunError, match=r"see: rosrun marking mark.py --help"):
+        MarkingTrial().parse(["--homework", "in"])
+
+
+def test_without_submissions_the_line_says_how_make_calls_them():
+    with pytest.raises(RunError, match=r"--submissions \(SUBMISSIONS=\) is missing"):
         MarkingTrial().parse([])

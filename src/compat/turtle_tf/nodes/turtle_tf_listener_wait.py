@@ -34,8 +34,8 @@ def main():
             listener.waitForTransform("turtle2", "carrot1", now, rospy.Duration(LONGEST_WAIT))
             (x, y, _), _ = listener.lookupTransform("turtle2", "carrot1", now)
         except tf.Exception as error:
-            rospy.logwarn_throttle(5.0, f"no carrot1 (rosrun turtle_tf fixed_tf_broadcaster.py "
-                                        f"gives one): {error}")
+            rospy.logwarn_throttle(5.0, f"waiting for carrot1 (rosrun turtle_tf "
+                                        f"fixed_tf_broadcaster.py publishes it): {error}")
         else:
             command = Twist()
             command.linear.x = SPEED_GAIN * math.hypot(x, y)

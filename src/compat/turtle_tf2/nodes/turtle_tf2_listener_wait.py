@@ -41,8 +41,8 @@ def main():
         try:
             found = buffer.lookup_transform(follower, "carrot1", rospy.Time.now(), LONGEST_WAIT)
         except tf2_ros.TransformException as error:
-            rospy.logwarn_throttle(5.0, f"no carrot1 (rosrun turtle_tf2 fixed_tf2_broadcaster.py "
-                                        f"gives one): {error}")
+            rospy.logwarn_throttle(5.0, f"waiting for carrot1 (rosrun turtle_tf2 "
+                                        f"fixed_tf2_broadcaster.py publishes it): {error}")
         else:
             publisher.publish(command_to(found.transform.translation))
         rate.sleep()

@@ -6,6 +6,7 @@ in the frame of their URDF visual (x forward, z up, z = 0 is base_link), the las
 wheel round the y axis. Nothing may stand before a camera: it would hide the line on the floor.
 """
 
+import argparse
 import sys
 from itertools import pairwise
 from math import cos, radians, sin
@@ -147,10 +148,15 @@ def all_meshes():
 
 
 def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else MESHES
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", nargs="?", type=Path, default=MESHES)
+    folder = parser.parse_args().folder
     for path, data in all_meshes().items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_bytes(data)
+        try:
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_bytes(data)
+        except OSError as error:
+            sys.exit(f"make_meshes.py: {folder / path}: {error.strerror}")
         print(f"{folder / path}: {len(data)} bytes")
 
 

@@ -356,6 +356,13 @@ def test_generator_makes_the_shipped_bytes(generator):
     assert sum(map(len, made.values())) < MESH_BUDGET_BYTES
 
 
+def test_a_folder_that_cannot_be_made_is_one_line(generator, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["make_meshes.py", "/dev/null/meshes"])
+    with pytest.raises(SystemExit) as end:
+        generator.main()
+    assert str(end.value).startswith("make_meshes.py: /dev/null/meshes/bases/burger_base.stl: ")
+
+
 def test_solids_face_outwards(generator):
     robots = generator.waffle_pi() + generator.burger() + generator.lds() + generator.tire(1)
     for solid in robots + generator.tire(-1):

@@ -24,7 +24,7 @@ from marking.mark import Mark, by_student
 from marking.points import mean, points_of
 from marking.rules import load_rules
 from marking.sandbox import Kind, available, namespace, shown
-from marking.sheets import write_marks, write_student_pages
+from marking.sheets import MARKS, PAGE, write_marks, write_student_pages
 from marking.submissions import digest, find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
@@ -58,7 +58,7 @@ class MarkingTrial(ReportedTrial):
     writes = "marks.csv, marks.html, report.json and a folder of each student"
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_argument("--submissions", type=Path, required=True, metavar="DIR",
+        parser.add_argument("--submissions", type=Path, metavar="DIR",
                             help="a file, folder, zip or tar of each student")
         parser.add_argument("--rules", type=Path, metavar="YAML",
                             help="what is driven and how it is marked (config/marking.yaml)")
@@ -70,6 +70,8 @@ class MarkingTrial(ReportedTrial):
                             help="run submissions unprotected, where the machine allows no sandbox")
 
     def check(self, options: argparse.Namespace) -> None:
+        if options.submissions is None:
+            raise RunError("--submissions (SUBMISSIONS=) is missing: a folder of submissions")
         path = (options.rules or find_package("marking") / "config" / "marking.yaml").resolve()
         rules = load_rules(path)
         course = options.course or rules.course
@@ -193,6 +195,8 @@ class MarkingTrial(ReportedTrial):
         marks = by_student(results)
         write_student_pages(marks, self._rules, out)
         write_marks(marks, self._rules, self._kind, out)
+        print(f"the marks: {out / MARKS}, {out / PAGE}, and for each student a page below "
+              f"{out / 'students'}", flush=True)
         return []
 
     def _folder(self, case: MarkedCase) -> Path:

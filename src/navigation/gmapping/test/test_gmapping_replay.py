@@ -87,13 +87,39 @@ def test_the_same_bag_and_seed_give_the_same_bytes(bag):
 
 @pytest.mark.parametrize("arguments, text", [
     (["_particels:=3"], "no parameter particels"), (["_particles:=many"], "type int"),
-    (["--scan_topic", "front"], "no scan on front"), (["particles"], "NAME:=VALUE"),
-    (["_base_frame:=robot"], "20 without")])
+    (["--scan_topic", "front"], "no scans on /front; scans are on: /scan"),
+    (["particles"], "NAME:=VALUE"),
+    (["_base_frame:=robot"],
+     "none of the 20 scans on /scan can be placed: no transform from odom to robot")])
 def test_what_is_wrong_is_said_in_one_line(bag, capsys, arguments, text):
     assert replay(bag, "none", *arguments) == 1
     said = capsys.readouterr().err
     assert text in said and said.count("\n") == 1
     assert not (bag.parent / "none.pgm").exists()
+
+
+@pytest.mark.parametrize("arguments, text", [
+    ([], "required: bag; usage:"), (["a.bag", "--seed", "x"], "invalid int value: 'x'; usage:")])
+def test_a_wrong_command_is_one_line(capsys, arguments, text):
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    said = capsys.readouterr().err
+    assert end.value.code == 1 and text in said and said.count("\n") == 1
+
+
+def test_names_of_a_bag_stay_on_one_line(tmp_path, capsys):
+    path = tmp_path / "names.bag"
+    with rosbag.Bag(str(path), "w") as out:
+        out.write("/a\nb", scan_at(0.0, rospy.Time(1)), rospy.Time(1))
+    assert replay(path, "none") == 1
+    said = capsys.readouterr().err
+    assert said.endswith("no scans on /scan; scans are on: /a b\n") and said.count("\n") == 1
+
+
+def test_a_bag_that_is_not_there_is_one_line(capsys):
+    assert main(["nowhere.bag"]) == 1
+    assert capsys.readouterr().err == (
+        "slam_gmapping_replay: nowhere.bag: No such file or directory\n")
 
 
 @pytest.mark.parametrize("text, said", [
@@ -163,7 +189,7 @@ def test_a_scan_that_tf2_does_not_take_is_left_out(tmp_path, capsys, frame, seco
         odd.header.frame_id = frame
         out.write("/scan", odd, rospy.Time(2))
     assert replay(tmp_path / "odd.bag", "none") == 1
-    assert "no scan on scan with transforms" in capsys.readouterr().err
+    assert "none of the 1 scans on /scan can be placed" in capsys.readouterr().err
 
 
 def test_a_connection_that_is_not_there_is_said_in_one_line(bag, capsys):
@@ -186,7 +212,7 @@ def test_a_bag_does_not_say_what_a_scan_is_made_of(tmp_path, capsys):
     with rosbag.Bag(str(tmp_path / "own.bag"), "w") as out:
         out.write("/scan", raw, rospy.Time(1), raw=True, connection_header=header)
     assert replay(tmp_path / "own.bag", "none") == 1
-    assert "no scan on scan with transforms" in capsys.readouterr().err
+    assert "none of the 1 scans on /scan can be placed" in capsys.readouterr().err
 
 
 def test_a_fault_of_ours_is_not_taken_for_one_of_the_bag(bag, monkeypatch):

@@ -32,6 +32,7 @@ from robot_localization.filtering.rotations import (
     pose_matrix,
     quaternion_of,
 )
+from robot_localization.settings import frame, number
 from robot_localization.sources import Frames, check_stamp, open_sources
 
 NOT_HERE = ("use_control", "smooth_lagged_data", "dynamic_process_noise_covariance",
@@ -40,19 +41,19 @@ NOT_HERE = ("use_control", "smooth_lagged_data", "dynamic_process_noise_covarian
 
 class LocalizationNode:
     def __init__(self):
-        self.rate = float(rospy.get_param("~frequency", 30.0))
+        self.rate = number("frequency", 30.0)
         if not self.rate > 0.0:
             raise BadConfig(f"frequency is {self.rate:g}; it has to be above 0 Hz")
-        self.timeout = float(rospy.get_param("~sensor_timeout", 1.0 / self.rate))
-        self.map = rospy.get_param("~map_frame", "map").lstrip("/")
-        self.odom = rospy.get_param("~odom_frame", "odom").lstrip("/")
-        self.base = rospy.get_param("~base_link_frame", "base_link").lstrip("/")
-        self.output = rospy.get_param("~base_link_frame_output", self.base).lstrip("/")
-        self.world = rospy.get_param("~world_frame", self.odom).lstrip("/")
+        self.timeout = number("sensor_timeout", 1.0 / self.rate)
+        self.map = frame("map_frame", "map")
+        self.odom = frame("odom_frame", "odom")
+        self.base = frame("base_link_frame", "base_link")
+        self.output = frame("base_link_frame_output", self.base)
+        self.world = frame("world_frame", self.odom)
         if self.world not in (self.map, self.odom):
             raise BadConfig(f"world_frame '{self.world}' has to be map_frame '{self.map}' or "
                             f"odom_frame '{self.odom}'")
-        self.offset = rospy.Duration(rospy.get_param("~transform_time_offset", 0.0))
+        self.offset = rospy.Duration(number("transform_time_offset", 0.0))
         self.to_now = rospy.get_param("~predict_to_current_time", False)
         self.reset_on_jump = rospy.get_param("~reset_on_time_jump", False)
         self.lock, self.waiting, self.heard = threading.Lock(), [], None

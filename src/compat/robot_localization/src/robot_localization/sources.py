@@ -18,6 +18,7 @@ from robot_localization.filtering.measurements import (
     without_gravity,
 )
 from robot_localization.filtering.rotations import angles_of, matrix_of, pose_matrix
+from robot_localization.settings import number
 
 KINDS = {"odom": Odometry, "imu": Imu, "pose": PoseWithCovarianceStamped,
          "twist": TwistWithCovarianceStamped}
@@ -66,9 +67,9 @@ class Source:
         self.name, self.frames, self.sink = name, frames, sink
         self.config = chosen(option("config", [False] * 15), f"{name}_config")
         self.differential, self.relative = option("differential", False), option("relative", False)
-        self.gravity = (rospy.get_param("~gravitational_acceleration", 9.80665)
+        self.gravity = (number("gravitational_acceleration", 9.80665)
                         if option("remove_gravitational_acceleration", False) else 0.0)
-        self.rejections = {key: float(option(f"{key}_rejection_threshold", np.inf))
+        self.rejections = {key: number(f"{name}_{key}_rejection_threshold", np.inf)
                            for key in ("pose", "twist", "linear_acceleration", "angular_velocity")}
         self.first = self.before = None
         handler = {"odom": self.on_odom, "imu": self.on_imu, "pose": self.on_pose,

@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 import pickle
+import re
 import shutil
 import tempfile
 import zipfile
@@ -28,6 +29,7 @@ from run_session.failure import RunError
 
 RETRIES = 1  # of a case that could not be run; workers that die with it are counted by Dask
 CONNECT_TIME = 10.0  # s, wall
+ADDRESS = re.compile(r"\w+://[^\s/]+:\d+")
 
 
 def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namespace,
@@ -88,11 +90,16 @@ def _connected(options: argparse.Namespace) -> Iterator[Client]:
 
 
 def _client_of(cluster: str | LocalCluster) -> Client:
+    if isinstance(cluster, str) and not ADDRESS.fullmatch(cluster):
+        raise RunError("--scheduler (SCHEDULER=) must be an address such as "
+                       f"tcp://192.168.0.10:8786; got {cluster!r}")
+    client = Client.__new__(Client)
     try:
-        return Client(cluster, timeout=CONNECT_TIME, set_as_default=False)
+        client.__init__(cluster, timeout=CONNECT_TIME, set_as_default=False)
+        return client
     except (OSError, RuntimeError, TypeError, ValueError) as error:
         why = str(error)
-    # Not within `except`: Dask's half a client is let go of, and ends, first.
+    client.status = "closed"  # half a client would try for 20 s to close, and end in a traceback
     raise RunError(f"no Dask scheduler at {cluster} (--scheduler, SCHEDULER=): {why}")
 
 

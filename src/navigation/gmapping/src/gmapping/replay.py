@@ -55,6 +55,18 @@ class BagScans:
         self._transforms = tf2_py.BufferCore(rospy.Duration(30.0))
         self._first_stamp: float | None = None
         self.left_out = 0
+        self._missing = ""
+
+    def why_none(self) -> str:
+        """Why there was no scan that a map can be made of, after all were read."""
+        if self.left_out:
+            return (f"none of the {self.left_out} scans on {self._topics[1]} can be placed"
+                    + self._missing)
+        with _bag_errors():
+            topics = self._bag.get_type_and_topic_info().topics
+        others = sorted(topic for topic, info in topics.items() if info.msg_type in SCANS)
+        return (f"no scans on {self._topics[1]}; scans are on: "
+                + (_short(", ".join(others)) or "no topic"))
 
     def __iter__(self) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
         waiting: deque[LaserScan] = deque()
@@ -104,16 +116,25 @@ class BagScans:
         odom, base = self._frames
         while waiting:
             scan = waiting[0]
+            frame = scan.header.frame_id.lstrip("/")
+            parent, child = odom, base
             try:
-                pose = self._transforms.lookup_transform_core(odom, base, scan.header.stamp)
-                laser = self._transforms.lookup_transform_core(
-                    base, scan.header.frame_id.lstrip("/"), scan.header.stamp)
+                pose = self._transforms.lookup_transform_core(parent, child, scan.header.stamp)
+                parent, child = base, frame
+                laser = self._transforms.lookup_transform_core(parent, child, scan.header.stamp)
             except tf2_py.TransformException:
+                self._missing = (f": no transform from {_short(parent)} to {_short(child)} on /tf "
+                                 "or /tf_static")
                 return
             waiting.popleft()
             at = pose.transform
             yield (scan, np.array([at.translation.x, at.translation.y, yaw_of(at.rotation)]),
                    Mount.of(laser.transform))
+
+
+def _short(names: str) -> str:
+    """What a bag says of names, on one line."""
+    return " ".join(names.split())[:200]
 
 
 @contextlib.contextmanager
@@ -122,7 +143,7 @@ def _bag_errors() -> Iterator[None]:
     try:
         yield
     except BAG_ERRORS as error:
-        raise BagError(error) from error
+        raise BagError(getattr(error, "strerror", None) or error) from error
     except KeyError as error:
         raise BagError(f"it names a connection {error} that it does not have") from error
 
@@ -191,8 +212,7 @@ def _replay(scans: BagScans, mapper: Mapper, options: argparse.Namespace) -> int
             stamps.append(scan.header.stamp.to_sec())
     of_no_use = f"{len(refused)} scans of no use, the first: {refused[0]}" if refused else ""
     if mapper.slam is None:
-        raise BagError(of_no_use or f"no scan on {options.scan_topic} with transforms to it from "
-                                    f"the odometry; {scans.left_out} without")
+        raise BagError(of_no_use or scans.why_none())
     if refused:
         print(f"slam_gmapping_replay: {options.bag}: {of_no_use}", file=sys.stderr)
     write_map(options.map, mapper.slam.grid())
@@ -203,14 +223,20 @@ def _replay(scans: BagScans, mapper: Mapper, options: argparse.Namespace) -> int
     return 0
 
 
+class _OneLineParser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:
+        usage = " ".join(self.format_usage().split())
+        self.exit(1, f"{self.prog}: {message}; {usage}\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="slam_gmapping_replay", description=__doc__)
+    parser = _OneLineParser(prog="slam_gmapping_replay", description=__doc__)
     parser.add_argument("bag", type=Path, help="the bag: scans, /tf and /tf_static")
     parser.add_argument("--scan_topic", default="scan", help="default: scan")
     parser.add_argument("--map", type=Path, default=Path("map"),
                         help="writes MAP.pgm, MAP.yaml and MAP.tum, the trajectory; default: map")
     parser.add_argument("--params", type=Path, help="a YAML file of slam_gmapping's parameters")
     parser.add_argument("--seed", type=int, help="of the random draws; default: the parameter's")
-    parser.add_argument("settings", nargs="*", metavar="_NAME:=VALUE",
+    parser.add_argument("settings", nargs="*", default=[], metavar="_NAME:=VALUE",
                         help="a parameter of slam_gmapping")
     return parser
