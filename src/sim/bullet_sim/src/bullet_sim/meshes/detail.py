@@ -30,11 +30,12 @@ class Level:
     tolerance: float  # m, that its surface is away from the part's own, at most
 
 
-def levels(part: MeshPart) -> list[Level]:
-    """Coarser and coarser ones without image coordinates; none of a part of few triangles."""
+def levels(part: MeshPart, fewest: int = FEWEST) -> list[Level]:
+    """Coarser and coarser ones without image coordinates, of parts of at least `fewest` triangles.
+    """
     low, high = part.vertices.min(axis=0), part.vertices.max(axis=0)
     size = float(np.linalg.norm(high.astype(float) - low)) / 2
-    if len(part.faces) < FEWEST or size == 0.0:
+    if len(part.faces) < fewest or size == 0.0:
         return []
     found: list[Level] = []
     shading = _Shading(part)
@@ -45,7 +46,7 @@ def levels(part: MeshPart) -> list[Level]:
         if 0 < len(fewer_faces) <= GAIN * len(faces):
             vertices, faces = fewer, fewer_faces
             found.append(Level(shading.of(vertices, faces), tolerance))
-        if len(faces) < FEWEST:
+        if len(faces) < fewest:
             break
     return found
 
