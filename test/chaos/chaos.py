@@ -86,8 +86,8 @@ def _start_inside() -> int:
 def _options(words: list[str] | None) -> argparse.Namespace:
     parser = Parser("", prog="chaos.sh", description=__doc__,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_whole("--rounds", 20, "drives", variable="ROUNDS", least=1)
-    parser.add_whole("--seed", 1, "of the first round", variable="SEED", least=1,
+    parser.add_whole("--rounds", 20, "drives", least=1)
+    parser.add_whole("--seed", 1, "of the first round", least=1,
                      most=LARGEST_SEED)
     parser.add_argument("--course", default="course", help=f"{', '.join(COURSES)} (course)",
                         type=partial(one_of, "course", "COURSE", COURSES))

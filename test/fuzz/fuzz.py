@@ -79,7 +79,7 @@ def _options(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--target", help="one of them alone",
                         type=partial(one_of, "target", "TARGET", TARGETS))
     parser.add_whole("--seed", int(time.time()) % LARGEST_SEED, "of the first inputs",
-                     variable="SEED", most=LARGEST_SEED)
+                     most=LARGEST_SEED)
     parser.add_argument("--input", type=Path, help="a file to give to the target once more")
     return parser.parse_args(words)
 

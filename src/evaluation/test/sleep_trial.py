@@ -30,11 +30,11 @@ class SleepTrial(ReportedTrial):
     writes = "report.json and a note of each nap"
 
     def add_options(self, parser):
-        parser.add_whole("--naps", 4, "how many")
+        parser.add_whole("--naps", 4, "how many", variable="")
         parser.add_argument("--seconds", type=float, default=0.1)
         parser.add_argument("--fails", default="")
         parser.add_argument("--dies", default="")
-        parser.add_whole("--enough", 0, "results that are enough; 0: all")
+        parser.add_whole("--enough", 0, "results that are enough; 0: all", variable="")
 
     def check(self, options):
         self.options, self.open_ended = options, bool(options.enough)

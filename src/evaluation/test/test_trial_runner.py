@@ -34,7 +34,7 @@ class Squares(ReportedTrial):
         self.fails, self.most, self.tried = fails, most, []
 
     def add_options(self, parser):
-        parser.add_whole("--numbers", 3, "how many", variable="NUMBERS")
+        parser.add_whole("--numbers", 3, "how many")
         parser.add_argument("--of", default="numbers")
 
     def check(self, options):

@@ -64,7 +64,7 @@ class MarkingTrial(ReportedTrial):
                             help="what is driven and how it is marked (config/marking.yaml)")
         parser.add_argument("--course", metavar="NAME",
                             help=f"{', '.join(COURSES)}; replaces that of the rules")
-        parser.add_whole("--seeds", 0, "cases on each track; 0: as the rules say", variable="SEEDS")
+        parser.add_whole("--seeds", 0, "cases on each track; 0: as the rules say")
         parser.add_argument("--film", action="store_true", help="also film every drive")
         parser.add_argument("--no-sandbox", action="store_true",
                             help="run submissions unprotected, where the machine allows no sandbox")

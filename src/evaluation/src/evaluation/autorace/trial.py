@@ -95,7 +95,7 @@ class RaceTrial(ReportedTrial):
         self._rig: Rig | None = None
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 10, "drives", variable="SEEDS", least=1)
+        parser.add_whole("--seeds", 10, "drives", least=1)
         parser.add_whole("--first-seed", 0, "seed of the first of them")
         parser.add_argument("--mission", default=ALL, metavar="NAME",
                             help=f"one of {', '.join(TASKS)} ({ALL})")

@@ -76,7 +76,7 @@ class AvoidTrial(ReportedTrial):
     result, shared = Drive, ("avoider",)
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 20, "halls", variable="SEEDS", least=1)
+        parser.add_whole("--seeds", 20, "halls", least=1)
         parser.add_whole("--first-seed", 0, "of the first hall")
         parser.add_argument("--avoider", default="avoid_obstacles.py", metavar="FILE",
                             help="a script of learning_laser (avoid_obstacles.py)")

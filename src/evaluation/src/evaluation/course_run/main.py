@@ -40,7 +40,7 @@ class CourseRun(CarDrive):
         add = parser.add_argument
         add("--course", default="course", type=load_course, metavar="NAME",
             help="course, race or lane, or a file (course)")
-        parser.add_whole("--laps", 1, "laps to close", variable="LAPS", least=1)
+        parser.add_whole("--laps", 1, "laps to close", least=1)
         add("--duration", metavar="S", help="simulated seconds at most (300 a lap)", type=partial(
             number, "--duration (DURATION=)", least=0.001, most=MOST_SECONDS,
             what="seconds of simulated time"))
@@ -50,8 +50,7 @@ class CourseRun(CarDrive):
             help="as fast as the machine goes: after each image the world waits for the follower")
         add("--camera", metavar="WIDTHxHEIGHT", type=_camera_px,
             help="size of the camera's images, px (the robot's own)")
-        parser.add_whole("--seed", None, "of all noise; with --fast, repeats a run",
-                         variable="SEED", most=LARGEST_SEED)
+        parser.add_whole("--seed", None, "of all noise; repeats a --fast run", most=LARGEST_SEED)
         add("--fingerprint", action="store_true",
             help="also report a SHA-256 of all that each sensor sent; writes no run.mp4")
         add("--launch-arg", action="append", default=[], metavar="NAME:=VALUE", type=_launch_arg,

@@ -27,7 +27,7 @@ class LaneComparison(LaneDrives):
     writes = "report.json, report.html, lanes.png and the drives"
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 5, "laps of each method", variable="SEEDS")
+        parser.add_whole("--seeds", 5, "laps of each method")
         parser.add_argument("--methods", nargs="+", metavar="NAME", help="some of them (all)")
 
     def check(self, options: argparse.Namespace) -> None:

@@ -94,8 +94,8 @@ class LaneTrial(LaneDrives):
     open_ended, shared = True, ("method",)
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 20, "laps without people", variable="SEEDS")
-        parser.add_whole("--crossings", 100, "people to meet", variable="CROSSINGS")
+        parser.add_whole("--seeds", 20, "laps without people")
+        parser.add_whole("--crossings", 100, "people to meet")
         parser.add_argument("--method", default="sliding_windows", metavar="NAME",
                             help="(sliding_windows)")
 

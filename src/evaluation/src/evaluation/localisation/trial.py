@@ -46,17 +46,16 @@ class LocalisationTrial(protocol.ReportedTrial):
         self._rig: Rig | None = None
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--starts", 20, "robots to find anywhere in the house", variable="STARTS")
-        parser.add_whole("--kidnaps", 10, "robots to find that were carried away",
-                         variable="KIDNAPS")
-        parser.add_whole("--first", 1, "number of the first of each")
-        parser.add_whole("--tracking", 300, "simulated seconds to track for")
-        parser.add_whole("--load", 60, "simulated seconds of 2000 particles")
+        parser.add_whole("--starts", 20, "robots to find anywhere in the house")
+        parser.add_whole("--kidnaps", 10, "robots to find that were carried away")
+        parser.add_whole("--first", 1, "number of the first of each", variable="")
+        parser.add_whole("--tracking", 300, "simulated seconds to track for", variable="")
+        parser.add_whole("--load", 60, "simulated seconds of 2000 particles", variable="")
         parser.add_argument(
             "--wheel-odometry", action="store_true", help="track by the wheels' odometry, too,"
             " which slips in turns: robots that are to be found always have it, a simulated"
             " TurtleBot3 has the truth")
-        parser.add_whole("--seed", 0, "of places, ways, noise and particles", variable="SEED")
+        parser.add_whole("--seed", 0, "of places, ways, noise and particles")
         parser.add_argument("--house", default="house", metavar="NAME",
                             help="a house of houses/, or a file (house)")
         parser.add_pace("simulated seconds a second; the load is always measured at 1 (1)")

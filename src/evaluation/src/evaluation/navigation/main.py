@@ -40,10 +40,8 @@ class NavigationRun(LiveDrive):
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
-        parser.add_whole("--goals", 5, "goals to visit, drawn from the seed", variable="GOALS",
-                         least=1)
-        parser.add_whole("--seed", 0, "of noise, goals and the first pose", variable="SEED",
-                         most=LARGEST_SEED)
+        parser.add_whole("--goals", 5, "goals to visit, drawn from the seed", least=1)
+        parser.add_whole("--seed", 0, "of noise, goals and the first pose", most=LARGEST_SEED)
         parser.add_pace("simulated seconds a second; below 1 on a slow machine (1)")
         parser.add_argument("--house", default="house", type=load_house, metavar="NAME",
                             help="a house of houses/, or a file (house)")

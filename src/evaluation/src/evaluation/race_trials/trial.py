@@ -48,9 +48,9 @@ class RaceTrial(LapTrial):
     result, listed = Lap, "laps"
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 20, "laps on the racetrack", variable="SEEDS")
+        parser.add_whole("--seeds", 20, "laps on the racetrack")
         parser.add_whole("--first-seed", 0, "seed of the first of them", most=LARGEST_SEED)
-        parser.add_whole("--tracks", 10, "random tracks, a lap on each", variable="TRACKS")
+        parser.add_whole("--tracks", 10, "random tracks, a lap on each")
         parser.add_whole("--first-track", 101, "seed of the first of them", most=LARGEST_SEED)
         parser.add_argument(
             "--followers", nargs="+", default=FOLLOWERS, metavar="FILE",

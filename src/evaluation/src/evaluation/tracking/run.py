@@ -58,8 +58,7 @@ class TrackRun(CarDrive):
         add = parser.add_argument
         add("--scene", default=MOVING, metavar="NAME", help=f"{', '.join(KINDS)} ({MOVING})",
             type=partial(one_of, "scene", "SCENE", KINDS))
-        parser.add_whole("--seed", 0, "of the cylinder's way, the start, the noise",
-                         variable="SEED", most=LARGEST_SEED)
+        parser.add_whole("--seed", 0, "of the cylinder's way, start and noise", most=LARGEST_SEED)
         add("--tracker", default=PID, metavar="FILE", help=f"{' or '.join(TRACKERS)} ({PID})",
             type=partial(one_of, "tracker", "TRACKER", TRACKERS))
         add("--keep", default=60.0, metavar="S",

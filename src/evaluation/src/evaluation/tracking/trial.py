@@ -91,8 +91,7 @@ class TrackTrial(Trial):
     writes = "report.json, report.html and the drives"
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--seeds", 20, "drives of each set, half as many of hidden, which hides it"
-                         " twice a drive", variable="SEEDS")
+        parser.add_whole("--seeds", 20, "drives of each set, half as many of hidden (two each)")
         parser.add_whole("--first-seed", 0, "seed of the first of them")
         parser.add_argument(
             "--sets", nargs="+", choices=SETS, metavar="SET", help=f"of: {' '.join(SETS)}",

@@ -27,10 +27,11 @@ class Parser(argparse.ArgumentParser):
         start = f"rosrun {self._package} " if self._package else "scripts/"
         raise RunError(f"{message} (see: {start}{self.prog.split()[0]} --help)")  # before a verb
 
-    def add_whole(self, flag: str, default: int | None, text: str, *, variable: str = "",
+    def add_whole(self, flag: str, default: int | None, text: str, *, variable: str | None = None,
                   least: int = 0, most: int = MOST) -> None:
-        """An option that takes a whole number; `variable` is what the Makefile calls it."""
-        name = f"{flag} ({variable}=)" if variable else flag
+        """A whole number; `variable`: what the Makefile calls it, if not as a one-word option."""
+        variable = flag[2:].upper() if variable is None else variable
+        name = flag if "-" in variable or not variable else f"{flag} ({variable}=)"
         self.add_argument(
             flag, type=partial(whole, name, least=least, most=most), default=default, metavar="N",
             help=f"{text} ({default or 0})")

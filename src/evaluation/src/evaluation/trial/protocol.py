@@ -110,7 +110,7 @@ class Trial(ABC):
         parser.add_argument("--resume", action="store_true",
                             help="go on where the run that wrote there ended")
         parser.add_whole("--workers", 1, "cases at a time, each in a process of its own, by Dask",
-                         variable="WORKERS", least=1, most=MOST_WORKERS)
+                         least=1, most=MOST_WORKERS)
         parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, such as"
                             " tcp://host:8786, whose workers try the cases (SCHEDULER=)")
         options = parser.parse_args(arguments)

@@ -85,22 +85,19 @@ def _connected(options: argparse.Namespace) -> Iterator[Client]:
         try:
             yield client
         except ClosedClientError as error:
-            raise RunError(f"the scheduler {options.scheduler} is gone; --resume goes on"
-                           ) from error
+            raise RunError(f"scheduler {options.scheduler} is gone; --resume goes on") from error
 
 
 def _client_of(cluster: str | LocalCluster) -> Client:
     if isinstance(cluster, str) and not ADDRESS.fullmatch(cluster):
-        raise RunError("--scheduler (SCHEDULER=) must be an address such as "
-                       f"tcp://192.168.0.10:8786; got {cluster!r}")
+        raise RunError(f"SCHEDULER must be such as tcp://192.168.0.10:8786; got {cluster!r}")
     client = Client.__new__(Client)
     try:
         client.__init__(cluster, timeout=CONNECT_TIME, set_as_default=False)
-        return client
     except (OSError, RuntimeError, TypeError, ValueError) as error:
-        why = str(error)
-    client.status = "closed"  # half a client would try for 20 s to close, and end in a traceback
-    raise RunError(f"no Dask scheduler at {cluster} (--scheduler, SCHEDULER=): {why}")
+        client.status = "closed"  # half a client would try for 20 s to close, and end badly
+        raise RunError(f"no Dask scheduler at {cluster} (SCHEDULER=): {error}") from None
+    return client
 
 
 def _outcome(future: Future, out: Path) -> Any:

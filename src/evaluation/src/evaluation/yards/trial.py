@@ -40,10 +40,10 @@ class YardTrial(ReportedTrial):
         self._rig: Rig | None = None
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_whole("--yards", 50, "narrow worlds", variable="YARDS")
+        parser.add_whole("--yards", 50, "narrow worlds")
         parser.add_whole("--first-yard", 0, "seed of the first of them")
-        parser.add_whole("--repeats", 2, "drives through each of them", variable="REPEATS")
-        parser.add_whole("--crossings", 20, "drives past a person", variable="CROSSINGS")
+        parser.add_whole("--repeats", 2, "drives through each of them")
+        parser.add_whole("--crossings", 20, "drives past a person")
         parser.add_whole("--first-crossing", 0, "seed of the first of them")
         parser.add_pace("how fast simulated time shall go (1)")
         parser.add_argument("--parameters", type=Path, metavar="FILE", help="of move_base, over"
