@@ -1,6 +1,7 @@
 """Coarser meshes: fewer triangles within a bound, shaded as before."""
 
 import itertools
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -71,16 +72,45 @@ def test_an_open_sheet_keeps_its_edge():
     assert area == pytest.approx(1.0) and len(coarse.faces) < len(faces) / 10
 
 
-def test_both_sides_of_a_sheet_keep_their_normals():
-    one = ball()
-    both = MeshPart(np.concatenate([one.vertices, one.vertices]),
-                    np.concatenate([one.normals, -one.normals]), None,
-                    np.concatenate([one.faces, one.faces[:, ::-1] + len(one.vertices)]))
-    coarse = last(both)
-    corners = coarse.vertices[coarse.faces]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    turned = np.sum(across * coarse.normals[coarse.faces[:, 0]], axis=1)
-    assert (turned > 0).all()
+def test_a_sheet_with_two_sides_is_left_as_it_is():
+    """Its rim could be drawn inwards without leaving any plane."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30))
+    bowl = np.stack([x.ravel(), y.ravel(), (x ** 2 + y ** 2).ravel() / 4], axis=1)
+    corner = np.arange(29 * 30).reshape(29, 30)[:, :29].ravel()
+    front = np.concatenate([np.stack([corner, corner + 1, corner + 31], axis=1),
+                            np.stack([corner, corner + 31, corner + 30], axis=1)])
+    assert levels(smooth_shaded(bowl, front))
+    assert levels(smooth_shaded(bowl, np.concatenate([front, front[:, ::-1]]))) == []
+    # The back of other triangles.
+    other = np.concatenate([np.stack([corner, corner + 30, corner + 1], axis=1),
+                            np.stack([corner + 1, corner + 30, corner + 31], axis=1)])
+    assert levels(smooth_shaded(bowl, np.concatenate([front, other]))) == []
+    # Loose triangles, each twice.
+    loose = np.random.default_rng(3).normal(size=(300, 3, 3)).reshape(-1, 3)
+    faces = np.arange(900).reshape(-1, 3)
+    assert levels(smooth_shaded(loose, np.concatenate([faces, faces[:, ::-1]]))) == []
+
+
+def test_very_many_triangles_at_a_corner_take_no_time():
+    count = 100_000
+    angle = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+    cone = np.concatenate([[(0, 0, 0.1)],
+                           np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)])
+    rim = np.arange(count)
+    faces = np.stack([0 * rim, 1 + rim, 1 + (rim + 1) % count], axis=1)
+    mixed = np.random.default_rng(0).permutation(faces)
+    part = smooth_shaded(cone, mixed)  # ten minutes, if it took a turn for each triangle
+    assert len(part.vertices) == count + 1 and levels(part) == []
+
+
+def test_threads_do_not_disturb_each_other():
+    parts = [part_of(trimesh.creation.icosphere(4, radius)) for radius in (0.2, 0.5, 1.0, 3.0)]
+    alone = [levels(part) for part in parts]
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(3):
+            for one, other in zip(alone, pool.map(levels, parts), strict=True):
+                for level, again in zip(one, other, strict=True):
+                    np.testing.assert_array_equal(level.part.vertices, again.part.vertices)
 
 
 def test_levels_are_ever_coarser_and_keep_their_word():

@@ -39,24 +39,32 @@ def smooth_shaded(
     ))
 
 
+def meeting_edges(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Edges of triangles (m, 3), given by the number of the place of each corner, that lie in one
+    another: two by two, each by the number of the corner that it starts at."""
+    start = place.reshape(-1).astype(np.int64)
+    end = np.roll(place, -1, axis=1).reshape(-1).astype(np.int64)
+    edge = np.minimum(start, end) * (start.max(initial=0) + 1) + np.maximum(start, end)
+    order = np.argsort(edge, kind="stable")
+    first, second = order[:-1], order[1:]
+    together = (edge[first] == edge[second]) & (start[first] != end[first])
+    return first[together], second[together]
+
+
 def _groups(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """(3 m,) of corners (m, 3, 3): equal for those of one place whose triangles hang together there
     by edges that are no creases."""
-    place = equal_rows(corners.reshape(-1, 3))[1].reshape(-1, 3).astype(np.int64)
-    start, end = place.reshape(-1), np.roll(place, -1, axis=1).reshape(-1)
-    edge = np.minimum(start, end) * (place.max(initial=0) + 1) + np.maximum(start, end)
-    order = np.argsort(edge, kind="stable")
-    first, second = order[:-1], order[1:]
-    together = ((edge[first] == edge[second]) & (start[first] != end[first])
-                & ((normals[first // 3] * normals[second // 3]).sum(axis=1) > math.cos(CREASE)))
-    first, second = first[together], second[together]
+    place = equal_rows(corners.reshape(-1, 3))[1].reshape(-1, 3)
+    first, second = meeting_edges(place)
+    smooth = (normals[first // 3] * normals[second // 3]).sum(axis=1) > math.cos(CREASE)
+    first, second = first[smooth], second[smooth]
     # An edge i goes from corner i to the next one of its triangle; the other triangle's edge goes
     # the same way or back.
-    back = start[first] != start[second]
+    back = place.reshape(-1)[first] != place.reshape(-1)[second]
     links = np.concatenate([
         np.stack([first, np.where(back, _next(second), second)]),
         np.stack([_next(first), np.where(back, second, _next(second))])], axis=1)
-    return _components(start.size, *links)
+    return _components(place.size, *links)
 
 
 def _next(corner: np.ndarray) -> np.ndarray:
@@ -68,13 +76,14 @@ def _components(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(count,): the least number that each can be reached from by links between two."""
     least = np.arange(count)
     while True:
-        before = least.copy()
-        lower = np.minimum(least[one], least[other])
-        np.minimum.at(least, one, lower)
-        np.minimum.at(least, other, lower)
-        least = least[least]
-        if (least == before).all():
+        mine, others = least[one], least[other]
+        if np.array_equal(mine, others):
             return least
+        lower = np.minimum(mine, others)
+        np.minimum.at(least, mine, lower)
+        np.minimum.at(least, others, lower)
+        while not np.array_equal(least, further := least[least]):
+            least = further
 
 
 def _angles(corners: np.ndarray) -> np.ndarray:

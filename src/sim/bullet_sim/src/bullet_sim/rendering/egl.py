@@ -49,7 +49,7 @@ from bullet_sim.rendering.visibility import Outlines, Visibility
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
 # A highlight of less than half a grey level is not worth working out for each pixel.
 _VISIBLE = 0.5 / 255
-_UNSEEN = 0.5  # px that what is drawn may be away from the mesh
+_UNSEEN = 0.5  # px that what is drawn may be away from the mesh; half of it where depth is wanted
 _MOST_DEVICES = 8
 _VERSIONS_KEPT = 2  # of scenes: the one being drawn, and the one before
 # In `polygon_offset`'s units. llvmpipe's depth of one plane is off by up to 6/2**24 (measured), and
@@ -63,12 +63,9 @@ class _Item:
     surface: Surface
     plain: Drawing
     shaded: Drawing | None  # where shadows fall
-    coarser: list[tuple[float, _Item]]  # by tolerance, m, the finest first
-
-    def within(self, tolerance: float) -> _Item:
-        """The coarsest that is no farther away from it, m."""
-        fitting = [item for away, item in self.coarser if away <= tolerance]
-        return fitting[-1] if fitting else self
+    triangles: Triangles
+    kinds: tuple[Kind, Kind | None]  # of the two
+    coarser: dict[int, _Item]  # by the place among the coarser triangles
 
 
 _Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the picture
@@ -83,6 +80,7 @@ class _Prepared:
     outlines: Outlines
     recess: dict[float, float]  # by size of plane, how far back in the depth buffer it is drawn
     shadows: Shadows | None
+    kinds: set[Kind]
 
 
 class EglRenderer:
@@ -113,7 +111,7 @@ class EglRenderer:
             with measure("draw"):
                 self._store.show(scene.images)
                 prepared = self._prepare(scene)
-                self._submit(scene, prepared, view, target)
+                self._submit(scene, prepared, view, target, _UNSEEN / 2 if depth else _UNSEEN)
                 self._finish()
             with measure("read back"):
                 rgba, raw = target.read(depth)
@@ -151,6 +149,7 @@ class EglRenderer:
         if len(self._prepared) > _VERSIONS_KEPT:
             del self._prepared[next(iter(self._prepared))]
             self._context.gc()  # what removed models held
+            self._store.keep({kind for one in self._prepared.values() for kind in one.kinds})
         return prepared
 
     def _build(self, scene: SceneState) -> _Prepared:
@@ -176,17 +175,31 @@ class EglRenderer:
         block = self._context.buffer(lights.lights_block(scene), dynamic=True)
         recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
         items = [[item(surface, next(numbers)) for surface in own] for own in surfaces]
-        return _Prepared(block, items, outlines, recess, shadows)
+        used = {kind for own in items for one in own for kind in one.kinds if kind}
+        return _Prepared(block, items, outlines, recess, shadows, used)
 
     def _item(self, number: int, surface: Surface, triangles: Triangles, plain: Kind,
               shaded: Kind | None) -> _Item:
         return _Item(number, surface, self._store.drawing(triangles, plain),
                      shaded and self._store.drawing(triangles, shaded),
-                     [(away, self._item(number, surface, coarser, plain, shaded))
-                      for away, coarser in triangles.coarser])
+                     triangles, (plain, shaded), {})
+
+    def _within(self, item: _Item, tolerance: float) -> _Item:
+        """The coarsest that is no farther away from it, m."""
+        if tolerance < item.triangles.finest:
+            return item
+        fitting = [triangles for away, triangles in self._store.coarser(item.triangles)
+                   if away <= tolerance]
+        if not fitting:
+            return item
+        place = len(fitting) - 1
+        if place not in item.coarser:
+            item.coarser[place] = self._item(item.number, item.surface, fitting[-1], *item.kinds)
+        return item.coarser[place]
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
-                target: _Target) -> None:
+                target: _Target, unseen: float) -> None:
+        """`unseen`: px that what is drawn may be away from the mesh."""
         clip_world = _UPSIDE_DOWN @ projection_matrix(view) @ view_matrix(view.pose)
         eye = np.array([*view.pose.position, 1.0], np.float32)
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
@@ -202,7 +215,7 @@ class EglRenderer:
                 piece for item, visible, depth in
                 zip(prepared.items[index], seen.parts[index], seen.depths[index], strict=True)
                 if visible for piece in _pieces(
-                    item.within(_UNSEEN * depth / view.focal_length_px),
+                    self._within(item, unseen * depth / view.focal_length_px),
                     places.get(item.number), view)]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
             target.render(node, [p for p in pieces if p[0].surface.opaque], clip_node)

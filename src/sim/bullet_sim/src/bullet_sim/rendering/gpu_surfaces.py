@@ -6,6 +6,7 @@ Where half a pixel makes no difference, a mesh is drawn in fewer triangles (`mes
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary
@@ -15,7 +16,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.description import Fog, Material
-from bullet_sim.meshes.detail import levels
+from bullet_sim.meshes.detail import FEWEST, finest_tolerance, levels
 from bullet_sim.meshes.images import load_image
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.rendering.scene import LinkShape
@@ -59,6 +60,8 @@ class Triangles:
     indices: moderngl.Buffer
     textured: bool  # or the material's colour alone
     convex: bool  # few, as planes and boxes have, none of them in front of another
+    finest: float  # m, tolerance of the first of the coarser ones, inf: there can be none
+    part: MeshPart | None  # to make those of, when one is needed first
     coarser: list[tuple[float, Triangles]]  # by tolerance, m, the finest first
     drawings: dict[Kind, Drawing]
 
@@ -106,6 +109,23 @@ class SurfaceStore:
         if surfaces is None:
             surfaces = self._surfaces[shape] = [self._upload(part) for part in shape.parts]
         return surfaces
+
+    def coarser(self, triangles: Triangles) -> list[tuple[float, Triangles]]:
+        """By tolerance, m, the finest first; made when they are asked for."""
+        if triangles.part is not None:
+            triangles.coarser = [
+                (level.tolerance, self._triangles_of(level.part, triangles.textured, False))
+                for level in levels(triangles.part)]
+            triangles.part = None
+        return triangles.coarser
+
+    def keep(self, kinds: set[Kind]) -> None:
+        """Forget how to draw other kinds."""
+        for known in [key for key in self._programs if key[0] not in kinds]:
+            del self._programs[known]
+        for triangles in self._triangles.values():
+            for kind in triangles.drawings.keys() - kinds:
+                del triangles.drawings[kind]
 
     def drawing(self, triangles: Triangles, kind: Kind) -> Drawing:
         """How to draw them."""
@@ -162,11 +182,12 @@ class SurfaceStore:
         key = hashlib.blake2b(content).digest()
         found = self._triangles.get(key)
         if found is None:
-            coarser = [(level.tolerance, self._triangles_of(level.part, textured, False))
-                       for level in (levels(part) if levelled else ())]
+            levelled = levelled and len(faces) >= FEWEST
             found = self._triangles[key] = Triangles(
                 self._context.buffer(corners), self._context.buffer(faces), textured,
-                len(part.faces) <= _FEW and _is_convex(part), coarser, {})
+                len(part.faces) <= _FEW and _is_convex(part),
+                finest_tolerance(part) if levelled else math.inf, part if levelled else None,
+                [], {})
         return found
 
     def _texture(self, path: str) -> moderngl.Texture | None:

@@ -26,13 +26,12 @@ def warn_once(text: str) -> None:
 
 def lights_block(scene: SceneState) -> bytes:
     """All but the camera's position; lights beyond the eighth are left out."""
-    lights = list(scene.lights.values())
-    if len(lights) > MAX_LIGHTS:
-        left_out = ", ".join(light.name for light in lights[MAX_LIGHTS:])
+    if len(scene.lights) > MAX_LIGHTS:
+        left_out = ", ".join(list(scene.lights)[MAX_LIGHTS:])
         warn_once(f"more than {MAX_LIGHTS} lights; left out: {left_out}")
     block = np.zeros((2 + 6 * MAX_LIGHTS, 4), np.float32)
     block[0] = scene.description.ambient
-    for index, light in enumerate(lights[:MAX_LIGHTS]):
+    for index, light in enumerate(_in_block(scene)):
         block[2 + 6 * index:8 + 6 * index] = _rows(light)
     return block.tobytes()
 
@@ -44,8 +43,13 @@ def kinds(scene: SceneState,
     At least one: what follows in the block is dark.
     """
     found = [(_kind(light), casting.index(light) if light in casting else -1)
-             for light in list(scene.lights.values())[:MAX_LIGHTS]]
+             for light in _in_block(scene)]
     return tuple(found or [(DIRECTIONAL, -1)])
+
+
+def _in_block(scene: SceneState) -> list[LightDescription]:
+    """By kind, so that scenes with the same kinds of lights are drawn by the same shaders."""
+    return sorted(list(scene.lights.values())[:MAX_LIGHTS], key=_kind)
 
 
 def needs_pixels(scene: SceneState) -> bool:
