@@ -13,7 +13,8 @@ set_up_trial "$@"
 enter_workspace
 owner=$(stat -c %u "$root")
 [ "$(id -u)" != "$owner" ] || exec python3 "$root/src/marking/scripts/mark.py" "$@"
-code=0  # root leaves nothing of its own in a person's folder
+code=0  # root leaves nothing of its own in a person's out/
 PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" || code=$?
+[ ! -d "$root/out" ] || chown -h --reference="$root" "$root/out"
 [ ! -d "$root/out/mark" ] || chown -Rh --reference="$root" "$root/out/mark"
 exit "$code"

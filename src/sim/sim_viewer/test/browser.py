@@ -30,13 +30,20 @@ class Browser(abc.ABC):
         self.profile = Path(tempfile.mkdtemp(prefix=f"viewer-{self.name}-"))
         self._numbers = itertools.count(1)
         self._answers: dict[int, asyncio.Future] = {}
+        self._client: aiohttp.ClientSession | None = None
+        self._reader: asyncio.Task | None = None
         self.prepare()
         home = dict.fromkeys(("HOME", "TMPDIR"), str(self.profile))
         self.process = subprocess.Popen(
             self.command(), env={**os.environ, **home},
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             start_new_session=True)
-        run(self._connect(wait_until(self.address, f"{self.name}'s address")))
+        try:
+            run(self._connect(wait_until(self.address, f"{self.name}'s address")))
+            self.begin()
+        except BaseException:  # nobody else could end it
+            self.close()
+            raise
 
     def prepare(self) -> None:  # noqa: B027 (Chromium needs nothing)
         """Before it is started."""
@@ -48,6 +55,9 @@ class Browser(abc.ABC):
     @abc.abstractmethod
     def address(self) -> str | None:
         """Its WebSocket's, once it has written that into its profile."""
+
+    def begin(self) -> None:  # noqa: B027 (Chromium needs nothing)
+        """Once it can be told what to do."""
 
     @abc.abstractmethod
     def open(self, url: str) -> Page:
@@ -67,8 +77,10 @@ class Browser(abc.ABC):
             wait_until(lambda: not self._signal(0), f"an end of {self.name}", ENDS_WITHIN)
         self._signal(signal.SIGKILL)
         self.process.wait()
-        self._reader.cancel()
-        run(self._client.close())
+        if self._reader is not None:
+            self._reader.cancel()
+        if self._client is not None:
+            run(self._client.close())
         wait_until(self._forget_profile, f"an end of {self.name}'s processes")
 
     def _signal(self, number: int) -> bool:

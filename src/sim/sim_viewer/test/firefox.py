@@ -28,6 +28,8 @@ class Browser(browser.Browser):
     def __init__(self) -> None:
         self._pages: dict[str, Page] = {}
         super().__init__()
+
+    def begin(self) -> None:
         self.call("session.new", capabilities={})
         self.call("session.subscribe", events=["log.entryAdded"])
 

@@ -125,11 +125,9 @@ class RvizPage(unittest.TestCase):
         """What a camera's display draws there, RGBA; 0 to 1 from the left and from above."""
         return self.wait(name, f"""(() => {{
             d.shown.render();
-            const from = d.shown.renderer.domElement, to = document.createElement("canvas");
-            [to.width, to.height] = [from.width, from.height];
-            const flat = to.getContext("2d");
-            flat.drawImage(from, 0, 0);
-            return [...flat.getImageData({column} * to.width, {row} * to.height, 1, 1).data];
+            const {{ canvas }} = d.shown;
+            return [...canvas.getContext("2d").getImageData(
+                {column} * canvas.width, {row} * canvas.height, 1, 1).data];
         }})()""")
 
     def test_2_a_camera_shows_the_scene_over_its_picture(self):

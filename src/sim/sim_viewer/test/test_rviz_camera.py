@@ -48,6 +48,7 @@ def test_the_right_camera_of_a_pair_stands_beside_the_left_one():
 
 @pytest.mark.parametrize("change, said", [
     ({"width": 0}, "not calibrated"), ({"P": [0.0] * 12}, "not calibrated"),
+    ({"P": [1e-320] * 12}, "not calibrated"), ({"height": 200_000}, "not calibrated"),
     ({"P": [math.nan] * 12}, "nans or infs")])
 def test_a_camera_info_of_no_use_is_an_error(change, said):
     info = camera_info()

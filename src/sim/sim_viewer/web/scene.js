@@ -63,6 +63,7 @@ class Tab {
   close() {
     document.removeEventListener("visibilitychange", this._onHide);
     this._rest();
+    this._shadows.close();
     this._viewport?.close();
   }
 

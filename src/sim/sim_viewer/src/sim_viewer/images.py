@@ -129,16 +129,18 @@ class ImageWatch:
             self._streams.remove(self._topic, self._width, self._send)
 
 
-def source(master: MasterView, wished: str) -> str:
-    """The topic that serves for an image topic: the compressed one where somebody publishes it."""
-    compressed = wished + COMPRESSED
-    offered = compressed in master.state().publishers and master.types().get(compressed) in KINDS
-    return compressed if offered else wished
+def sources(master: MasterView, wished: str) -> list[str]:
+    """The topics that serve for an image topic: the compressed one where somebody publishes it,
+    else itself; both where nobody publishes either yet."""
+    published, types = master.state().publishers, master.types()
+    offered = [topic for topic in (wished + COMPRESSED, wished)
+               if topic in published and types.get(topic) in KINDS]
+    return offered[:1] or [wished, wished + COMPRESSED]
 
 
 def _find(master: MasterView, wished: str) -> tuple[str, type]:
-    topic, types = source(master, wished), master.types()
-    if topic in master.state().publishers and types.get(topic) in KINDS:
+    (topic, *others), types = sources(master, wished), master.types()
+    if not others:
         return topic, KINDS[types[topic]]
     raise Refused(f"{wished!r:.80} is no image topic that somebody publishes; "
                   f"there are {', '.join(_offered(master)) or 'none'}")

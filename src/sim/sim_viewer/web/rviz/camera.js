@@ -16,15 +16,15 @@ export class ShownCamera extends Shown {
     this._camera = new THREE.PerspectiveCamera();
     this._below = element("img");
     this._above = element("img");
-    this._layers = element("div", { class: "layers", hidden: true });
+    this.canvas = element("canvas");
+    this._layers = element("div", { class: "layers", hidden: true }, this._below, this.canvas,
+      this._above);
     this._card = element("figure", { class: "card picture", "data-topic": display.topic },
       element("figcaption", {}, element("b", { text: `${display.name} ${display.topic}` })),
       this._layers);
   }
 
   start(frame) {
-    this.renderer = this._viewport.renderer(true);
-    this._layers.replaceChildren(this._below, this.renderer.domElement, this._above);
     this._pictures.append(this._card);
     super.start(frame);
   }
@@ -32,8 +32,6 @@ export class ShownCamera extends Shown {
   stop() {
     super.stop();
     this._card.remove();
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();
   }
 
   async _draw([part]) {
@@ -58,14 +56,15 @@ export class ShownCamera extends Shown {
 
   /** What the camera sees now. */
   render() {
-    this._viewport.drawBy(this.renderer, this._camera);
+    this._viewport.drawInto(this.canvas, this._camera);
   }
 
   /** The camera where the picture was taken, with its intrinsics. */
   _look({ pose, size, focal_length: focalLength, principal_point: principalPoint, shift, zoom }) {
     const [width, height] = size;
     const shown = Math.min(width, WIDTH);
-    this.renderer.setSize(shown, Math.max(1, Math.round(shown * height / width)), false);
+    this.canvas.width = shown;
+    this.canvas.height = Math.max(1, Math.round(shown * height / width));
     this._layers.style.aspectRatio = `${width} / ${height}`;
     place(this._camera, pose);
     this._camera.translateX(shift[0]).translateY(shift[1]);

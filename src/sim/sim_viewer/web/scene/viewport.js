@@ -38,7 +38,7 @@ export class Viewport {
     this.root = root;
     const slow = drawnByProcessor();
     this._slow = slow;
-    this._renderer = this.renderer();
+    this._renderer = this._newRenderer(false);
     this._pause = slow ? SLOW_MS : 0;
     this._coarse = COARSE[0];
     this._took = FINE_MS; // ms, the last such picture
@@ -70,19 +70,23 @@ export class Viewport {
     return this._renderer.domElement;
   }
 
-  /** A new one, as the view's own. `alpha`: where nothing is drawn one sees through. */
-  renderer(alpha = false) {
+  /** The scene as another camera sees it, into a canvas; one sees through where nothing is. */
+  drawInto(canvas, camera) {
+    this._beside ??= this._newRenderer(true); // one for all: browsers allow few
+    this._beside.setSize(canvas.width, canvas.height, false);
+    const { background } = this._scene;
+    this._scene.background = null;
+    this._beside.render(this._scene, camera);
+    this._scene.background = background;
+    const flat = canvas.getContext("2d");
+    flat.clearRect(0, 0, canvas.width, canvas.height);
+    flat.drawImage(this._beside.domElement, 0, 0);
+  }
+
+  _newRenderer(alpha) {
     const made = new THREE.WebGLRenderer({ antialias: !this._slow, alpha });
     made.outputColorSpace = THREE.LinearSRGBColorSpace;
     return made;
-  }
-
-  /** The scene without its background, by another renderer and camera. */
-  drawBy(renderer, camera) {
-    const { background } = this._scene;
-    this._scene.background = null;
-    renderer.render(this._scene, camera);
-    this._scene.background = background;
   }
 
   /** Resolves when the next picture is drawn. */
@@ -171,8 +175,10 @@ export class Viewport {
     clearTimeout(this._still);
     this._sizes.disconnect();
     this._controls.dispose();
-    this._renderer.dispose();
-    this._renderer.forceContextLoss();
+    for (const renderer of [this._renderer, this._beside]) {
+      renderer?.dispose();
+      renderer?.forceContextLoss();
+    }
   }
 
   _fit(parent) {

@@ -16,7 +16,7 @@ import rospy
 from roslib.message import get_message_class
 
 from sim_viewer.context import Context, Node
-from sim_viewer.images import source as image_source
+from sim_viewer.images import sources as image_sources
 from sim_viewer.registry import Refused, argument, watchable
 from sim_viewer.rviz.display_type import DisplayType, Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
@@ -125,7 +125,7 @@ class Display:
             return
         topics = [self._topic]
         if "sensor_msgs/CompressedImage" in self._kind.messages:
-            topics = [image_source(self._context.node.shared(MasterView), self._topic)]
+            topics = image_sources(self._context.node.shared(MasterView), self._topic)
         if self._kind.beside:
             topics.append(self._kind.beside_topic(self._topic))
         try:

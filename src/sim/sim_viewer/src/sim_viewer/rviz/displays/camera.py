@@ -17,6 +17,7 @@ from sim_viewer.rviz.options import Option
 COMPRESSED = "/compressed"
 RENDERINGS = ("background and overlay", "background", "overlay")
 WIDTH_PX = 640  # of the picture that is sent, at most
+LARGEST_PX, LEAST_PX = 1 << 14, 1e-6  # a side of a picture, a focal length
 
 
 @dataclass(frozen=True)
@@ -71,11 +72,12 @@ def intrinsics_of(info: Any) -> tuple[Intrinsics | None, tuple[str, str]]:
     across, down = info.P[0], info.P[5]
     if not np.isfinite(info.P).all():
         return None, (ERROR, "Contains invalid floating point values (nans or infs)")
-    if not info.width or not info.height or not across or not down:
+    if not (0 < info.width <= LARGEST_PX and 0 < info.height <= LARGEST_PX
+            and abs(across) > LEAST_PX and abs(down) > LEAST_PX):
         return None, (ERROR, f"CameraInfo of {info.width} x {info.height} px with focal lengths of "
                              f"{across:g} and {down:g} px: the camera is not calibrated")
     return Intrinsics((info.width, info.height), (across, down), (info.P[2], info.P[6]),
-                (-info.P[3] / across, -info.P[7] / down)), (OK, "OK")
+                      (-info.P[3] / across, -info.P[7] / down)), (OK, "OK")
 
 
 def info_topic(picture_topic: str) -> str:
