@@ -9,7 +9,7 @@ import trimesh
 
 from bullet_sim.meshes import detail
 from bullet_sim.meshes.detail import levels
-from bullet_sim.meshes.part import MeshPart
+from bullet_sim.meshes.part import MeshPart, grid_faces
 from bullet_sim.meshes.smoothing import smooth_shaded
 
 RADIUS = 0.5  # m
@@ -89,6 +89,27 @@ def test_a_sheet_with_two_sides_is_left_as_it_is():
     loose = np.random.default_rng(3).normal(size=(300, 3, 3)).reshape(-1, 3)
     faces = np.arange(900).reshape(-1, 3)
     assert levels(smooth_shaded(loose, np.concatenate([faces, faces[:, ::-1]]))) == []
+
+
+def test_a_fold_keeps_its_triangles_and_the_rest_gets_coarser():
+    """A ball on a post that is wider than the neck between them."""
+    angle = np.linspace(0.0, 2 * np.pi, 65)
+    angle[-1] = 0.0
+    bend = np.linspace(-1.5, 1.57, 60)
+    radius = np.concatenate([np.full(20, 0.02), 0.06 * np.cos(bend)])
+    height = np.concatenate([np.linspace(0.0, 0.33, 20), 0.39 + 0.06 * np.sin(bend)])
+    vertices = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle)),
+                         np.repeat(height[:, None], 65, axis=1)], axis=-1).reshape(-1, 3)
+    post = smooth_shaded(vertices, grid_faces(80, 65))
+    found = levels(post)
+    assert len(found) > 2 and len(found[-1].part.faces) < len(post.faces) / 4
+    for level in found:
+        places = sampled(level.part)
+        across = np.hypot(places[:, 0], places[:, 1])
+        in_post = places[:, 2] < 0.325
+        assert (abs(across[in_post] - 0.02) < level.tolerance + 0.0002).all()
+        from_middle = np.hypot(across, places[:, 2] - 0.39)
+        assert (abs(from_middle - 0.06)[places[:, 2] > 0.335] < level.tolerance + 0.0002).all()
 
 
 def test_very_many_triangles_at_a_corner_take_no_time():

@@ -17,7 +17,7 @@ GAIN = 0.7  # of the triangles of the level before, at most
 # of their sum: balls, rings and capsules within 0.9 of a level's tolerance, levels before included.
 SLACK = 1.8
 MOST_AT_CORNER = 500  # triangles
-FOLDED = math.cos(math.radians(150))  # between two triangles' normals
+FOLDED, MOST_RINGS = math.cos(math.radians(150)), 8  # between two triangles' normals; round those
 NEIGHBOURS = 8  # corners of the part whose normals a new one has
 SAME_WAY = math.cos(math.radians(40))  # between a triangle's normal and those, at least
 
@@ -44,24 +44,29 @@ def finest_tolerance(part: MeshPart) -> float:
 def levels(part: MeshPart, fewest: int = FEWEST) -> list[Level]:
     """Coarser and coarser ones without image coordinates, of parts of at least `fewest` triangles.
 
-    None of a surface that is folded on itself, such as a sheet with two sides: its edges could go
-    anywhere on it. None of one with very many triangles at a corner, which would take minutes.
+    Triangles that are folded on one another stay as they are, such as those of a sheet with two
+    sides: their edges could go anywhere on it. There are none of a part with very many triangles at
+    a corner either, which would take minutes.
     """
     first = finest_tolerance(part)
     if len(part.faces) < fewest or first == 0.0:
         return []
     kept, place = equal_rows(part.vertices)
     vertices, faces = part.vertices[kept].astype(float), place[part.faces]
-    if np.bincount(faces.reshape(-1)).max() > MOST_AT_CORNER or _is_folded(vertices, faces):
+    if np.bincount(faces.reshape(-1)).max() > MOST_AT_CORNER:
+        return []
+    folded = _folded(vertices, faces)
+    fixed, loose, points = vertices[faces[folded]], faces[~folded], vertices
+    if len(loose) < fewest:
         return []
     found: list[Level] = []
     shading = _Shading(part)
     for tolerance in (first * 2 ** level for level in range(LEVELS)):
-        fewer, fewer_faces = simplified(vertices, faces, tolerance * SLACK)
-        if 0 < len(fewer_faces) <= GAIN * len(faces):
-            vertices, faces = fewer, fewer_faces
-            found.append(Level(shading.of(vertices, faces), tolerance))
-        if len(faces) < fewest:
+        fewer, fewer_loose = simplified(points, loose, tolerance * SLACK)
+        if 0 < len(fixed) + len(fewer_loose) <= GAIN * (len(fixed) + len(loose)):
+            points, loose = fewer, fewer_loose
+            found.append(Level(shading.of(np.concatenate([fixed, points[loose]])), tolerance))
+        if len(loose) < fewest:
             break
     return found
 
@@ -78,10 +83,19 @@ def simplified(vertices: np.ndarray, faces: np.ndarray,
     return points * unit, left
 
 
-def _is_folded(vertices: np.ndarray, faces: np.ndarray) -> bool:
-    normals = face_normals(vertices[faces])
-    one, other = (edges // 3 for edges in meeting_edges(faces))
-    return bool((np.sum(normals[one] * normals[other], axis=1) < FOLDED).any())
+def _folded(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """(m,) bool: triangles at edges that are folded, and at those that appear without them."""
+    normals, folded = face_normals(vertices[faces]), np.zeros(len(faces), bool)
+    for _ in range(MOST_RINGS):
+        loose = np.flatnonzero(~folded)
+        one, other = meeting_edges(faces[loose])
+        back = np.sum(normals[loose[one // 3]] * normals[loose[other // 3]], axis=1) < FOLDED
+        if not back.any():
+            return folded
+        sharp = np.zeros(len(vertices), bool)
+        sharp[faces[loose].reshape(-1)[np.concatenate([one[back], other[back]])]] = True
+        folded |= sharp[faces].any(axis=1)
+    return np.ones(len(faces), bool)
 
 
 class _Shading:
@@ -93,10 +107,10 @@ class _Shading:
         self._part = part
         self._near = cKDTree(part.vertices)
 
-    def of(self, vertices: np.ndarray, faces: np.ndarray) -> MeshPart:
-        """Each corner's normal is the mean of the nearest ones that point as the triangle does."""
-        corners = vertices[faces].reshape(-1, 3)
-        own = np.repeat(face_normals(vertices[faces]), 3, axis=0)
+    def of(self, triangles: np.ndarray) -> MeshPart:
+        """Corners (j, 3, 3). A normal is the mean of the nearest that point as its triangle does."""
+        corners = triangles.reshape(-1, 3)
+        own = np.repeat(face_normals(triangles), 3, axis=0)
         away, near = self._near.query(corners, NEIGHBOURS)
         normals = self._part.normals[near]  # (3 j, NEIGHBOURS, 3)
         alike = (normals * own[:, None]).sum(axis=2) > SAME_WAY
