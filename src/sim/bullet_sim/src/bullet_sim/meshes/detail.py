@@ -108,7 +108,7 @@ class _Shading:
         self._near = cKDTree(part.vertices)
 
     def of(self, triangles: np.ndarray) -> MeshPart:
-        """Corners (j, 3, 3). A normal is the mean of the nearest that point as its triangle does."""
+        """Corners (j, 3, 3). A normal is the mean of the nearest that point as its triangle."""
         corners = triangles.reshape(-1, 3)
         own = np.repeat(face_normals(triangles), 3, axis=0)
         away, near = self._near.query(corners, NEIGHBOURS)
