@@ -229,11 +229,16 @@ def test_what_sees_the_sun_has_no_stripes_of_its_own_shadow(renderer, shape, mat
         assert np.abs(picture(True, light) - plain)[facing].max() <= 1
 
 
-def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkeypatch):
-    drawn = []
-    draw = Shadows._draw
+@pytest.fixture
+def drawn(monkeypatch):
+    """What changed, each time that maps are drawn."""
+    found, draw = [], Shadows._draw
     monkeypatch.setattr(Shadows, "_draw",
-                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+                        lambda self, changed: found.append(changed) or draw(self, changed))
+    return found
+
+
+def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, drawn):
     scene = stage()
     first = renderer.draw(scene, from_above()).rgb
     renderer.draw(scene, slanting())
@@ -250,11 +255,7 @@ def test_a_shadow_moves_with_the_box_and_its_map_waits_for_that(renderer, monkey
     assert np.array_equal(renderer.draw(scene, from_above()).rgb, first)
 
 
-def test_cameras_that_look_elsewhere_leave_each_other_the_map(renderer, monkeypatch):
-    drawn = []
-    draw = Shadows._draw
-    monkeypatch.setattr(Shadows, "_draw",
-                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+def test_cameras_that_look_elsewhere_leave_each_other_the_map(renderer, drawn):
     scene = stage()
     scene.add_link(("far", "link"), [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((1.8, 1.8, 0.1)))
     views = from_above((0.0, 0.0, 1.2)), from_above((1.8, 1.8, 0.8))
@@ -335,11 +336,7 @@ def test_a_picture_knows_nothing_of_what_was_drawn_before(renderer, seed):
     assert np.array_equal(renderer.draw(scene, view).rgb, fresh)
 
 
-def test_what_moves_out_of_sight_is_not_drawn_into_maps(renderer, monkeypatch):
-    drawn = []
-    draw = Shadows._draw
-    monkeypatch.setattr(Shadows, "_draw",
-                        lambda self, changed: drawn.append(changed) or draw(self, changed))
+def test_what_moves_out_of_sight_is_not_drawn_into_maps(renderer, drawn):
     scene, far = stage(), ("far", "link")
     scene.add_link(far, [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.0, 9.0, 0.1)))
     scene.add_link(("end", "link"), [Visual("box", Box((0.2, 0.2, 0.2)))], Pose((9.5, 9.5, 0.1)))

@@ -15,7 +15,7 @@ import numpy as np
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
 from bullet_sim.files import find_beside
-from bullet_sim.meshes.part import MeshPart, NamedPart, welded
+from bullet_sim.meshes.part import MeshPart, NamedPart, shaded
 from bullet_sim.meshes.smoothing import smooth_shaded
 
 _log = logging.getLogger(__name__)
@@ -126,14 +126,7 @@ def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> Mesh
         return smooth_shaded(vertices, faces, uv, material)
     normals = of_corners(triangles.normal, triangles.normal_index)
     normals = normals @ np.linalg.inv(matrix[:3, :3])
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return welded(MeshPart(
-        vertices=vertices.astype(np.float32),
-        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
-        uv=uv,
-        faces=faces,
-        material=material,
-    ))
+    return shaded(vertices, normals, faces, uv, material)
 
 
 def _material(effect: Any, folder: Path) -> Material:

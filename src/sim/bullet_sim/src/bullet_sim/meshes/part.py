@@ -49,6 +49,20 @@ def flat_shaded(
     )
 
 
+def shaded(vertices: np.ndarray, normals: np.ndarray, faces: np.ndarray, uv: np.ndarray | None,
+           material: Material | None) -> MeshPart:
+    """A part with normals (n, 3) of any length for its corners (n, 3); those that are alike are
+    shared."""
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return welded(MeshPart(
+        vertices=vertices.astype(np.float32),
+        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
+        uv=uv,
+        faces=faces,
+        material=material,
+    ))
+
+
 def face_normals(corners: np.ndarray) -> np.ndarray:
     """(m, 3) of unit length from the windings of triangles (m, 3, 3); zero of one without area."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from bullet_sim.description import Material
-from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, welded
+from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, shaded
 
 CREASE = math.radians(30)  # between two triangles; a larger angle is an edge that is seen
 
@@ -27,16 +27,11 @@ def smooth_shaded(
     group = _groups(corners.astype(np.float32), normals)
     weighted = (normals[:, None] * _angles(corners)[..., None]).reshape(-1, 3)
     summed = np.stack([np.bincount(group, weighted[:, axis]) for axis in range(3)], axis=1)[group]
-    length = np.linalg.norm(summed, axis=1, keepdims=True)
-    own = np.repeat(normals, 3, axis=0)
-    smooth = np.where(length > 0, summed / np.where(length > 0, length, 1), own)
-    return welded(MeshPart(
-        vertices=corners.reshape(-1, 3).astype(np.float32),
-        normals=smooth.astype(np.float32),
-        uv=None if uv is None else np.asarray(uv, np.float32)[faces].reshape(-1, 2),
-        faces=np.arange(len(smooth), dtype=np.uint32).reshape(-1, 3),
-        material=material,
-    ))
+    smooth = np.where(summed.any(axis=1, keepdims=True), summed, np.repeat(normals, 3, axis=0))
+    return shaded(corners.reshape(-1, 3), smooth,
+                  np.arange(len(smooth), dtype=np.uint32).reshape(-1, 3),
+                  None if uv is None else np.asarray(uv, np.float32)[faces].reshape(-1, 2),
+                  material)
 
 
 def meeting_edges(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
-from bullet_sim.meshes.part import MeshPart, NamedPart, welded
+from bullet_sim.meshes.part import MeshPart, NamedPart, shaded
 from bullet_sim.meshes.smoothing import smooth_shaded
 from bullet_sim.meshes.wavefront_materials import read_materials
 
@@ -126,11 +126,4 @@ def _part(
     if (normal < 0).any():
         return smooth_shaded(vertices, faces, uv, material)
     normals = arrays["vn"][normal]
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return welded(MeshPart(
-        vertices=vertices.astype(np.float32),
-        normals=(normals / np.where(length > 0, length, 1)).astype(np.float32),
-        uv=uv,
-        faces=faces,
-        material=material,
-    ))
+    return shaded(vertices, normals, faces, uv, material)
