@@ -64,7 +64,7 @@ async def _answers(text: str) -> list[str]:
 def request(path: Path) -> None:
     """Bytes on a connection."""
     answer = asyncio.run(_exchange(path.read_bytes()))
-    if answer and not re.match(rb"HTTP/1.[01] ([1234]\d\d|501|505) ", answer):
+    if answer and not re.match(rb"HTTP/(?:0\.9|1\.[01]) ([1234]\d\d|501|505) ", answer):
         raise RuntimeError(f"answers {answer[:100]!r}")
 
 
