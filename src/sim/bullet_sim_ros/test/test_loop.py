@@ -25,14 +25,34 @@ class ImpatientMailbox:
 def test_however_slow_time_runs_the_loop_soon_sees_that_it_is_to_end(factor):
     """A timed wait of Python's goes on after a signal; one of centuries is an OverflowError."""
     simulation = Simulation.__new__(Simulation)
-    simulation.world = SimpleNamespace(paused=False, time=0.0)
+    simulation.world = SimpleNamespace(paused=False, tick=0, timestep=0.001)
+    simulation.scheduler = Scheduler(simulation.world)
     simulation.pacer = Pacer(factor)
     simulation.mailbox = ImpatientMailbox(simulation)
     simulation._stop_requested = False
     simulation.pacer.ahead(0.0)
-    simulation.world.time = 0.01
     simulation._wait()
     assert max(simulation.mailbox.waits) <= IDLE
+
+
+def test_what_is_due_at_different_rates_is_done_when_its_time_has_come_on_the_wall():
+    simulation, wall, done = Simulation.__new__(Simulation), SimpleNamespace(now=50.0), []
+    world = SimpleNamespace(paused=False, tick=0, timestep=0.001)
+    simulation.world, simulation.scheduler = world, Scheduler(world)
+    simulation.pacer = Pacer(1.0, lambda: wall.now)
+    simulation._stop_requested = False
+
+    def run_pending(wait=0.0):
+        wall.now += wait
+
+    simulation.mailbox = SimpleNamespace(run_pending=run_pending)
+    for rate_hz in (100.0, 30.0):
+        simulation.scheduler.add(rate_hz, lambda: done.append(wall.now - world.tick / 1000))
+    for _ in range(100):
+        simulation._wait()
+        world.tick = simulation.scheduler.next_tick()
+        simulation.scheduler.run()
+    assert done == pytest.approx([done[0]] * len(done), abs=1e-6)
 
 
 @pytest.mark.parametrize("whole_steps, due", [(False, [34, 67, 100]), (True, [34, 68, 102])])

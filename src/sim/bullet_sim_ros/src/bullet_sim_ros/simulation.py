@@ -78,16 +78,20 @@ class Simulation:
         return self._stop_requested or rospy.is_shutdown()
 
     def _wait(self) -> None:
-        """Answer calls until the next step is due by the wall clock; at least those that wait."""
+        """Answer calls until what comes next is due by the wall clock; at least those that wait."""
         if self.world.paused:
             self.mailbox.run_pending(IDLE)
             self._restart_pace()
             return
-        while (ahead := self.pacer.ahead(self.world.time)) > 0 and not self._stopped():
+        while (ahead := self.pacer.ahead(self._due())) > 0 and not self._stopped():
             self.mailbox.run_pending(min(ahead, IDLE))
             if self.world.paused:
                 return
         self.mailbox.run_pending()
+
+    def _due(self) -> float:
+        """Simulated time, s, of what is to be done next."""
+        return self.scheduler.next_tick() * self.world.timestep
 
     def _advance(self, most: float) -> int:
         """Step up to what is due next, and do it; returns how many steps that took."""
