@@ -23,6 +23,7 @@ from sim_bench.results import (
     write_json,
 )
 from sim_bench.ros_run import read_lines
+from sim_bench.stages import stage_figures
 
 from evaluation.trial.program import NOT_RUN
 from run_session import cpu
@@ -179,6 +180,43 @@ def test_only_what_was_measured_is_judged():
     verdicts = judge(results(figure("ratio.tiny.1920x1080", "x", [30.0])).figures())
     assert [verdict.met for verdict in verdicts] == [False]
     assert "MISSED" in acceptance_table(verdicts)
+
+
+def test_what_is_missed_says_what_binds():
+    judged = judge({"fast/no_camera.driving.real_time_factor": figure("a", "x", [12.0]),
+                    "fast/no_camera.driving.bare_step": figure("b", "us", [41.5])})
+    assert "What binds, no camera, driving: no_camera.driving.bare_step 41.5 us" in (
+        acceptance_table(judged))
+    assert "binds" not in acceptance_table(judge({
+        "fast/no_camera.driving.real_time_factor": figure("a", "x", [31.0]),
+        "fast/no_camera.driving.bare_step": figure("b", "us", [20.0])}))
+
+
+STAGES = """[INFO] stages of the work in 10 s
+stage           times   ms each  worst ms   share
+draw               10    50.000    263.83   13.5%
+send                9     3.000      7.82    3.4%
+[INFO] stages of the work in 20 s
+stage           times   ms each  worst ms   share
+draw               20    30.000    263.83   20.6%
+read back          10     1.000      5.87    3.5%
+wait               10    90.000     91.00   30.0%
+scene              10     0.100      0.20    0.0%
+send               19     4.000      7.82    6.5%
+[gazebo-2] killing on exit
+"""
+
+
+def test_stages_are_told_for_one_frame_without_those_before_the_first_table(tmp_path):
+    log = tmp_path / "roslaunch.log"
+    log.write_text(STAGES)
+    found = {one.name: one.median for one in stage_figures("drive", log, turn="send")}
+    assert found == pytest.approx({"drive.stage.draw": (600 - 500) / 10,
+                                   "drive.stage.send": (76 - 27) / 10,
+                                   "drive.stage.read_back": 1.0})
+    assert stage_figures("drive", log, turn="depth") == []
+    log.write_text("nothing was printed")
+    assert stage_figures("drive", log, turn="send") == []
 
 
 def read_json(path) -> Results:

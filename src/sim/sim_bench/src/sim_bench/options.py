@@ -8,7 +8,7 @@ from pathlib import Path
 from evaluation.trial.command_line import Parser
 from run_session.failure import RunError
 
-PARTS = ("renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
+PARTS = ("limits", "renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
          "learning", "worlds", "memory")
 DEFAULT_MEMORY_S = 300.0
 LEAST_MEMORY_S = 20.0  # below that there are too few samples for a growth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -48,6 +49,7 @@ def write_json(results: Results, path: Path) -> None:
             "bound": verdict.criterion.bound,
             "median": verdict.figure.median,
             "met": verdict.met,
+            "bound_by": {one.name: one.median for one in verdict.binding},
         }
         for verdict in judge(results.figures())
     ]
@@ -69,7 +71,7 @@ def figure_table(result: PartResult) -> str:
 
 
 def acceptance_table(verdicts: Sequence[Verdict]) -> str:
-    """What was wanted, what was measured, and whether that is enough."""
+    """What was wanted, what was measured, whether that is enough, and if not, what binds."""
     rows = [("acceptance (median)", "wanted", "measured", "unit", "")]
     rows += [
         (
@@ -81,7 +83,14 @@ def acceptance_table(verdicts: Sequence[Verdict]) -> str:
         )
         for verdict in verdicts
     ]
-    return "\n".join(_aligned(rows, left={0, 3, 4}))
+    lines = _aligned(rows, left={0, 3, 4})
+    for verdict in verdicts:
+        if not verdict.met and verdict.binding:
+            parts = ", ".join(f"{one.name.partition('/')[2]} {_short(one.median)} {one.unit}"
+                              for one in verdict.binding)
+            lines.append(textwrap.fill(f"What binds, {verdict.criterion.what}: {parts}", 100,
+                                       subsequent_indent="  "))
+    return "\n".join(lines)
 
 
 def _short(value: float) -> str:

@@ -25,6 +25,7 @@ from sim_bench.marked_lap import marked_lap
 from sim_bench.parts.step import bare_step_time
 from sim_bench.ros_run import RosRun, ros_run
 from sim_bench.settings import Settings
+from sim_bench.stages import PROFILE, stage_figures
 
 SIZE = (640, 480)
 WINDOWS, WINDOW = 5, 4.0  # s, wall
@@ -51,7 +52,8 @@ def send_circle(run: RosRun) -> Child:
 
 
 def _lockstep(run: RosRun, settings: Settings) -> list[Figure]:
-    launched = launch_course(run, *camera_arguments(*SIZE), *fast_arguments(lockstep=True))
+    launched = launch_course(run, *camera_arguments(*SIZE), *fast_arguments(lockstep=True),
+                             PROFILE)
     follower = Follower(run, SIZE[0])
     follower.wait_until_listening()
     simulator.unpause()
@@ -67,6 +69,7 @@ def _lockstep(run: RosRun, settings: Settings) -> list[Figure]:
         figure("lockstep.real_time_factor", "x", factors),
         figure("lockstep.frames", "frames/s", [len(frames) / wall]),
         figure("lockstep.frames_a_simulated_s", "frames", [len(frames) / (end - start)]),
+        *stage_figures("lockstep", launched.log, turn="send"),
     ]
 
 

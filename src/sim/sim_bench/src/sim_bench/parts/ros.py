@@ -5,7 +5,7 @@ window of wall time: one launch is cut into windows, together about a lap. A lap
 does it, with film and scoring, comes first. Frames are counted and
 dated in the lesson's own process (see `probes.follower`, `frame_age`). Processor time is that of
 each node's process and its children, in percent of one core; "spare" is what all that was
-started leaves of the machine's cores.
+started leaves of the machine's cores; a stage is what the simulator does for a frame, by its name.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from sim_bench.frame_age import frame_ages, real_time_factor
 from sim_bench.marked_lap import marked_lap
 from sim_bench.ros_run import RosRun, ros_run
 from sim_bench.settings import Settings
+from sim_bench.stages import PROFILE, stage_figures
 
 SIZES = {"1080p": (1920, 1080), "720p": (1280, 720)}
 WINDOWS, WINDOW = {"1080p": 7, "720p": 4}, 10.0  # s, wall
@@ -60,7 +61,7 @@ def _make_course(settings: Settings) -> list[Figure]:
 
 
 def _drive(run: RosRun, name: str, size: tuple[int, int], settings: Settings) -> list[Figure]:
-    launched = launch_course(run, *camera_arguments(*size))
+    launched = launch_course(run, *camera_arguments(*size), PROFILE)
     follower = Follower(run, size[0])
     follower.wait_until_driving()
     run.pause(WARM_UP)
@@ -71,7 +72,8 @@ def _drive(run: RosRun, name: str, size: tuple[int, int], settings: Settings) ->
         edges.append(time.monotonic())
     run.end(follower.child)
     run.end(launched)
-    return drive_figures(name, follower.seen(), edges, cpu)
+    return [*drive_figures(name, follower.seen(), edges, cpu),
+            *stage_figures(name, launched.log, turn="send")]
 
 
 def drive_figures(

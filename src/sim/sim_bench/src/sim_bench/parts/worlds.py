@@ -1,7 +1,7 @@
 """Worlds as public ones are made (made_worlds.py), at work over ROS with all sensors heard.
 
 The real-time factor of each while one other process hears it; of the road with signs for different
-numbers of triangles.
+numbers of triangles. Stages, and what a picture costs of them, are of one picture of one camera.
 """
 
 from __future__ import annotations
@@ -16,9 +16,11 @@ from sim_bench.figures import Figure, figure
 from sim_bench.made_worlds import MadeWorld
 from sim_bench.ros_run import START_LIMIT, RosRun, read_lines, ros_run
 from sim_bench.settings import Settings
+from sim_bench.stages import PROFILE, stage_figures
 
 TRIANGLES = (30_000, 100_000, 300_000, 1_000_000)
 RUNS, WINDOW, SETTLING = 3, 6.0, 3.0  # s, wall
+FRAME = ("draw", "read_back", "convert")  # stages of a picture
 
 WORLDS: dict[str, Callable[[Path], MadeWorld]] = {
     **{f"signs.{count}": lambda folder, count=count: made_worlds.signs(folder, count)
@@ -37,13 +39,19 @@ def measure(settings: Settings) -> list[Figure]:
     for name, make in WORLDS.items():
         settings.say(name)
         with ros_run(settings, f"worlds/{name}", roscore=False) as run:
-            factors = _real_time_factors(run, make(run.folder), settings)
-        found.append(figure(f"real_time_factor.{name}", "x", factors))
+            factors, stages = _at_work(run, name, make(run.folder), settings)
+        found += [figure(f"real_time_factor.{name}", "x", factors), *stages]
+        drawing = [stage.median for stage in stages if stage.name.rpartition(".")[2] in FRAME]
+        if drawing:
+            found.append(figure(f"frame.{name}", "ms", [sum(drawing)]))
     return found
 
 
-def _real_time_factors(run: RosRun, world: MadeWorld, settings: Settings) -> list[float]:
-    run.launch("gazebo_ros", "empty_world.launch", "gui:=false", f"world_name:={world.file}")
+def _at_work(run: RosRun, name: str, world: MadeWorld,
+             settings: Settings) -> tuple[list[float], list[Figure]]:
+    """Real-time factors, and what the stages cost in a frame."""
+    launched = run.launch("gazebo_ros", "empty_world.launch", "gui:=false", PROFILE,
+                          f"world_name:={world.file}")
     run.wait(simulator.models, START_LIMIT, "the simulator")
     if world.topics:
         heard = run.folder / "heard.txt"
@@ -55,7 +63,8 @@ def _real_time_factors(run: RosRun, world: MadeWorld, settings: Settings) -> lis
         began, start = time.monotonic(), simulator.simulated_time()
         run.pause(settings.seconds(WINDOW))
         factors.append((simulator.simulated_time() - start) / (time.monotonic() - began))
-    return factors
+    run.end(launched)
+    return factors, stage_figures(name, launched.log, turn="draw")
 
 
 def _all_heard(file: Path, topics: int) -> bool:
