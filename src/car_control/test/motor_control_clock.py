@@ -22,8 +22,10 @@ class MotorControlClock(unittest.TestCase):
         cls.car = FakeControllers()
         cls.commands = rospy.Publisher("motor_output", Twist, queue_size=1)
         wait_until(lambda: cls.commands.get_num_connections(), "motor_control")
-        wait_until(lambda: cls.clock.get_num_connections() >= 2, "who reads the clock")
-        cls.set_clock(100.0)
+        # A command from before the first time on the clock is old at once: it ends when the node
+        # has read that time.
+        cls.drive(1.0)
+        wait_until(lambda: cls.set_clock(100.0) or cls.car.stand(), "motor_control reads the clock")
 
     @classmethod
     def set_clock(cls, seconds):
@@ -36,11 +38,12 @@ class MotorControlClock(unittest.TestCase):
             self.set_clock(self.time + TICK)
             time.sleep(TICK)
 
-    def drive(self, speed):
+    @classmethod
+    def drive(cls, speed):
         message = Twist()
         message.linear.x = speed
-        self.commands.publish(message)
-        self.car.wait_for_speed(speed, f"{speed} m/s")
+        cls.commands.publish(message)
+        cls.car.wait_for_speed(speed, f"{speed} m/s")
 
     def test_the_time_out_is_simulated_time(self):
         self.drive(1.0)
