@@ -56,14 +56,14 @@ class Launched:
         self._required: dict[str, str] = {}  # child's name -> required process just reported dead
 
     def start_roscore(self) -> None:
-        """Start roscore and wait until it answers; this process's nodes are then its."""
+        """Start roscore and wait until it is up; this process's nodes are then its."""
         os.environ["ROS_MASTER_URI"] = self.master_uri
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         until = time.monotonic() + ROSCORE_TIME
-        while not _answers(self.master_uri):
+        while not is_up(self.master_uri):
             self.check(None)
             if time.monotonic() > until:
-                raise RunError(f"roscore did not answer within {ROSCORE_TIME:.0f} s",
+                raise RunError(f"roscore was not up within {ROSCORE_TIME:.0f} s",
                                self._children[0].last_lines())
             time.sleep(LOOK_PERIOD)
         self._turn.close()
@@ -204,9 +204,10 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
-def _answers(master_uri: str) -> bool:
+def is_up(master_uri: str) -> bool:
+    """Whether roscore has named its run; a roslaunch before that does it, and roscore then ends."""
     try:
-        code, _, _ = xmlrpc.client.ServerProxy(master_uri).getPid("/course_run")
+        code, _, named = xmlrpc.client.ServerProxy(master_uri).hasParam("/course_run", "/run_id")
     except (OSError, xmlrpc.client.Error):
         return False
-    return code == 1
+    return code == 1 and named

@@ -12,10 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import rosgraph
-
 from run_session.failure import RunError
-from run_session.launch import describe_exit
+from run_session.launch import describe_exit, is_up
 from run_session.processes import Child, Family
 from sim_bench.settings import Settings
 
@@ -39,9 +37,9 @@ class RosRun:
         self._children: list[Child] = []
 
     def start_roscore(self) -> None:
-        """Returns when the master answers."""
+        """Returns when it is up."""
         self.start("roscore", ["roscore", "-p", str(self.port)])
-        self.wait(rosgraph.is_master_online, MASTER_LIMIT, "roscore")
+        self.wait(lambda: is_up(self.master_uri), MASTER_LIMIT, "roscore")
 
     def launch(self, package: str, file: str, *arguments: str) -> Child:
         """roslaunch; it starts a master on our port if there is none."""
