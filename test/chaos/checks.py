@@ -15,7 +15,7 @@ NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 def wrong_words(said: str, code: int | None) -> Iterator[str]:
     """One who ends early does it with one line."""
-    if "Traceback" in said:
+    if _has_traceback(said):
         yield "the judge prints a traceback"
     lines = [line for line in said.splitlines() if line.startswith(COMPLAINT)
              and not line.startswith(NO_ENDING)]
@@ -24,16 +24,23 @@ def wrong_words(said: str, code: int | None) -> Iterator[str]:
 
 
 def wrong_logs(folder: Path) -> Iterator[str]:
-    """Nor does anybody else print a traceback; Python does, see `_is_pythons_own`."""
+    """Nor does anybody else print a traceback."""
     for path in sorted(folder.glob("*.log")):
-        parts = path.read_text(encoding="utf-8", errors="replace").split(TRACEBACK)
-        if not all(map(_is_pythons_own, parts, parts[1:])):
+        if _has_traceback(path.read_text(encoding="utf-8", errors="replace")):
             yield f"a traceback in {path.name}"
 
 
-def _is_pythons_own(before: str, after: str) -> bool:
-    """A traceback of a Ctrl-C while modules load, or of a log that the disk has no room for."""
+def _has_traceback(text: str) -> bool:
+    """But for those that are not ours to keep back."""
+    parts = text.split(TRACEBACK)
+    return not all(map(_is_anothers, parts, parts[1:]))
+
+
+def _is_anothers(before: str, after: str) -> bool:
+    """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
+    of Debian's rosversion, whose roscore was killed."""
     return (before.endswith("--- Logging error ---\n")
+            or after.lstrip().startswith('File "/usr/bin/rosversion"')
             or any(line.startswith("KeyboardInterrupt") for line in after.splitlines()))
 
 
