@@ -60,7 +60,7 @@ def test_the_driver_lets_go_of_the_last_picture(renderer, scene):
     renderer.draw(scene.frozen(), replace(VIEW, width=8, height=8))  # what stays is there now
     before = allocated()
     first = renderer.draw(scene.frozen(), VIEW).rgb
-    framebuffer = weakref.ref(renderer._targets[SIDE, SIDE]._framebuffer)
+    framebuffer = weakref.ref(renderer._targets[SIDE, SIDE, 0].framebuffer)
     renderer.trim()
     assert framebuffer() is None
     assert allocated() - before < first.nbytes + PICTURE / 4

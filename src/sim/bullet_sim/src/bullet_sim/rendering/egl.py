@@ -3,9 +3,9 @@
 Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
 once, faces that look away and links outside the picture not drawn, meshes in fewer triangles where
 half a pixel makes no difference (meshes/detail), near things first, light per corner where that is
-enough; no MSAA, no anisotropic filtering. Shadows are a pass of their own,
-only where something casts them (`shadows`). Back faces are not drawn, so that a camera inside its
-own housing sees out.
+enough; no MSAA, no anisotropic filtering, which a graphics card has (`target`). Shadows are a pass
+of their own, only where something casts them (`shadows`). Back faces are not drawn, so that a
+camera inside its own housing sees out.
 """
 
 from __future__ import annotations
@@ -33,7 +33,6 @@ from bullet_sim.rendering.gpu_surfaces import (
     SurfaceStore,
     Triangles,
 )
-from bullet_sim.rendering.own_memory import own_array, own_blocks
 from bullet_sim.rendering.projection import (
     metres_from_depth,
     projection_matrix,
@@ -43,6 +42,7 @@ from bullet_sim.rendering.rectangles import Scissor, tiles
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
+from bullet_sim.rendering.target import Quality, Target, card_quality, quality_of
 from bullet_sim.rendering.visibility import Outlines, Visibility
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
@@ -86,7 +86,8 @@ class _Prepared:
 class EglRenderer:
     """See `renderer.Renderer`."""
 
-    def __init__(self, profiler: Profiler | None = None) -> None:
+    def __init__(self, profiler: Profiler | None = None, card: bool = False) -> None:
+        """`card`: pictures as a graphics card makes them, whatever draws."""
         self._profiler = profiler or Profiler()
         self._context = _open_context()
         with self._context:  # leaving it releases the context, so that any thread may draw
@@ -95,23 +96,26 @@ class EglRenderer:
             self.name = f"EGL, {info['GL_RENDERER']}"
             self.largest_px = min(LARGEST_PX, info["GL_MAX_RENDERBUFFER_SIZE"],
                                   *info["GL_MAX_VIEWPORT_DIMS"])
-            self._store = SurfaceStore(self._context)
+            choose = card_quality if card else quality_of
+            self._quality: Quality = choose(self._context)
+            self._store = SurfaceStore(self._context, self._quality.anisotropy)
             self._sky = Sky(self._context)
             self._shadow_pass = ShadowPass(self._context)
-            self._smallest = _Target(self._context, (1, 1))
+            self._smallest = Target(self._context, (1, 1))
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
-        self._targets: dict[tuple[int, int], _Target] = {}
+        self._targets: dict[tuple[int, int, int], Target] = {}
         self._finish = _finish_without_gil() or self._context.finish
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if wanted, of one pass."""
         measure = self._profiler.measure
         with self._context:
-            target = self._target(view.width, view.height)
+            target = self._target(view.width, view.height, depth)
             with measure("draw"):
                 self._store.show(scene.images)
                 prepared = self._prepare(scene)
                 self._submit(scene, prepared, view, target, _UNSEEN / 2 if depth else _UNSEEN)
+                target.end(depth)
                 self._finish()
             with measure("read back"):
                 rgba, raw = target.read(depth)
@@ -126,7 +130,7 @@ class EglRenderer:
         self._targets.clear()
         with self._context:
             # Drivers keep what was drawn in last, deleted or not, until something else is.
-            self._smallest.start(self._context, (0.0, 0.0, 0.0))
+            self._smallest.start((0.0, 0.0, 0.0))
             self._finish()
             self._context.gc()
 
@@ -137,11 +141,13 @@ class EglRenderer:
             self._context.gc()
         self._context.release()
 
-    def _target(self, width: int, height: int) -> _Target:
-        size = (width, height)
-        if size not in self._targets:
-            self._targets[size] = _Target(self._context, size)
-        return self._targets[size]
+    def _target(self, width: int, height: int, depth: bool) -> Target:
+        samples = 0 if depth else self._quality.samples  # a mean of two depths is the depth of none
+        key = (width, height, samples)
+        if key not in self._targets:
+            self._targets[key] = Target(self._context, (width, height), samples,
+                                        self._quality.pixel_buffers)
+        return self._targets[key]
 
     def _prepare(self, scene: SceneState) -> _Prepared:
         prepared = self._prepared.pop(scene.version, None) or self._build(scene)
@@ -198,7 +204,7 @@ class EglRenderer:
         return item.coarser[place]
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
-                target: _Target, unseen: float) -> None:
+                target: Target, unseen: float) -> None:
         """`unseen`: px that what is drawn may be away from the mesh."""
         clip_world = _UPSIDE_DOWN @ projection_matrix(view) @ view_matrix(view.pose)
         eye = np.array([*view.pose.position, 1.0], np.float32)
@@ -207,7 +213,7 @@ class EglRenderer:
         nodes = list(scene.nodes.values())
         seen = prepared.outlines.seen(nodes, clip_world, eye[:3])
         places = _shadow_places(prepared, nodes, seen, clip_world)
-        target.start(self._context, scene.description.background)
+        target.start(scene.description.background)
         see_through = []
         for index in seen.order:
             node, clip_node = nodes[index], seen.clip_node[index]
@@ -218,67 +224,35 @@ class EglRenderer:
                     self._within(item, unseen * depth / view.focal_length_px),
                     places.get(item.number), view)]
             self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
-            target.render(node, [p for p in pieces if p[0].surface.opaque], clip_node)
+            _render(target, node, [p for p in pieces if p[0].surface.opaque], clip_node)
             see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))
         if scene.description.sky:
             self._context.polygon_offset = (0.0, 0.0)
             self._sky.draw(view)
         if any(pieces for _, pieces, _ in see_through):
-            target.blend(self._context)
+            target.blend()
             self._context.polygon_offset = (0.0, 0.0)
             for what in reversed(see_through):
-                target.render(*what)
+                _render(target, *what)
 
 
-class _Target:
-    """Where one size of picture is drawn, and read back."""
-
-    def __init__(self, context: moderngl.Context, size: tuple[int, int]):
-        with own_blocks():
-            colour, depth = context.renderbuffer(size, 4), context.depth_renderbuffer(size)
-        self._framebuffer = context.framebuffer([colour], depth)
-        self._rgba = own_array((size[1], size[0], 4))
-
-    def start(self, context: moderngl.Context, background: tuple[float, ...]) -> None:
-        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        context.front_face = "cw"  # upside down
-        context.cull_face = "back"
-        self._framebuffer.use()
-        self._framebuffer.depth_mask = True
-        self._framebuffer.clear(*background[:3], 1.0)
-
-    def blend(self, context: moderngl.Context) -> None:
-        """From here on surfaces mix with what is there, and leave no depth of their own."""
-        context.enable(moderngl.BLEND)
-        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self._framebuffer.depth_mask = False
-
-    def render(self, node: Node, pieces: list[_Piece], clip_node: np.ndarray) -> None:
-        """Draw surfaces of one node."""
-        if not pieces:
-            return
-        model = node.matrix.T.astype(np.float32).tobytes()
-        projection_model = clip_node.T.astype(np.float32).tobytes()
-        for item, (program, array), scissor in pieces:
-            program.model.write(model)
-            program.projection_model.write(projection_model)
-            item.surface.material.bind_to_uniform_block(SURFACE_BINDING)
-            if item.surface.texture is not None:
-                item.surface.texture.use(IMAGE_UNIT)
-            if scissor is not None:
-                self._framebuffer.scissor = scissor
-            array.render()
-            if scissor is not None:
-                self._framebuffer.scissor = None
-
-    def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
-        """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if wanted."""
-        self._framebuffer.read_into(self._rgba, components=4, alignment=1)
-        if not depth:
-            return self._rgba, None
-        raw = np.empty(self._rgba.shape[:2], np.float32)
-        self._framebuffer.read_into(raw, components=1, attachment=-1, alignment=1, dtype="f4")
-        return self._rgba, raw
+def _render(target: Target, node: Node, pieces: list[_Piece], clip_node: np.ndarray) -> None:
+    """Draw surfaces of one node."""
+    if not pieces:
+        return
+    model = node.matrix.T.astype(np.float32).tobytes()
+    projection_model = clip_node.T.astype(np.float32).tobytes()
+    for item, (program, array), scissor in pieces:
+        program.model.write(model)
+        program.projection_model.write(projection_model)
+        item.surface.material.bind_to_uniform_block(SURFACE_BINDING)
+        if item.surface.texture is not None:
+            item.surface.texture.use(IMAGE_UNIT)
+        if scissor is not None:
+            target.framebuffer.scissor = scissor
+        array.render()
+        if scissor is not None:
+            target.framebuffer.scissor = None
 
 
 def _open_context() -> moderngl.Context:

@@ -81,8 +81,9 @@ class Surface:
 class SurfaceStore:
     """Uploads of link shapes, kept as long as some scene has the shape."""
 
-    def __init__(self, context: moderngl.Context):
+    def __init__(self, context: moderngl.Context, anisotropy: float = 1.0):
         self._context = context
+        self._anisotropy = anisotropy  # of textures seen at a flat angle
         self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
         self._triangles: WeakValueDictionary[bytes, Triangles] = WeakValueDictionary()
         self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
@@ -207,6 +208,8 @@ class SurfaceStore:
         texture = self._textures[path] = self._context.texture((width, height), 4, image)
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        if self._anisotropy > 1:
+            texture.anisotropy = self._anisotropy
         texture.repeat_x = texture.repeat_y = path not in self._images
         return texture
 

@@ -1,0 +1,102 @@
+"""Where one size of picture is drawn, and read back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from bullet_sim.rendering.own_memory import own_array, own_blocks
+
+_SOFTWARE = ("llvmpipe", "softpipe", "swr")  # Mesa's, in GL_RENDERER
+_SAMPLES, _ANISOTROPY = 4, 8.0  # OGRE's usual FSAA in Gazebo; enough for a floor at a flat angle
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What of a picture costs nothing on a graphics card, and ten times a frame in software."""
+
+    samples: int = 0  # a pixel, at edges; 0: no anti-aliasing
+    anisotropy: float = 1.0  # of textures
+    pixel_buffers: bool = False  # read back while nobody waits with Python's lock
+
+
+def quality_of(context: moderngl.Context) -> Quality:
+    """As fits the device."""
+    if context.info["GL_RENDERER"].lower().startswith(_SOFTWARE):
+        return Quality()
+    return card_quality(context)
+
+
+def card_quality(context: moderngl.Context) -> Quality:
+    """As a graphics card has it."""
+    return Quality(min(_SAMPLES, context.max_samples), min(_ANISOTROPY, context.max_anisotropy),
+                   pixel_buffers=True)
+
+
+class Target:
+    """Colour and depth of one size of picture. Samples of a pixel become its colour at the end."""
+
+    def __init__(self, context: moderngl.Context, size: tuple[int, int], samples: int = 0,
+                 pixel_buffers: bool = False):
+        self._context = context
+        with own_blocks():
+            self.framebuffer = self._single = _framebuffer(context, size, 0)
+            if samples:
+                self.framebuffer = _framebuffer(context, size, samples)
+        width, height = size
+        self._rgba = own_array((height, width, 4))
+        self._buffers = [context.buffer(reserve=4 * width * height) for _ in range(2)
+                         ] if pixel_buffers else []
+
+    def start(self, background: tuple[float, ...]) -> None:
+        """Begin a picture."""
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self._context.front_face = "cw"  # upside down
+        self._context.cull_face = "back"
+        self.framebuffer.use()
+        self.framebuffer.depth_mask = True
+        self.framebuffer.clear(*background[:3], 1.0)
+
+    def blend(self) -> None:
+        """From here on surfaces mix with what is there, and leave no depth of their own."""
+        self._context.enable(moderngl.BLEND)
+        self._context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        self.framebuffer.depth_mask = False
+
+    def end(self, depth: bool) -> None:
+        """Nothing more will be drawn; what is read then is on its way."""
+        if self.framebuffer is not self._single:
+            self._context.copy_framebuffer(self._single, self.framebuffer)
+        for buffer, read in zip(self._buffers, self._reads(depth)):
+            read(buffer)
+
+    def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
+        """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if wanted."""
+        raw = np.empty(self._rgba.shape[:2], np.float32) if depth else None
+        arrays = [self._rgba] if raw is None else [self._rgba, raw]
+        if self._buffers:
+            for buffer, array in zip(self._buffers, arrays):
+                buffer.read_into(array)
+        else:
+            for array, read in zip(arrays, self._reads(depth)):
+                read(array)
+        return self._rgba, raw
+
+    def _reads(self, depth: bool) -> list[Callable[[moderngl.Buffer | np.ndarray], None]]:
+        """Of colour, and of depth if wanted."""
+        def colour(into: moderngl.Buffer | np.ndarray) -> None:
+            self._single.read_into(into, components=4, alignment=1)
+
+        def depths(into: moderngl.Buffer | np.ndarray) -> None:
+            self._single.read_into(into, components=1, attachment=-1, alignment=1, dtype="f4")
+
+        return [colour, depths] if depth else [colour]
+
+
+def _framebuffer(context: moderngl.Context, size: tuple[int, int],
+                 samples: int) -> moderngl.Framebuffer:
+    return context.framebuffer([context.renderbuffer(size, 4, samples=samples)],
+                               context.depth_renderbuffer(size, samples=samples))

@@ -1,0 +1,74 @@
+"""What only graphics cards do, on whatever draws here: anti-aliasing, flat angles, reading back."""
+
+import math
+
+import cv2
+import numpy as np
+import pytest
+
+from bullet_sim.description import Box, Material, Plane, Visual
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.egl import EglRenderer
+from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.scene import Scene
+
+WHITE = Material(diffuse=(1.0, 1.0, 1.0, 1.0), lighting=False)
+ROW = 130  # of a picture that ends at 240: 8 m away, where a pixel is 30 times as deep as wide
+VIEW = CameraView(320, 240, math.pi / 3, 0.05, 50.0, Pose((-2.0, 0.0, 0.3)))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    renderer = EglRenderer()
+    yield renderer
+    renderer.close()
+
+
+@pytest.fixture(scope="module")
+def card():
+    renderer = EglRenderer(card=True)
+    yield renderer
+    renderer.close()
+
+
+def leaning_box():
+    """White before black; its edges are not along rows of pixels."""
+    scene = Scene()
+    scene.add_link(("box", "link"), (Visual("v", Box((0.8, 0.8, 0.8)), material=WHITE),),
+                   Pose.from_xyz_rpy((0.0, 0.0, 0.3), (0.3, 0.0, 0.0)))
+    return scene.frozen()
+
+
+def test_edges_are_smooth_and_all_else_is_the_same(plain, card):
+    sharp, smooth = (renderer.draw(leaning_box(), VIEW).rgb for renderer in (plain, card))
+    assert len(np.unique(sharp[..., 0])) == 2
+    assert len(np.unique(smooth[..., 0])) == 5  # none to four of four samples
+    near_edges = cv2.dilate(cv2.Canny(sharp, 50, 100), np.ones((3, 3))) > 0
+    assert np.array_equal(sharp[~near_edges], smooth[~near_edges])
+    assert not np.array_equal(sharp, smooth)
+
+
+def test_a_picture_with_depth_is_as_in_software(plain, card):
+    there, here = (renderer.draw(leaning_box(), VIEW, depth=True) for renderer in (plain, card))
+    assert np.array_equal(there.rgb, here.rgb)
+    assert np.array_equal(there.depth, here.depth)
+
+
+def test_equal_scenes_give_equal_bits(card):
+    first = card.draw(leaning_box(), VIEW).rgb
+    card.draw(leaning_box(), VIEW, depth=True)
+    assert np.array_equal(first, card.draw(leaning_box(), VIEW).rgb)
+
+
+def test_stripes_on_a_floor_are_seen_farther_away(tmp_path, plain, card):
+    stripes = np.zeros((256, 256, 3), np.uint8)
+    for first in range(4):
+        stripes[first::16] = 255
+    cv2.imwrite(str(tmp_path / "stripes.png"), stripes)
+    floor = Material(lighting=False, texture=str(tmp_path / "stripes.png"))
+    scene = Scene()
+    scene.add_link(("floor", "link"), (
+        Visual("v", Plane((0.0, 0.0, 1.0), (20.0, 20.0)), material=floor),), Pose())
+    contrast = [float(renderer.draw(scene.frozen(), VIEW).rgb[ROW, :, 0].std())
+                for renderer in (plain, card)]
+    assert contrast[1] > 1.5 * contrast[0]
