@@ -196,6 +196,15 @@ def test_a_tight_bend_is_a_warning(make_track):
     assert code == 0 and "the racecar needs 0.95 m" in output
 
 
+def test_what_is_no_picture_leaves_none(make_track, tmp_path):
+    for content, message in ((b"", "is empty"), (b"no picture", "is no picture")):
+        (tmp_path / "bad.png").write_bytes(content)
+        code, output, error = make_track(tmp_path / "bad.png")
+        assert (code, output, error.count("\n")) == (1, "", 1)
+        assert message in error and "marked" not in error
+    assert not list(tmp_path.rglob("*_problem.png"))
+
+
 WRONG = [
     ((), "give a picture"),
     (("--random", "1", "a.png"), "one of them"),

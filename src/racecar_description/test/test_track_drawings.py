@@ -175,7 +175,7 @@ def test_files_that_are_no_pictures(tmp_path):
         ("small.png", cv2.imencode(".png", drawn.blank((40, 40)))[1].tobytes(), "too small"),
     ]:
         (tmp_path / name).write_bytes(data)
-        with pytest.raises(DrawingError, match=message):
+        with pytest.raises(TrackError, match=message):
             from_drawing(tmp_path / name, Wishes("bad"))
     with pytest.raises(TrackError, match="No such file"):
         from_drawing(tmp_path / "none.png", Wishes("bad"))

@@ -39,7 +39,10 @@ NAMED_COLOURS = {  # RGB
 
 
 def read_picture(path: Path) -> np.ndarray:
-    """The picture as BGR uint8 on white, turned as its camera says, at most MOST_PX a side."""
+    """The picture as BGR uint8 on white, turned as its camera says, at most MOST_PX a side.
+
+    TrackError where there is none, DrawingError of one that is too small.
+    """
     try:
         data = np.frombuffer(path.read_bytes(), np.uint8)
     except OSError as error:
@@ -47,7 +50,7 @@ def read_picture(path: Path) -> np.ndarray:
     picture = _decode(data) if data.size else None
     if picture is None:
         what = "is no picture that can be read" if data.size else "is empty"
-        raise DrawingError(f"{path}: {what}; save it as PNG or JPEG", None)
+        raise TrackError(f"{path}: {what}; save it as PNG or JPEG")
     height, width = picture.shape[:2]
     if min(height, width) < LEAST_PX:
         size = f"{width}x{height} px"

@@ -21,12 +21,9 @@ class Mark:
 
 
 class DrawingError(TrackError):
-    """A drawing without a usable road; `picture` is the BGR picture read, None if there was none.
+    """A drawing without a usable road; the marks are in pixels of `picture`, BGR as it was read."""
 
-    The marks are in the pixels of `picture`.
-    """
-
-    def __init__(self, text: str, picture: np.ndarray | None, marks: list[Mark] | None = None):
+    def __init__(self, text: str, picture: np.ndarray, marks: list[Mark] | None = None):
         super().__init__(text)
         self.picture = picture
         self.marks = marks or []

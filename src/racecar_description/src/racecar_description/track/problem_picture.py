@@ -16,8 +16,6 @@ LINE_PX = 26
 def draw_problem(error: DrawingError) -> np.ndarray:
     """BGR: the drawing, faded, with its marks in red and the message below."""
     picture = error.picture
-    if picture is None:
-        picture = np.full((LEAST_PX // 3, LEAST_PX, 3), PAPER, np.uint8)
     larger = max(1.0, LEAST_PX / max(picture.shape[:2]))
     size = (round(picture.shape[1] * larger), round(picture.shape[0] * larger))
     page = cv2.resize(picture, size, interpolation=cv2.INTER_NEAREST)
