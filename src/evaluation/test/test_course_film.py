@@ -76,6 +76,15 @@ def test_a_full_disk_is_said(tmp_path, make):
     assert "No space left" in said or "is the disk full?" in said
 
 
+def test_a_film_has_its_name_when_it_is_whole(tmp_path):
+    film = FilmFile(tmp_path / "run.mp4")
+    film._add(PAGE, 5)
+    assert not (tmp_path / "run.mp4").exists()  # whoever is killed now leaves none
+    assert film.close() == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["run.mp4"]
+    assert cv2.VideoCapture(str(tmp_path / "run.mp4")).read()[0]
+
+
 FILMS_ON_A_SMALL_DISK = """
 import subprocess, sys
 from pathlib import Path

@@ -66,8 +66,7 @@ class LaneDrives(LapTrial):
 
     def score(self, record: dict) -> LaneDrive:
         case = self._case
-        found = from_report(
-            record, case.method, case.seed, self._outing.disturbance, case.people)
+        found = from_report(record, case.method, case.seed, self._outing.disturbance, case.people)
         if not case.people:
             return found
         recording = read_recording(self._outing.out / "poses.txt")

@@ -118,8 +118,7 @@ class LocalisationTrial(protocol.ReportedTrial):
         try:
             _, map_file = write_map(session.out / "map", self._ground.walls)
         except (OSError, MapFileError) as error:
-            raise RunError(
-                f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
+            raise RunError(f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
         rig = Rig(self._options, self._ground, session.launched("robot"), str(map_file),
                   session.progress)
         session.at_end(rig.watch.stop)

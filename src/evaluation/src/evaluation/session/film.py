@@ -33,7 +33,8 @@ class FilmFile:
     """What all films share; those that film a drive draw its pages and add them."""
 
     def __init__(self, path: Path):
-        self._path = path
+        # What is not whole has a name that says so, whoever is killed meanwhile.
+        self._path, self._part = path, path.with_suffix(f".part{path.suffix}")
         self._ended, self._lock = threading.Event(), threading.Lock()
         self._writer: FfmpegEncoder | OpenCvEncoder | None = None
         self.codec = ""
@@ -62,7 +63,9 @@ class FilmFile:
                 if self._writer is not None:
                     self._writer.kill()
                 self.codec = ""
-                self._path.unlink(missing_ok=True)
+                self._part.unlink(missing_ok=True)
+            elif self._writer is not None:
+                self._part.replace(self._path)
         return fault
 
     def _add(self, page: np.ndarray, times: int = 1) -> None:
@@ -74,7 +77,7 @@ class FilmFile:
                 self._path.unlink(missing_ok=True)
                 height, width, _ = page.shape
                 make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
-                self._writer = make(self._path, width, height, FILM_RATE_HZ)
+                self._writer = make(self._part, width, height, FILM_RATE_HZ)
                 self.codec = self._writer.codec
             for _ in range(times):
                 self._writer.write(page)

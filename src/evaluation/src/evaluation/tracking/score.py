@@ -168,8 +168,7 @@ class TrackScorer:
         ahead = np.array([math.cos(sample.yaw), math.sin(sample.yaw)])
         target = self.task.target(sample.time)
         from_camera = target - (sample.x, sample.y) - CAMERA_X * ahead
-        bearing = math.remainder(
-            math.atan2(from_camera[1], from_camera[0]) - sample.yaw, math.tau)
+        bearing = math.remainder(math.atan2(from_camera[1], from_camera[0]) - sample.yaw, math.tau)
         from_axle = target - (sample.x, sample.y)
         along, across = abs(from_axle @ ahead), abs(from_axle @ (-ahead[1], ahead[0]))
         outside = np.maximum((along, across) - PARTS, 0.0)
