@@ -54,6 +54,7 @@ def test_who_ends_early_says_one_line(chaos, said, code, faults):
     (f"{TRACEBACK}  except KeyboardInterrupt:\nValueError\n", 1),
     (f"{TRACEBACK}KeyboardInterrupt: KeyboardInterrupt\n{TRACEBACK}ValueError\n", 1),
     (f'{TRACEBACK}  File "/usr/bin/rosversion", line 33\nBrokenPipeError\n', 0),
+    (f"{TRACEBACK}{TRACEBACK}KeyboardInterrupt\nKeyboardInterrupt\n", 0),  # of two at once
     (f"--- Logging error ---\n{TRACEBACK}OSError\n", 0), ("all is well\n", 0)])
 def test_a_traceback_in_a_log_is_noticed(chaos, tmp_path, said, faults):
     (tmp_path / "roslaunch.log").write_text(said)

@@ -32,22 +32,21 @@ def wrong_logs(folder: Path) -> Iterator[str]:
 
 def _has_traceback(text: str) -> bool:
     """But for those that are not ours to keep back."""
-    parts = text.split(TRACEBACK)
-    return not all(map(_is_anothers, parts, parts[1:]))
+    return text.count(TRACEBACK) > sum(map(_is_anothers, text.splitlines()))
 
 
-def _is_anothers(before: str, after: str) -> bool:
-    """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
-    of Debian's rosversion, whose roscore was killed."""
-    return (before.endswith("--- Logging error ---\n")
-            or after.lstrip().startswith('File "/usr/bin/rosversion"')
-            or any(line.startswith("KeyboardInterrupt") for line in after.splitlines()))
+def _is_anothers(line: str) -> bool:
+    """Each stands for a traceback of Python's, of a Ctrl-C while modules load or of a log that the
+    disk has no room for, or of Debian's rosversion, whose roscore was killed."""
+    return line.startswith(("KeyboardInterrupt", "--- Logging error ---",
+                            '  File "/usr/bin/rosversion"'))
 
 
 def half_files(folder: Path) -> Iterator[str]:
     """Results that are not whole."""
     for path in sorted(folder.rglob("*")):
-        if path.parent.name != "log" and path.is_file() and not _is_whole(path):
+        named_so = path.parent.name == "log" or ".part" in path.suffixes
+        if path.is_file() and not named_so and not _is_whole(path):
             yield f"{path.name} is not whole"
 
 
