@@ -29,6 +29,7 @@ Message = TypeVar("Message")  # with a header
 UNKNOWN_VARIANCE = 1e12
 # m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
 LARGEST = 1e6
+STRIP = 16  # rows of a cloud at once, so that what lies between stays in the processor's cache
 
 
 def stamp(seconds: float) -> rospy.Time:
@@ -173,13 +174,15 @@ def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: flo
                   frame: str) -> ArrayPointCloud2:
     """Organised cloud in optical axes (x right, y down, z forward); NaN where depth is NaN."""
     height, width = depth.shape
-    columns = (np.arange(width, dtype=np.float32) - (width - 1) / 2) / focal_px
-    rows = (np.arange(height, dtype=np.float32) - (height - 1) / 2) / focal_px
-    colours = cv2.cvtColor(rgb, cv2.COLOR_RGB2BGRA).view("<u4")[..., 0]
-    colours &= 0xFFFFFF
-    points = cv2.merge([depth * columns.astype(np.float32),
-                        depth * rows.astype(np.float32)[:, None], depth,
-                        colours.view(np.float32)])
+    columns = (np.arange(width, dtype=np.float32) - (width - 1) / 2) / np.float32(focal_px)
+    rows = (np.arange(height, dtype=np.float32)[:, None] - (height - 1) / 2) / np.float32(focal_px)
+    points = np.empty((height, width, 4), np.float32)
+    for top in range(0, height, STRIP):
+        strip = slice(top, top + STRIP)
+        colours = cv2.cvtColor(rgb[strip], cv2.COLOR_RGB2BGRA).view("<u4")[..., 0]
+        colours &= 0xFFFFFF
+        z = depth[strip]
+        cv2.merge([z * columns, z * rows[strip], z, colours.view(np.float32)], points[strip])
     return stamped(ArrayPointCloud2(points, ("x", "y", "z", "rgb"),
                               is_dense=not np.isnan(depth).any()), time, frame)
 
