@@ -24,7 +24,7 @@ from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings
 
 SIZES = ((640, 480), (1920, 1080))  # px
-DEPTH_FRAME = 1920 * 1080 * (3 + 4 + 32)  # bytes of colour, depth and points
+DEPTH_FRAME = 1920 * 1080 * (3 + 4 + 16)  # bytes of colour, depth and points
 RUNS, PICTURES = 5, 20
 LIMIT = 60.0  # s, wall, for an answer
 
