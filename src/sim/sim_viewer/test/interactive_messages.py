@@ -50,7 +50,8 @@ def moved(name: str, pose: Pose, frame: str = "map") -> InteractiveMarkerPose:
 
 
 def scene() -> list[InteractiveMarker]:
-    """One to push, in odom, which is 0.5 m to the right; one to turn, one to click, one to move."""
+    """One to push, in odom, which is 0.5 m to the right; one to turn, one to click, one to move,
+    and one with a menu."""
     mode = InteractiveMarkerControl
     entries = [MenuEntry(id=1, title="More"), MenuEntry(id=2, parent_id=1, title="Home"),
                MenuEntry(id=3, title="Shell", command_type=MenuEntry.ROSRUN)]
@@ -63,6 +64,8 @@ def scene() -> list[InteractiveMarker]:
                menu_entries=entries),
         handle("moved", control(mode.MOVE_PLANE, "plane", orientation=TO_Z, markers=[cube()]),
                pose=at(-2.0, 1.5)),
+        handle("asked", control(mode.MENU, "menu", description="Options"), pose=at(0.5, -2.8),
+               menu_entries=entries),
     ]
 
 

@@ -48,7 +48,7 @@ class InteractivePage(unittest.TestCase):
         """A page that shows all markers, seen from 10 m above."""
         url = wait_until(lambda: rospy.get_param(parameter, ""), "the page's address")
         page = cls.browser.open(url + "#rviz")
-        page.wait_for("window.rviz?.session.displays[0].shown?.group.children.length === 6")
+        page.wait_for("window.rviz?.session.displays[0].shown?.group.children.length === 7")
         page.evaluate("window.rviz.viewport.orbit([0, 0, 0], 10, -Math.PI / 2, 1.57)")
         return page
 
@@ -147,6 +147,14 @@ class InteractivePage(unittest.TestCase):
         self.assertEqual((chosen.marker_name, chosen.menu_entry_id), ("clicked", 2))
         self.assertFalse(self.page.evaluate("!!document.querySelector('.rviz-menu')"))
 
+    def test_4_words_are_clicked_for_their_menu(self):
+        self.drag((0.5, -1.625, 0.0), (0.5, -1.625, 0.0))  # above the marker, as one sees it
+        self.page.wait_for("!!document.querySelector('.rviz-menu')")
+        self.assertEqual(self.page.evaluate(
+            "document.querySelector('.rviz-menu span').textContent"), "More")
+        self.drag((0.5, -0.5, 0.0), (0.5, -0.5, 0.0))  # beside it
+        self.assertFalse(self.page.evaluate("!!document.querySelector('.rviz-menu')"))
+
     def test_5_beside_the_handles_the_camera_is_moved(self):
         look = "window.rviz.viewport._camera.position.toArray().join()"
         before = self.page.evaluate(look)
@@ -160,7 +168,7 @@ class InteractivePage(unittest.TestCase):
         self.server.erase("moved")
         self.server.applyChanges()
         wait_until(lambda: abs(self.place("turned")[1] - 2.0) < TOLERANCE, "the marker there")
-        self.page.wait_for("window.rviz.session.displays[0].shown.group.children.length === 5")
+        self.page.wait_for("window.rviz.session.displays[0].shown.group.children.length === 6")
         self.server.insert(scene()[3], self.take)
         self.server.applyChanges()
 

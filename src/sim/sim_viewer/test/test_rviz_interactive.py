@@ -51,10 +51,11 @@ def test_each_control_has_its_parts_and_the_page_learns_what_it_can_do():
     view.places["odom"] = Pose((0.5, 0.0, 0.0))
     made, parts = shown(init(0, *scene()), view=view)
     head = parts[0].fields
-    assert names(parts) == ["pushed", "turned", "clicked", "moved"]
+    assert names(parts) == ["pushed", "turned", "clicked", "moved", "asked"]
     assert owned(parts) == {(0, 0): ["cylinder", "cone"], (0, 2): ["texts"],
-                            (1, 0): ["triangles"], (2, 0): ["cube"], (3, 0): ["cube"]}
-    pushed, _, clicked, _ = head["markers"]
+                            (1, 0): ["triangles"], (2, 0): ["cube"], (3, 0): ["cube"],
+                            (4, 0): ["texts"]}
+    pushed, _, clicked, *_ = head["markers"]
     assert pushed["place"][:3] == [0.5, 0.0, 0.0] and pushed["pose"][:2] == [-0.5, 1.0]
     assert (pushed["controls"][0]["name"], pushed["controls"][0]["mode"]) == (
         "along", Mode.MOVE_AXIS)
@@ -198,6 +199,7 @@ def test_the_page_moves_a_marker_until_its_server_does():
     made.drag("s\na", Pose((1.0, 0.0, 0.0)))
     made.drag("s\ngone", IDENTITY)
     assert made.draw(MadeUpView())[0].fields["markers"][0]["pose"][0] == 1.0
+    made.drag("s\na", Pose((2.0, 0.0, 0.0)))  # which is answered before the next look
     made.take(update(1, poses=[moved("a", at(0.5, 0.0))]), None, 0.0)
     assert made.draw(MadeUpView())[0].fields["markers"][0]["pose"][0] == 0.5
 

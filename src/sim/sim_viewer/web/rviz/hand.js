@@ -2,10 +2,12 @@
 
 import * as THREE from "../vendor/three.module.min.js";
 import { DRAGS } from "./dragging.js";
+import { LinesPart } from "./lines.js";
 import { matrixOf } from "./look.js";
 import { Menu } from "./menu.js";
 
 const NONE = 0, MENU = 1, BUTTON = 2; // modes of a control
+const GREY = [128, 128, 128, 255];
 const ALIVE_MS = 250; // between words that a marker is still held
 
 export class Hand {
@@ -121,16 +123,15 @@ export class Hand {
 
   /** rviz's visual aids: a line between two places while something is dragged. */
   _help(marker, ends) {
-    this._line?.removeFromParent();
-    this._line?.geometry.dispose();
-    this._line?.material.dispose();
+    this._line?.object.removeFromParent();
+    this._line?.dispose();
     this._line = null;
     if (!marker || !ends || !this._shown.aids) return;
-    this._line = new THREE.Line(
-      new THREE.BufferGeometry().setFromPoints(ends).applyMatrix4(matrixOf(marker.place)),
-      new THREE.LineBasicMaterial({ color: 0x808080 }));
-    this._line.raycast = () => {};
-    this._viewport.root.add(this._line);
+    const frame = matrixOf(marker.place);
+    this._line = new LinesPart();
+    this._line.update({ width: 0, arrays: { colour: new Uint8Array([...GREY, ...GREY]),
+      position: new Float32Array(ends.flatMap((end) => end.applyMatrix4(frame).toArray())) } });
+    this._viewport.root.add(this._line.object);
   }
 
   _tell(event, point) {

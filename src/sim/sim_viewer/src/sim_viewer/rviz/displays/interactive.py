@@ -36,6 +36,7 @@ class Interactive(Drawer):
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
         """All markers of a server, or changes. Problem for those that cannot be taken."""
+        self._follow_drags()  # the message may be what their server answers
         if len(message.server_id) > LONGEST_NAME:
             raise Problem(f"the server's id {message.server_id:.40} is longer than {LONGEST_NAME}")
         self._crowded = (message.server_id not in self._servers
