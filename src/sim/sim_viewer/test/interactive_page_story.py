@@ -163,6 +163,19 @@ class InteractivePage(unittest.TestCase):
         self.page.evaluate("window.rviz.viewport.orbit([0, 0, 0], 10, -Math.PI / 2, 1.57)")
         self.assertEqual(self.heard, [])
 
+    def test_5_the_display_is_added_by_hand(self):
+        self.page.evaluate("""
+            document.querySelector('#rviz-kind').value = 'rviz/InteractiveMarkers';
+            document.querySelector('#rviz-add').click();
+            (box => { box.value = '/handles/update'; box.dispatchEvent(new Event('change')); })(
+                document.querySelector('[data-name=InteractiveMarkers] .topic'))""")
+        self.page.wait_for("window.rviz.session.displays[1].shown?.group.children.length === 7")
+        self.page.wait_for("window.rviz.session.displays[1].statuses.some("
+                           "([name, level]) => name.startsWith('/') && level === 'ok')")
+        self.page.evaluate("document.querySelector('[data-name=InteractiveMarkers] .remove')"
+                           ".click()")
+        self.assertEqual(self.page.evaluate("window.rviz.session.displays.length"), 1)
+
     def test_6_the_server_moves_and_erases_a_marker(self):
         self.server.setPose("turned", made_up.at(2.0, 2.0))
         self.server.erase("moved")

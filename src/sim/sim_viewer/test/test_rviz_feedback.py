@@ -12,9 +12,10 @@ from sim_viewer.context import Context, Node
 from sim_viewer.options import Options
 from sim_viewer.registry import Refused, find_operation
 from sim_viewer.rviz.display import Displays
-from sim_viewer.rviz.feedback import rviz_feedback
+from sim_viewer.rviz.feedback import rviz_feedback, rviz_menu
 from sim_viewer.rviz.tools import Publishers
 from visualization_msgs.msg import InteractiveMarkerControl as Mode
+from visualization_msgs.msg import MenuEntry
 
 KEY = "s\na"
 HONEST = {"display": 1, "marker": KEY, "control": "c", "event": "POSE_UPDATE",
@@ -34,7 +35,8 @@ def context():
 def shown(context):
     """A display of one marker that the page looks at, and one of a grid."""
     made = drawer("InteractiveMarkers")
-    made.take(init(0, handle("a", control(Mode.MOVE_AXIS, "c"), pose=at(1.0, 0.0))), None, 0.0)
+    made.take(init(0, handle("a", control(Mode.MOVE_AXIS, "c"), pose=at(1.0, 0.0),
+                             menu_entries=[MenuEntry(id=7, title="Go")])), None, 0.0)
     made.draw(MadeUpView())
     displays = context.node.shared(Displays)
     displays[1, 1] = SimpleNamespace(drawer=made, topic="/a/update", look_soon=lambda: None)
@@ -67,6 +69,8 @@ def test_a_drag_moves_the_marker_and_its_server_hears_of_it(context, shown, sent
 
 
 def test_an_entry_of_a_menu_is_told_of_without_a_move(context, shown, sent):
+    assert context.loop.run_until_complete(rviz_menu(context, 1, KEY)) == [
+        {"id": 7, "parent": 0, "title": "Go", "works": True}]
     say(context, event="MENU_SELECT", entry=7, point=[])
     ((_, message),) = sent
     assert message.menu_entry_id == 7 and not message.mouse_point_valid
@@ -75,7 +79,7 @@ def test_an_entry_of_a_menu_is_told_of_without_a_move(context, shown, sent):
 
 @pytest.mark.parametrize("changes, said", [
     ({"display": 3}, "no such one"), ({"display": 2}, "shows no interactive markers"),
-    ({"marker": "s\nb"}, "no control"), ({"marker": "a"}, "no control"),
+    ({"marker": "s\nb"}, "no marker"), ({"marker": "a"}, "no marker"),
     ({"control": "b"}, "no control"), ({"event": "EXPLODE"}, "no event 'EXPLODE'"),
     ({"entry": -1}, "no menu has"), ({"entry": 2 ** 40}, "no menu has"),
     ({"pose": [0] * 6}, "not 7 numbers"), ({"pose": ["0"] * 7}, "not 7 numbers"),
@@ -90,4 +94,4 @@ def test_what_does_not_fit_is_refused_and_not_sent(context, shown, sent, changes
 
 
 def test_a_page_without_control_may_not_ask():
-    assert find_operation("rviz_feedback").control
+    assert find_operation("rviz_feedback").control and find_operation("rviz_menu").control

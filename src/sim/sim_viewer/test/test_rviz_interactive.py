@@ -59,7 +59,8 @@ def test_each_control_has_its_parts_and_the_page_learns_what_it_can_do():
     assert pushed["place"][:3] == [0.5, 0.0, 0.0] and pushed["pose"][:2] == [-0.5, 1.0]
     assert (pushed["controls"][0]["name"], pushed["controls"][0]["mode"]) == (
         "along", Mode.MOVE_AXIS)
-    assert clicked["menu"] == [
+    assert clicked["menu"] is True and pushed["menu"] is False
+    assert made.find(clicked["key"]).menu() == [
         {"id": 1, "parent": 0, "title": "More", "works": True},
         {"id": 2, "parent": 1, "title": "Home", "works": True},
         {"id": 3, "parent": 0, "title": "Shell", "works": False}]

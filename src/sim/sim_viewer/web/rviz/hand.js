@@ -11,9 +11,9 @@ const GREY = [128, 128, 128, 255];
 const ALIVE_MS = 250; // between words that a marker is still held
 
 export class Hand {
-  /** `send(message)` gives a promise; `complain(reason)` where it fails. */
-  constructor(shown, viewport, send, complain) {
-    Object.assign(this, { _shown: shown, _viewport: viewport, _send: send, _complain: complain });
+  /** `call(operation, message)` gives a promise; `complain(reason)` where it fails. */
+  constructor(shown, viewport, call, complain) {
+    Object.assign(this, { _shown: shown, _viewport: viewport, _call: call, _complain: complain });
     this._queue = [];
     this._events = { pointerdown: (event) => this._press(event),
       pointermove: (event) => this._move(event), pointerup: (event) => this._end(event),
@@ -24,6 +24,7 @@ export class Hand {
   }
 
   close() {
+    this._closed = true;
     this._end();
     this._menu?.close();
     for (const [name, listener] of Object.entries(this._events)) {
@@ -37,7 +38,7 @@ export class Hand {
     if (this._held || !this._viewport.movable) return; // a tool has the pointer
     const hit = this._shown.hit(event);
     if (!hit || hit.control.mode === NONE && event.button !== 2) return;
-    if (event.button === 2 && hit.marker.menu.length) {
+    if (event.button === 2 && hit.marker.menu) {
       event.stopImmediatePropagation();
       this._open(event, hit);
     } else if (event.button === 0) {
@@ -95,10 +96,17 @@ export class Hand {
     this._viewport.canvas.style.cursor = hit && hit.control.mode !== NONE ? "pointer" : "";
   }
 
-  _open(event, { marker, control, point }) {
+  async _open(event, { marker, control, point }) {
     const at = this._inFrame(marker, point);
-    this._menu = new Menu(this._viewport.canvas.parentElement, event, marker.menu,
-      (entry) => this._say(marker, control, "MENU_SELECT", at, { entry }));
+    try {
+      const entries = await this._call("rviz_menu", { marker: marker.key });
+      if (this._closed) return; // meanwhile
+      this._menu?.close();
+      this._menu = new Menu(this._viewport.canvas.parentElement, event, entries,
+        (entry) => this._say(marker, control, "MENU_SELECT", at, { entry }));
+    } catch (error) {
+      this._complain(error.message);
+    }
   }
 
   /** What dragging.js works with, in the marker's header frame. */
@@ -152,7 +160,7 @@ export class Hand {
     if (this._busy) return;
     this._busy = true;
     try {
-      while (this._queue.length) await this._send(this._queue.shift());
+      while (this._queue.length) await this._call("rviz_feedback", this._queue.shift());
     } catch (error) {
       this._queue = [];
       this._complain(error.message);

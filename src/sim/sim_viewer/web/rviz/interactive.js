@@ -23,7 +23,7 @@ export class ShownInteractive extends Shown {
     super.start(frame);
     this._stopMoving = this._viewport.onMove(() => this._arrange());
     if (this._link.control) {
-      this._hand = new Hand(this, this._viewport, (message) => this._link.call("rviz_feedback",
+      this._hand = new Hand(this, this._viewport, (operation, message) => this._link.call(operation,
         { ...message, display: this._args.display }), (reason) => this._complain(reason));
     }
   }

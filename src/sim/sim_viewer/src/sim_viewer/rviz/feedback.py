@@ -9,6 +9,7 @@ from visualization_msgs.msg import InteractiveMarkerFeedback
 from sim_viewer.context import Context
 from sim_viewer.registry import Refused, operation
 from sim_viewer.rviz.answers import find_display
+from sim_viewer.rviz.display import Display
 from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.displays.interactive import Interactive, namespace
 from sim_viewer.rviz.displays.interactive_marker import LARGEST, InteractiveMarker, unit_pose
@@ -28,22 +29,27 @@ async def rviz_feedback(context: Context, display: int, marker: str, control: st
 
     Refused for what there is not, and for what are no such numbers.
     """
-    shown = find_display(context, display)
-    drawer = shown.drawer
-    if not isinstance(drawer, Interactive):
-        raise Refused(f"display {display} shows no interactive markers")
-    found = drawer.find(marker)
-    if found is None or control not in (one.name for one in found.controls):
-        raise Refused(f"there is no control {control!r:.40} of a marker {marker!r:.40}")
+    shown, found = _find(context, display, marker)
+    if control not in (one.name for one in found.controls):
+        raise Refused(f"there is no control {control!r:.40} of the marker")
     message = feedback(found, control, event, pose, point, entry)
     message.client_id = f"{rospy.get_name()}/{context.client}/{display}"
     if message.event_type == InteractiveMarkerFeedback.POSE_UPDATE:
-        drawer.drag(marker, row_pose(pose_row(message.pose)))
+        shown.drawer.drag(marker, row_pose(pose_row(message.pose)))
         shown.look_soon()
     publisher = await context.run_in_thread(
         context.node.shared(Publishers).open_topic, "feedback",
         f"{namespace(shown.topic)}/feedback", InteractiveMarkerFeedback)
     await context.run_in_thread(publisher.publish, message)
+
+
+@operation("rviz_menu", control=True)
+async def rviz_menu(context: Context, display: int, marker: str) -> list[dict[str, Any]]:
+    """The entries of a marker's menu: `id`, `parent`, `title` and whether it `works`.
+
+    Refused for what there is not.
+    """
+    return _find(context, display, marker)[1].menu()
 
 
 def feedback(marker: InteractiveMarker, control: str, event: str, pose: list, point: list,
@@ -66,6 +72,16 @@ def feedback(marker: InteractiveMarker, control: str, event: str, pose: list, po
         raise Refused(f"pose: {problem}") from None
     made.pose.orientation = Quaternion(*unit.orientation)
     return made
+
+
+def _find(context: Context, display: int, marker: str) -> tuple[Display, InteractiveMarker]:
+    shown = find_display(context, display)
+    if not isinstance(shown.drawer, Interactive):
+        raise Refused(f"display {display} shows no interactive markers")
+    found = shown.drawer.find(marker)
+    if found is None:
+        raise Refused(f"there is no marker {marker!r:.40}")
+    return shown, found
 
 
 def _numbers(name: str, values: list[Any], count: int) -> list[float]:

@@ -19,7 +19,7 @@ from sim_viewer.rviz.options import Option
 UPDATE = "/update"  # after the markers' namespace
 MOST_SERVERS = 20  # on a topic
 MOST_CONTROLS = 1000  # that the page draws, and
-MOST_SHAPES = 10_000  # of which they are made
+MOST_SHAPES = 5000  # of which they are made
 MOST_STATUSES = 20
 MOST_DRAGS = 100  # that wait for the next look
 Key = str  # of a marker, for the page: server and name

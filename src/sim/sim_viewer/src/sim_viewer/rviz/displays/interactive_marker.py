@@ -137,9 +137,13 @@ class InteractiveMarker:
         return {"key": key, "place": [*self.place.position, *self.place.orientation],
                 "pose": [*self.pose.position, *self.pose.orientation],
                 "controls": [one.as_json() for one in self.controls],
-                "menu": [{"id": one.id, "parent": one.parent_id, "title": one.title[:LONGEST_TEXT],
-                          "works": one.command_type == FEEDBACK}
-                         for one in self.message.menu_entries[:MOST_ENTRIES]]}
+                "menu": bool(self.message.menu_entries)}
+
+    def menu(self) -> list[dict[str, Any]]:
+        """Its menu's entries, for the page."""
+        return [{"id": one.id, "parent": one.parent_id, "title": one.title[:LONGEST_TEXT],
+                 "works": one.command_type == FEEDBACK}
+                for one in self.message.menu_entries[:MOST_ENTRIES]]
 
 
 def unit(message: Any) -> Quaternion:
