@@ -140,8 +140,8 @@ class Page(abc.ABC):
         """A key goes down or comes up, as from a keyboard."""
 
     @abc.abstractmethod
-    def mouse(self, kind: str, x: float, y: float) -> None:
-        """`kind`: Pressed, Moved, Released, of the left button; px of the page."""
+    def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
+        """`kind`: Pressed, Moved, Released, of the left or right button; px of the page."""
 
     @abc.abstractmethod
     def png(self) -> bytes:

@@ -25,6 +25,9 @@ CODES = {  # of the keys that drive: name of the place, Windows' virtual key cod
 }
 
 
+BUTTONS = {"left": 1, "right": 2}  # bits of those that are held
+
+
 class Browser(browser.Browser):
     """One Chromium."""
 
@@ -94,9 +97,9 @@ class Page(browser.Page):
         self.call("Input.dispatchKeyEvent", type="rawKeyDown" if down else "keyUp", key=key,
                   code=code, windowsVirtualKeyCode=number)
 
-    def mouse(self, kind: str, x: float, y: float) -> None:
-        self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, button="left",
-                  buttons=1, clickCount=1)
+    def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
+        self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, button=button,
+                  buttons=BUTTONS[button], clickCount=1)
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
         """`kind`: touchStart, touchMove, touchEnd, touchCancel; points in px of the page."""

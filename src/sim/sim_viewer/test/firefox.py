@@ -17,6 +17,7 @@ SETTINGS = {
     "datareporting.policy.dataSubmissionEnabled": False, "app.normandy.enabled": False,
     "network.captive-portal-service.enabled": False, "network.connectivity-service.enabled": False,
 }
+BUTTONS = {"left": 0, "right": 2}  # by number
 KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015"}
 
 
@@ -84,10 +85,10 @@ class Page(browser.Page):
     def key(self, key: str, down: bool) -> None:
         self._act("key", {"type": "keyDown" if down else "keyUp", "value": KEYS.get(key, key)})
 
-    def mouse(self, kind: str, x: float, y: float) -> None:
+    def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
         change = {"Pressed": "pointerDown", "Released": "pointerUp"}.get(kind)
         self._act("pointer", {"type": "pointerMove", "x": round(x), "y": round(y)},
-                  *([{"type": change, "button": 0}] if change else []))
+                  *([{"type": change, "button": BUTTONS[button]}] if change else []))
 
     def png(self) -> bytes:
         return base64.b64decode(self.call("browsingContext.captureScreenshot")["data"])

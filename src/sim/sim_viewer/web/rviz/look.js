@@ -1,5 +1,9 @@
 // What several parts need to be drawn: light, widths in pixels, whether one sees through.
 
+import * as THREE from "../vendor/three.module.min.js";
+
+const ONE = new THREE.Vector3(1, 1, 1);
+
 /** GLSL: a colour in the light of this view, brighter from above; `normal` is in the world. */
 export const SHADE = `
 vec3 shade(vec3 colour, vec3 normal) {
@@ -21,4 +25,10 @@ export function isClear(colours) {
 export function place(object, pose) {
   object.position.fromArray(pose, 0);
   object.quaternion.fromArray(pose, 3);
+}
+
+/** A matrix of x, y, z in m and a quaternion. */
+export function matrixOf(row) {
+  return new THREE.Matrix4().compose(new THREE.Vector3().fromArray(row),
+    new THREE.Quaternion().fromArray(row, 3), ONE);
 }

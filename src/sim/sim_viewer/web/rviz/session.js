@@ -2,9 +2,13 @@
 
 import { ShownCamera } from "./camera.js";
 import { ShownPicture } from "./image.js";
+import { ShownInteractive } from "./interactive.js";
 import { Shown } from "./shown.js";
 
-const BESIDE = { "rviz/Camera": ShownCamera, "rviz/Image": ShownPicture }; // the view
+const KINDS = { // that show more than parts in the view
+  "rviz/Camera": ShownCamera, "rviz/Image": ShownPicture,
+  "rviz/InteractiveMarkers": ShownInteractive,
+};
 const LIKELY = ["map", "odom", "world"]; // fixed frames, where the person has chosen none
 const FIXED = "<Fixed Frame>";
 const WORST = ["ok", "warning", "error"];
@@ -63,7 +67,7 @@ export class Session {
         ...statuses];
       this._onStatus(display);
     };
-    const Kind = BESIDE[display.class] ?? Shown;
+    const Kind = KINDS[display.class] ?? Shown;
     display.shown = new Kind(display, this._link, this._viewport, tell, this._pictures);
     display.shown.start(this.fixed);
   }

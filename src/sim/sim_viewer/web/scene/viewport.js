@@ -95,6 +95,21 @@ export class Viewport {
     return new Promise((resolve) => this._whenDrawn.push(resolve));
   }
 
+  /** Have `listener()` called when the camera has moved, until the result is called. */
+  onMove(listener) {
+    this._controls.addEventListener("change", listener);
+    return () => this._controls.removeEventListener("change", listener);
+  }
+
+  /** How the camera is turned: it looks along -z, with y up. */
+  get turn() {
+    return this._camera.quaternion;
+  }
+
+  get movable() {
+    return this._controls.enabled;
+  }
+
   /** Whether dragging moves the camera. */
   set movable(wanted) {
     this._controls.enabled = wanted;
@@ -102,12 +117,23 @@ export class Viewport {
 
   /** Where the ray through an event's pixel meets something solid, or else the floor; or null. */
   pick(event, solid = true) {
+    const hit = solid && this.hit(event, this.root);
+    return hit?.point ?? this.ray(event).intersectPlane(FLOOR, new THREE.Vector3());
+  }
+
+  /** The ray through an event's pixel. */
+  ray(event) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     this._camera.updateMatrixWorld(); // it may have moved since the last picture
     this._rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - left) / width - 1,
       1 - 2 * (event.clientY - top) / height), this._camera);
-    const [hit] = solid ? this._rays.intersectObject(this.root) : [];
-    return hit?.point ?? this._rays.ray.intersectPlane(FLOOR, new THREE.Vector3());
+    return this._rays.ray.clone();
+  }
+
+  /** What that ray meets first of an object and those in it, as three.js has it; or undefined. */
+  hit(event, object) {
+    this.ray(event);
+    return this._rays.intersectObject(object)[0];
   }
 
   /** Look at a place in m from `distance` m, by yaw and pitch in rad as rviz's Orbit has them. */

@@ -5,7 +5,8 @@ from sim_viewer.registry import Refused, operation
 from sim_viewer.rviz.display import Display, Displays
 
 
-def _find(context: Context, number: int) -> Display:
+def find_display(context: Context, number: int) -> Display:
+    """The page's display of this number; Refused where there is none."""
     found = context.node.shared(Displays).get((context.client, number))
     if found is None:
         raise Refused(f"display is {number}, and this page shows no such one")
@@ -15,10 +16,10 @@ def _find(context: Context, number: int) -> Display:
 @operation("rviz_drawn")
 async def rviz_drawn(context: Context, display: int, frame: int) -> None:
     """The page has drawn this frame of a display; Refused where there is no such display."""
-    _find(context, display).drawn(frame)
+    find_display(context, display).drawn(frame)
 
 
 @operation("rviz_change")
 async def rviz_change(context: Context, display: int, options: dict, frame: str) -> None:
     """Other options or another fixed frame; Refused where those do not fit."""
-    _find(context, display).change(options, frame)
+    find_display(context, display).change(options, frame)

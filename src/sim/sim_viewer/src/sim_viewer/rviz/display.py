@@ -18,7 +18,7 @@ from roslib.message import get_message_class
 from sim_viewer.context import Context, Node
 from sim_viewer.images import sources as image_sources
 from sim_viewer.registry import Refused, argument, watchable
-from sim_viewer.rviz.display_type import DisplayType, Problem
+from sim_viewer.rviz.display_type import DisplayType, Drawer, Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
 from sim_viewer.rviz.options import check_all
 from sim_viewer.rviz.pace import Pace
@@ -56,7 +56,7 @@ class Display:
             raise Refused("not supported here")
         self._kind = kind
         self._key = (context.client, argument(args, "display", int))
-        self._topic = argument(args, "topic", str, kind.topic)
+        self.topic = argument(args, "topic", str, kind.topic)
         self._wanted = (_checked(kind, argument(args, "options", dict, {})),
                         argument(args, "frame", str).lstrip("/"))
         self._view = RosView(context.node, self._key, self._wanted[1])
@@ -89,6 +89,15 @@ class Display:
             self._task.cancel()
         await self._context.run_in_thread(self._close)
 
+    @property
+    def drawer(self) -> Drawer:
+        """What it shows, and how."""
+        return self._showing.drawer
+
+    def look_soon(self) -> None:
+        """There is something new; in the loop."""
+        self._news.set()
+
     def drawn(self, number: int) -> None:
         """The page has drawn a frame; in the loop."""
         if self._pace.drawn(number, time.monotonic()):
@@ -116,18 +125,18 @@ class Display:
         self._closing.callback(self._view.close)
         if not self._kind.messages:
             return
-        if not self._topic.strip("/ "):
+        if not self.topic.strip("/ "):
             self._showing.fail("Topic", "Error subscribing: Empty topic name")
             return
-        if not is_topic(self._topic):
-            self._showing.fail("Topic", f"Error subscribing: {self._topic!r:.40} is no name of a "
+        if not is_topic(self.topic):
+            self._showing.fail("Topic", f"Error subscribing: {self.topic!r:.40} is no name of a "
                                         "topic")
             return
-        topics = [self._topic]
+        topics = [self.topic]
         if "sensor_msgs/CompressedImage" in self._kind.messages:
-            topics = image_sources(self._context.node.shared(MasterView), self._topic)
+            topics = image_sources(self._context.node.shared(MasterView), self.topic)
         if self._kind.beside:
-            topics.append(self._kind.beside_topic(self._topic))
+            topics.append(self._kind.beside_topic(self.topic))
         try:
             for topic in topics:
                 one = rospy.Subscriber(topic, rospy.AnyMsg, self._take,
@@ -146,7 +155,7 @@ class Display:
         header = raw._connection_header
         name = header.get("type", "")
         if name not in (*self._kind.messages, self._kind.beside):
-            raise Problem(f"{self._topic} is {name}, and this display shows "
+            raise Problem(f"{self.topic} is {name}, and this display shows "
                           f"{' or '.join(self._kind.messages)}")
         if len(raw._buff) > self._kind.most_bytes:
             raise Problem(f"a message of {len(raw._buff) >> 20} MB is larger than the "

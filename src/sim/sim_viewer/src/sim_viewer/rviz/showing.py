@@ -13,6 +13,7 @@ from sim_viewer.rviz.display_type import (
     OK,
     WARNING,
     DisplayType,
+    Drawer,
     NoTransform,
     Problem,
     Statuses,
@@ -50,6 +51,11 @@ class Showing:
     def statuses(self) -> Statuses:
         """As rviz lists them below the display."""
         return {**self._own, **self._drawer.statuses, **self._problem}
+
+    @property
+    def drawer(self) -> Drawer:
+        """The display's state."""
+        return self._drawer
 
     @property
     def namespaces(self) -> list[str]:

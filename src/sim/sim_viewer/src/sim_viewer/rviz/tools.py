@@ -26,6 +26,7 @@ from sim_viewer.tools.names import is_topic
 
 POSITION_VARIANCE = 0.5 * 0.5  # m^2, as rviz has it
 YAW_VARIANCE = 0.06853891945200942  # rad^2: (pi / 12)^2
+QUEUE = 100  # messages that wait for a listener who is slow
 CONNECTING = 1.0  # s that listeners are waited for, so that the first click is not lost
 FARTHEST = 1e6  # m
 
@@ -59,7 +60,7 @@ TOOLS: dict[str, tuple[type, Callable[..., Any]]] = {
 
 
 class Publishers:
-    """One for each tool and topic, from its first use on. In worker threads."""
+    """One for each use and topic, from its first use on. In worker threads."""
 
     def __init__(self, node: Node):
         self._clock: SharedClock = node.shared(SharedClock)
@@ -72,14 +73,18 @@ class Publishers:
         """Get ready to publish; Refused for what is no tool or no topic."""
         if tool not in TOOLS:
             raise Refused(f"there is no tool {tool!r:.40}; there are {', '.join(TOOLS)}")
+        return self.open_topic(tool, topic, TOOLS[tool][0])
+
+    def open_topic(self, use: str, topic: str, kind: type) -> rospy.Publisher:
+        """Get ready to publish messages of a class for a use; Refused for what is no topic."""
         if not is_topic(topic):
             raise Refused(f"{topic[:40]!r} is no name of a topic; /goal is one")
-        key = tool, rospy.resolve_name(topic)
+        key = use, rospy.resolve_name(topic)
         with self._lock:
             if not self._publishers:
                 self._closing.enter_context(self._clock.held())
             if key not in self._publishers:
-                made = rospy.Publisher(key[1], TOOLS[tool][0], queue_size=1)
+                made = rospy.Publisher(key[1], kind, queue_size=QUEUE)
                 self._publishers[key] = made, time.monotonic() + CONNECTING
         publisher, until = self._publishers[key]
         while not publisher.get_num_connections() and time.monotonic() < until:

@@ -7,6 +7,7 @@ from sim_viewer.rviz.displays import (
     frames,
     grid,
     image,
+    interactive,
     markers,
     occupancy,
     path,
@@ -21,4 +22,4 @@ TYPES: dict[str, DisplayType] = {kind.name: kind for kind in (
     grid.GRID, grid.AXES, frames.TYPE, robot.TYPE, scan.TYPE, occupancy.TYPE, path.PATH,
     poses.ARRAY, poses.STAMPED, poses.ODOMETRY, poses.WITH_COVARIANCE, path.POLYGON,
     markers.MARKER, markers.ARRAY, cloud.TYPE, point.TYPE, range.TYPE, image.TYPE,
-    camera.TYPE)}
+    camera.TYPE, interactive.TYPE)}

@@ -130,25 +130,43 @@ class Markers(Drawer):
 
 def _parts(seen: dict[Key, Shown], view: View) -> list[Part]:
     """All shapes of a kind in one part; meshes in one as well."""
-    merged: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
-    parts, visuals, rows = [], {}, []
-    for (ns, number), one in seen.items():
+    meshes = {f"{ns}/{number}": one for (ns, number), one in seen.items() if one.visuals}
+    return merged(list(seen.values())) + [part for part, _ in mesh_parts([meshes], view)]
+
+
+def merged(seen: list[Shown]) -> list[Part]:
+    """Without meshes; all shapes of a kind in one part."""
+    found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+    parts = []
+    for one in seen:
         pose = one.place * one.pose
         for part in one.parts:
             if part.kind == "shapes":
-                merged.setdefault(part.fields["shape"], []).append(
+                found.setdefault(part.fields["shape"], []).append(
                     (moved(part.arrays["rows"], pose), part.arrays["colour"]))
             else:
-                parts.append(Part(part.kind, part.arrays, part.fields, pose))
-        if one.visuals:
-            visuals[f"{ns}/{number}"] = one.visuals
-            rows.append([*pose.position, *pose.orientation])
-    for shape, found in merged.items():
-        table = np.concatenate([rows_of for rows_of, _ in found]).astype(np.float32)
-        colours = np.concatenate([colours for _, colours in found])
+                parts.append(Part(part.kind, part.arrays, part.fields, pose * part.pose))
+    for shape, tables in found.items():
+        table = np.concatenate([rows for rows, _ in tables]).astype(np.float32)
+        colours = np.concatenate([colours for _, colours in tables])
         parts.append(Part("shapes", {"rows": table, "colour": colours}, {"shape": shape}))
-    if visuals:
-        parts.append(Part("links", {"rows": np.array(rows, np.float32)}, view.links(visuals)))
+    return parts
+
+
+def mesh_parts(groups: list[dict[str, Shown]], view: View) -> list[tuple[Part, int]]:
+    """A part for each group that is not empty, and the group's number. Names are unique in all."""
+    visuals = {name: one.visuals for group in groups for name, one in group.items()}
+    if not visuals:
+        return []
+    known = view.links(visuals)
+    links = dict(zip(visuals, known["links"], strict=True))
+    parts = []
+    for number, group in enumerate(groups):
+        poses = [one.place * one.pose for one in group.values()]
+        rows = np.array([[*pose.position, *pose.orientation] for pose in poses], np.float32)
+        if group:
+            parts.append((Part("links", {"rows": rows},
+                               {**known, "links": [links[name] for name in group]}), number))
     return parts
 
 

@@ -1,0 +1,158 @@
+"""rviz/InteractiveMarkers: markers with handles, which a page with control can drag and click.
+
+The first part says which markers and controls there are; each of the others belongs to a control,
+in whose frame it is. The page puts those where they belong: they follow a hand, or face the viewer.
+"""
+
+from collections import deque
+from itertools import islice
+from typing import Any
+
+from bullet_sim.pose import Pose
+from sim_viewer.rviz.display_type import ERROR, WARNING, DisplayType, Drawer, Problem, View
+from sim_viewer.rviz.displays.interactive_marker import Control, InteractiveMarker
+from sim_viewer.rviz.displays.interactive_server import LONGEST_NAME, Server
+from sim_viewer.rviz.displays.markers import Shown, merged, mesh_parts
+from sim_viewer.rviz.drawing import Part
+from sim_viewer.rviz.options import Option
+
+UPDATE = "/update"  # after the markers' namespace
+MOST_SERVERS = 20  # on a topic
+MOST_CONTROLS = 1000  # that the page draws, and
+MOST_SHAPES = 5000  # of which they are made
+MOST_STATUSES = 20
+MOST_DRAGS = 100  # that wait for the next look
+Key = str  # of a marker, for the page: server and name
+
+
+class Interactive(Drawer):
+    """All markers of one namespace."""
+
+    def __init__(self, options: dict[str, Any]):
+        super().__init__(options)
+        self._servers: dict[str, Server] = {}
+        self._crowded = False
+        self._drags: deque[tuple[Key, Pose]] = deque(maxlen=MOST_DRAGS)
+
+    def take(self, message: Any, pose: Pose | None, now: float) -> None:
+        """All markers of a server, or changes. Problem for those that cannot be taken."""
+        self._follow_drags()  # the message may be what their server answers
+        if len(message.server_id) > LONGEST_NAME:
+            raise Problem(f"the server's id {message.server_id:.40} is longer than {LONGEST_NAME}")
+        self._crowded = (message.server_id not in self._servers
+                         and len(self._servers) >= MOST_SERVERS)
+        if self._crowded:
+            return
+        server = self._servers.setdefault(message.server_id, Server())
+        try:
+            news = server.update(message) if hasattr(message, "type") else server.begin(message)
+        except Exception:  # which the list tells of; some of it may be there
+            self.changed = True
+            raise
+        self.changed = self.changed or news
+
+    def find(self, key: Key) -> InteractiveMarker | None:
+        """A marker that the page knows. In any thread."""
+        server, _, name = key.partition("\n")
+        found = self._servers.get(server)
+        return found.markers.get(name) if found else None
+
+    def drag(self, key: Key, pose: Pose) -> None:
+        """The page says where it has put a marker, in its header's frame. In any thread."""
+        self._drags.append((key, pose))
+
+    def place_anew(self) -> bool:
+        """Each marker by its own frame and time."""
+        for _, one in self._all():
+            one.place = None
+        self.changed = True
+        return True
+
+    def draw(self, view: View) -> list[Part] | None:
+        self._follow_drags()
+        seen = self._fitting()
+        new = [one for _, one in seen if not one.built]
+        for one in new:
+            one.build(view, view.most_points // len(new))
+        moved = [one.put(view) for _, one in seen]
+        self.statuses = self._statuses(seen, view)
+        if not self.changed and not any(moved):
+            return None
+        self.changed = False
+        placed = [(key, one) for key, one in seen if one.place is not None]
+        head = Part("interactive", fields={
+            "markers": [one.as_json(key) for key, one in placed],
+            "visual_aids": self.options["Show Visual Aids"]})
+        return [head, *self._parts(placed, view)] if placed else []
+
+    def _all(self) -> list[tuple[Key, InteractiveMarker]]:
+        return [(f"{server}\n{name}", one) for server, known in self._servers.items()
+                for name, one in known.markers.items()]
+
+    def _follow_drags(self) -> None:
+        while self._drags:
+            key, pose = self._drags.popleft()
+            if marker := self.find(key):
+                marker.move(pose)
+                self.changed = True
+
+    def _fitting(self) -> list[tuple[Key, InteractiveMarker]]:
+        """The first ones, as many as a page can draw."""
+        controls = shapes = 0
+        for count, (_, one) in enumerate(found := self._all()):
+            controls += len(one.message.controls)
+            shapes += one.size
+            if controls > MOST_CONTROLS or shapes > MOST_SHAPES:
+                return found[:count]
+        return found
+
+    def _statuses(self, seen: list[tuple[Key, InteractiveMarker]],
+                  view: View) -> dict[str, tuple[str, str]]:
+        found = {name: server.status(view.wall) for name, server in self._servers.items()}
+        wrong = ((one.message.name, one.lost or one.problems[0]) for _, one in seen
+                 if one.lost or one.problems)
+        found |= {name: (ERROR, text) for name, text in islice(wrong, MOST_STATUSES)}
+        total = sum(len(server.markers) for server in self._servers.values())
+        if len(seen) < total:
+            found["Markers"] = WARNING, f"showing {len(seen)} of {total} markers"
+        if self._crowded:
+            found["Servers"] = WARNING, f"showing {MOST_SERVERS}: more are left out"
+        return found
+
+    def _parts(self, placed: list[tuple[Key, InteractiveMarker]], view: View) -> list[Part]:
+        """Those of each control, with its number and the marker's."""
+        owners, parts, meshes = [], [], []
+        for number, (_, marker) in enumerate(placed):
+            for index, control in enumerate(marker.controls):
+                shown = self._shown(control)
+                owner = {"marker": number, "control": index}
+                for part in merged(shown):
+                    part.fields = {**part.fields, **owner}
+                    parts.append(part)
+                meshes.append({f"{number}/{index}/{at}": one for at, one in enumerate(shown)
+                               if one.visuals})
+                owners.append(owner)
+        for part, group in mesh_parts(meshes, view):
+            part.fields |= owners[group]
+            parts.append(part)
+        return parts
+
+    def _shown(self, control: Control) -> list[Shown]:
+        if not self.options.get(control.option, True):
+            return []
+        return [one for one in control.shown if one.place is not None]
+
+
+def namespace(topic: str) -> str:
+    """The markers' namespace, from the name of their topic of updates."""
+    return topic.removesuffix(UPDATE)
+
+
+TYPE = DisplayType(
+    "rviz/InteractiveMarkers", Interactive, topic="/basic_controls/update",
+    topic_key="Update Topic", messages=("visualization_msgs/InteractiveMarkerUpdate",),
+    at_stamp=False, every=True,
+    beside="visualization_msgs/InteractiveMarkerInit",
+    beside_topic=lambda topic: f"{namespace(topic)}/update_full", period=0.1, options=(
+        Option("Show Descriptions", "switch", True), Option("Show Axes", "switch", False),
+        Option("Show Visual Aids", "switch", False)))

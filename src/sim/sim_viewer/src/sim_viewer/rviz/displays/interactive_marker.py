@@ -1,0 +1,225 @@
+"""One interactive marker: where it is, and its controls with what they look like."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from bullet_sim.pose import IDENTITY, Pose, Quaternion
+from sim_viewer.rviz.display_type import Problem, View
+from sim_viewer.rviz.displays.interactive_handles import (
+    FIXED,
+    INHERIT,
+    LONGEST_TEXT,
+    MODES,
+    NONE,
+    TITLE_ABOVE,
+    TITLE_HEIGHT,
+    VIEW_FACING,
+    handle_parts,
+    unique,
+    words,
+)
+from sim_viewer.rviz.displays.markers import Shown
+from sim_viewer.rviz.geometry import axes, finite, points
+
+LARGEST = 1e6  # m, sizes and places
+MOST_CONTROLS = 100  # of a marker
+MOST_MARKERS = 200  # of a control
+MOST_ENTRIES = 200  # of a menu
+FEEDBACK = 0  # type of a menu's entry; the others would start programs here
+AXIS_WIDTH = 0.05  # sizes of the marker
+
+
+@dataclass
+class Control:
+    """What can be done with a marker; `shown` stands in the control's own frame."""
+
+    name: str
+    mode: int  # of visualization_msgs/InteractiveMarkerControl
+    facing: int  # its orientation_mode
+    orientation: Quaternion  # its x axis is the one that it is about
+    independent: bool = False  # whether what one sees does not turn to the viewer with the axis
+    text: str = ""
+    shown: list[Shown] = field(default_factory=list)
+    option: str = ""  # by which it is shown
+
+    def as_json(self) -> dict[str, Any]:
+        """For the page."""
+        return {"name": self.name, "mode": self.mode, "facing": self.facing, "text": self.text,
+                "orientation": self.orientation, "independent": self.independent}
+
+
+class InteractiveMarker:
+    """`message` is visualization_msgs/InteractiveMarker; `place` is its header's frame in the fixed
+    frame, once that is known."""
+
+    def __init__(self, message: Any):
+        self.message, self.header = message, message.header
+        self.controls: list[Control] = []
+        self.place: Pose | None = None
+        self.lost = ""  # why it, or one of its markers, has no place
+        self.problems: list[str] = []
+        self.built = False
+        self._first = IDENTITY  # the pose that it came with
+        self._moved: Pose | None = None  # the one that it has got since
+
+    @property
+    def pose(self) -> Pose:
+        """In its header's frame."""
+        return self._moved or self._first
+
+    @property
+    def size(self) -> int:
+        """How many markers there are to be drawn."""
+        return sum(max(1, min(len(one.markers), MOST_MARKERS))
+                   for one in self.message.controls[:MOST_CONTROLS])
+
+    def move(self, pose: Pose, header: Any = None) -> None:
+        """It is elsewhere, maybe in another frame."""
+        self._moved = pose
+        if header is not None:
+            self.header, self.place = header, None
+
+    def build(self, view: View, most_points: int) -> None:
+        """Work out what it looks like."""
+        self.built = True
+        try:
+            self._first = unit_pose(self.message.pose)
+            scale = _size(self.message.scale)
+        except Problem as problem:
+            self.problems.append(str(problem))
+            return
+        self._build_controls(scale, view, most_points)
+        self.controls += _extras(self.message, scale)
+
+    def _build_controls(self, scale: float, view: View, most_points: int) -> None:
+        given = self.message.controls[:MOST_CONTROLS]
+        if len(given) < len(self.message.controls):
+            self.problems.append(f"showing {MOST_CONTROLS} of {len(self.message.controls)} "
+                                 "controls")
+        names = unique([one.name[:LONGEST_TEXT] for one in given])
+        for name, one in zip(names, given, strict=True):
+            try:
+                made = _control(name, one, scale, view, most_points // len(given))
+            except Problem as problem:
+                self.problems.append(f"{name}: {problem}")
+                continue
+            self.controls.append(made)
+            self.problems += [f"{name}: {shown.problem}" for shown in made.shown if shown.problem]
+
+    def put(self, view: View) -> bool:
+        """Find its frame, where that is due; whether it has moved."""
+        locked = not self.header.stamp.to_nsec()
+        if self.place is not None and not locked and not self.lost:
+            return False
+        before = self.place
+        try:
+            self.place = view.pose(self.header.frame_id, self.header.stamp.to_nsec())
+            for control in self.controls:
+                self._put_markers(control, view)
+            self.lost = ""
+        except Problem as problem:
+            self.lost = str(problem)
+        return self.place != before
+
+    def _put_markers(self, control: Control, view: View) -> None:
+        """Markers with a frame of their own stay where they were beside the control's."""
+        turn = IDENTITY.orientation if control.facing == FIXED else self._first.orientation
+        frame = self.place * Pose(self._first.position, turn)
+        for one in control.shown:
+            if one.place is None:
+                header = one.marker.header
+                one.place = frame.inverse() * view.pose(header.frame_id, header.stamp.to_nsec())
+
+    def as_json(self, key: str) -> dict[str, Any]:
+        """For the page, which does the dragging; `key` is unique."""
+        return {"key": key, "place": [*self.place.position, *self.place.orientation],
+                "pose": [*self.pose.position, *self.pose.orientation],
+                "controls": [one.as_json() for one in self.controls],
+                "menu": bool(self.message.menu_entries)}
+
+    def menu(self) -> list[dict[str, Any]]:
+        """Its menu's entries, for the page."""
+        return [{"id": one.id, "parent": one.parent_id, "title": one.title[:LONGEST_TEXT],
+                 "works": one.command_type == FEEDBACK}
+                for one in self.message.menu_entries[:MOST_ENTRIES]]
+
+
+def unit(message: Any) -> Quaternion:
+    """x, y, z, w of length 1 of a geometry_msgs/Quaternion of any length; all zeros: no rotation.
+
+    Problem for what are no numbers.
+    """
+    values = finite([message.x, message.y, message.z, message.w])
+    largest = np.abs(values).max()
+    if not largest:
+        return IDENTITY.orientation
+    values = values / largest  # or squares of very large and small ones would not be numbers
+    return tuple(map(float, values / np.linalg.norm(values)))
+
+
+def unit_pose(message: Any) -> Pose:
+    """Of a geometry_msgs/Pose; Problem for what are no numbers, and for places that are far off."""
+    position = points([message.position])[0]
+    if np.abs(position).max() > LARGEST:
+        raise Problem(f"farther than {LARGEST:g} m")
+    return Pose(tuple(map(float, position)), unit(message.orientation))
+
+
+def _size(scale: float) -> float:
+    """m; Problem for what is none. Nobody has set it: 1 m."""
+    found = float(finite([scale])[0]) or 1.0
+    if not 0.0 < found <= LARGEST:
+        raise Problem(f"The scale is {found:g}, which is not between 0 and {LARGEST:g} m")
+    return found
+
+
+def _control(name: str, message: Any, scale: float, view: View, most_points: int) -> Control:
+    mode, facing = message.interaction_mode, message.orientation_mode
+    if mode >= MODES:
+        raise Problem(f"Unknown interaction mode: {mode}")
+    if facing > VIEW_FACING:
+        raise Problem(f"Unknown orientation mode: {facing}")
+    made = Control(name, mode, facing, unit(message.orientation),
+                   bool(message.independent_marker_orientation), message.description[:LONGEST_TEXT])
+    for marker in message.markers[:MOST_MARKERS]:
+        made.shown.append(_shown(marker, view, most_points // len(message.markers)))
+    if not message.markers:
+        parts = handle_parts(mode, made.orientation, scale, made.text)
+        made.shown = [_still(parts)]
+        if parts and parts[0].kind == "texts":
+            made.facing = VIEW_FACING
+    return made
+
+
+def _shown(marker: Any, view: View, most_points: int) -> Shown:
+    """A marker without a frame is meant in the control's."""
+    made = Shown(marker, -np.inf, np.inf)
+    try:
+        for axis, value in zip("xyzw", unit(marker.pose.orientation), strict=True):
+            setattr(marker.pose.orientation, axis, value)
+        for axis in "xyz":  # as rviz completes them
+            setattr(marker.scale, axis, getattr(marker.scale, axis) or 1.0)
+        made.build(view, most_points)
+    except Problem as problem:
+        made.problem = str(problem)
+    if not marker.header.frame_id or made.problem:
+        made.place = IDENTITY
+    return made
+
+
+def _still(parts: list[Any]) -> Shown:
+    return Shown(None, -np.inf, np.inf, parts=parts, place=IDENTITY)
+
+
+def _extras(message: Any, scale: float) -> list[Control]:
+    """Axes and words, which the options show."""
+    cross = axes(np.array([[0.0] * 6 + [1.0]]), scale, AXIS_WIDTH * scale)
+    made = [Control("", NONE, INHERIT, IDENTITY.orientation, shown=[_still(cross)],
+                    option="Show Axes")]
+    if message.description.strip():
+        title = words(message.description, TITLE_ABOVE * scale, TITLE_HEIGHT * scale)
+        made.append(Control("", NONE, VIEW_FACING, IDENTITY.orientation, shown=[_still([title])],
+                            option="Show Descriptions"))
+    return made

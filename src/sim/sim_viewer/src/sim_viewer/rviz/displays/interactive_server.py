@@ -1,0 +1,88 @@
+"""The markers of one server, as its messages to `.../update_full` and `.../update` tell of them.
+
+Each message has a number. Those of the first topic have all markers; each of the second one has
+changes, and a number that is one larger, or says that there are none. A server sends both after
+each change, so whoever has missed changes gets all that there is with the next ones.
+"""
+
+from typing import Any
+
+from sim_viewer.rviz.display_type import ERROR, OK, WARNING, Problem
+from sim_viewer.rviz.displays.interactive_marker import InteractiveMarker, unit_pose
+
+UPDATE = 1  # type of an update that has changes
+MOST_MARKERS = 500
+LONGEST_NAME = 200  # characters
+SILENCE = 1.0  # s after which a server that says nothing is told of; it speaks twice as often
+WAITING = (WARNING, "Waiting for all markers, on update_full")
+MISSED = (ERROR, "Update sequence number is out of order.")
+
+
+class Server:
+    """`markers` by name."""
+
+    def __init__(self) -> None:
+        self.markers: dict[str, InteractiveMarker] = {}
+        self._number: int | None = None  # of the last change
+        self._followed = False  # whether all that there is comes once more after that change
+        self._missed = False
+        self._fresh = True  # whether it has spoken since the last look
+        self._heard = 0.0  # s, the last look before which it had
+
+    def begin(self, init: Any) -> bool:
+        """All markers; whether that is news. Problem for those that cannot be taken."""
+        self._fresh = True
+        if self._followed and init.seq_num == self._number:
+            self._followed = False
+            return False
+        self._number, self._missed, self._followed = init.seq_num, False, False
+        self.markers = {}
+        self._insert(init.markers)
+        return True
+
+    def update(self, update: Any) -> bool:
+        """Changes; whether there are any. Problem for those that cannot be taken."""
+        self._fresh = True
+        if self._number is None:
+            return False
+        ahead = update.seq_num - self._number
+        if update.type != UPDATE or ahead != 1:
+            self._missed = ahead > 0
+            return False
+        self._number, self._missed, self._followed = update.seq_num, False, True
+        for name in update.erases:
+            self.markers.pop(name, None)
+        self._move(update.poses)
+        self._insert(update.markers)
+        return True
+
+    def status(self, wall: float) -> tuple[str, str]:
+        """As rviz lists it; `wall` is the present in s of a clock that never jumps."""
+        if self._fresh:
+            self._heard, self._fresh = wall, False
+        if self._number is None:
+            return WAITING
+        if self._missed:
+            return MISSED
+        if wall - self._heard > SILENCE:
+            return WARNING, f"No update received for {round(wall - self._heard)} seconds."
+        return OK, "OK"
+
+    def _insert(self, markers: list[Any]) -> None:
+        for marker in markers:
+            if len(marker.name) > LONGEST_NAME:
+                raise Problem(f"the name {marker.name:.40} is longer than {LONGEST_NAME}")
+            if marker.name not in self.markers and len(self.markers) >= MOST_MARKERS:
+                raise Problem(f"showing {MOST_MARKERS} markers: more are left out")
+            self.markers[marker.name] = InteractiveMarker(marker)
+
+    def _move(self, poses: list[Any]) -> None:
+        problem = None
+        for one in poses:
+            try:
+                if one.name in self.markers:
+                    self.markers[one.name].move(unit_pose(one.pose), one.header)
+            except Problem as found:
+                problem = Problem(f"{one.name:.40}: {found}")
+        if problem:
+            raise problem
