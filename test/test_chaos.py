@@ -44,7 +44,8 @@ def test_half_a_file_is_noticed(chaos, tmp_path):
 @pytest.mark.parametrize("said, code, faults", [
     ("course_run: the simulator died\n", 2, 0), ("", 2, 1), ("drives\n", 0, 0),
     ("course_run: no film: ffmpeg\ncourse_run: died\n", 2, 0),
-    ("course_run: one\ncourse_run: two\n", 2, 1), (f"{TRACEBACK}ValueError\n", 1, 1)])
+    ("course_run: one\ncourse_run: two\n", 2, 1), (f"{TRACEBACK}ValueError\n", 1, 1),
+    (f"{TRACEBACK}KeyboardInterrupt\n", 130, 1)])
 def test_who_ends_early_says_one_line(chaos, said, code, faults):
     assert len(list(chaos["checks"].wrong_words(said, code))) == faults
 
@@ -53,6 +54,8 @@ def test_who_ends_early_says_one_line(chaos, said, code, faults):
     (f"{TRACEBACK}ValueError\n", 1), (f"{TRACEBACK}KeyboardInterrupt\n", 0),
     (f"{TRACEBACK}  except KeyboardInterrupt:\nValueError\n", 1),
     (f"{TRACEBACK}KeyboardInterrupt: KeyboardInterrupt\n{TRACEBACK}ValueError\n", 1),
+    (f"KeyboardInterrupt\n{TRACEBACK}ValueError\n", 1),
+    (f"{TRACEBACK}rospy.exceptions.ROSInterruptException: shutdown\n", 1),
     (f'{TRACEBACK}  File "/usr/bin/rosversion", line 33\nBrokenPipeError\n', 0),
     (f"{TRACEBACK}{TRACEBACK}KeyboardInterrupt\nKeyboardInterrupt\n", 0),  # of two at once
     (f"--- Logging error ---\n{TRACEBACK}OSError\n", 0), ("all is well\n", 0)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,12 +11,13 @@ import cv2
 
 COMPLAINT = "course_run: "
 TRACEBACK = "Traceback (most recent call last):\n"
+FAILURE = re.compile(r"^(?!KeyboardInterrupt)[\w.]*(Error|Exception|Interrupt|Iteration)\b", re.M)
 NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 
 def wrong_words(said: str, code: int | None) -> Iterator[str]:
     """One who ends early does it with one line."""
-    if _has_traceback(said):
+    if _has_traceback(said) or "KeyboardInterrupt" in said:
         yield "the judge prints a traceback"
     lines = [line for line in said.splitlines() if line.startswith(COMPLAINT)
              and not line.startswith(NO_ENDING)]
@@ -32,14 +34,15 @@ def wrong_logs(folder: Path) -> Iterator[str]:
 
 def _has_traceback(text: str) -> bool:
     """But for those that are not ours to keep back."""
-    return text.count(TRACEBACK) > sum(map(_is_anothers, text.splitlines()))
+    parts = text.split(TRACEBACK)
+    return not all(map(_is_anothers, parts, parts[1:]))
 
 
-def _is_anothers(line: str) -> bool:
-    """Each stands for a traceback of Python's, of a Ctrl-C while modules load or of a log that the
-    disk has no room for, or of Debian's rosversion, whose roscore was killed."""
-    return line.startswith(("KeyboardInterrupt", "--- Logging error ---",
-                            '  File "/usr/bin/rosversion"'))
+def _is_anothers(before: str, after: str) -> bool:
+    """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
+    of Debian's rosversion, whose roscore was killed. Of several at once the lines are mixed."""
+    return (before.endswith("--- Logging error ---\n")
+            or after.startswith('  File "/usr/bin/rosversion"') or not FAILURE.search(after))
 
 
 def half_files(folder: Path) -> Iterator[str]:

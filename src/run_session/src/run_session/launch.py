@@ -11,7 +11,9 @@ import tempfile
 import time
 import xmlrpc.client
 from collections.abc import Callable
+from http.client import HTTPException
 from pathlib import Path
+from xml.parsers.expat import ExpatError
 
 from run_session.failure import RunError
 from run_session.processes import INTERRUPT_TIME, Child, Family
@@ -208,6 +210,6 @@ def is_up(master_uri: str) -> bool:
     """Whether roscore has named its run; a roslaunch before that does it, and roscore then ends."""
     try:
         code, _, named = xmlrpc.client.ServerProxy(master_uri).hasParam("/course_run", "/run_id")
-    except (OSError, xmlrpc.client.Error):
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError):
         return False
     return code == 1 and named

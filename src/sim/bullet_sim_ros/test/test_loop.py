@@ -55,6 +55,32 @@ def test_what_is_due_at_different_rates_is_done_when_its_time_has_come_on_the_wa
     assert done == pytest.approx([done[0]] * len(done), abs=1e-6)
 
 
+@pytest.mark.parametrize("rate_hz", [50, 400])
+def test_triggers_that_come_while_the_loop_waits_cost_no_time(rate_hz):
+    simulation, wall = Simulation.__new__(Simulation), SimpleNamespace(now=50.0)
+    world = SimpleNamespace(paused=False, tick=0, timestep=0.001)
+    simulation.world, simulation.scheduler = world, Scheduler(world)
+    simulation.pacer = Pacer(1.0, lambda: wall.now)
+    simulation._stop_requested = False
+    triggered = []
+
+    def run_pending(wait=0.0):
+        """Comes back at a trigger."""
+        after = 1 / rate_hz - wall.now % (1 / rate_hz) + 1e-6
+        if after < wait:
+            triggered.append(wall.now)
+        wall.now += min(wait, after)
+
+    simulation.mailbox = SimpleNamespace(run_pending=run_pending)
+    simulation.scheduler.add(100.0, lambda: None)
+    simulation.scheduler.add(0.0, triggered.clear, lambda: bool(triggered))
+    while wall.now < 60.0:
+        simulation._wait()
+        world.tick = simulation.scheduler.next_tick()
+        simulation.scheduler.run()
+    assert world.tick / 1000 == pytest.approx(10.0, abs=0.03)
+
+
 @pytest.mark.parametrize("whole_steps, due", [(False, [34, 67, 100]), (True, [34, 68, 102])])
 def test_a_changed_rate_is_counted_as_the_one_before(whole_steps, due):
     world, ticks = SimpleNamespace(tick=0, timestep=0.001), []

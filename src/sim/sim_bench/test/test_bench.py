@@ -23,7 +23,7 @@ from sim_bench.results import (
     write_json,
 )
 from sim_bench.ros_run import read_lines
-from sim_bench.stages import stage_figures
+from sim_bench.stages import stage_figures, stages
 
 from evaluation.trial.program import NOT_RUN
 from run_session import cpu
@@ -210,13 +210,13 @@ send               19     4.000      7.82    6.5%
 def test_stages_are_told_for_one_frame_without_those_before_the_first_table(tmp_path):
     log = tmp_path / "roslaunch.log"
     log.write_text(STAGES)
-    found = {one.name: one.median for one in stage_figures("drive", log, turn="send")}
+    found = {one.name: one.median for one in stage_figures("drive", stages(log, turn="send"))}
     assert found == pytest.approx({"drive.stage.draw": (600 - 500) / 10,
                                    "drive.stage.send": (76 - 27) / 10,
                                    "drive.stage.read_back": 1.0})
-    assert stage_figures("drive", log, turn="depth") == []
+    assert stages(log, turn="depth") == {}
     log.write_text("nothing was printed")
-    assert stage_figures("drive", log, turn="send") == []
+    assert stages(log, turn="send") == {}
 
 
 def read_json(path) -> Results:

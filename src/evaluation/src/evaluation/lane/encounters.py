@@ -52,8 +52,7 @@ class Encounter:
     @property
     def moved_on(self) -> bool:
         """Did it drive again soon enough?"""
-        return not self.must_move or (
-            self.moved_after is not None and self.moved_after <= MOVES_ON)
+        return not self.must_move or (self.moved_after is not None and self.moved_after <= MOVES_ON)
 
     @property
     def passed(self) -> bool:

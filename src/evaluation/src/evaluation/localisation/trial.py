@@ -82,8 +82,7 @@ class LocalisationTrial(protocol.ReportedTrial):
 
     def run(self) -> Result:
         """What the case's kind sees."""
-        return RUNS[self._case.kind](
-            self._rig, self._ground, self._options.seed, self._case.amount)
+        return RUNS[self._case.kind](self._rig, self._ground, self._options.seed, self._case.amount)
 
     def passed(self, results: Sequence[Result]) -> bool:
         """Is all that was tried within the limits?"""

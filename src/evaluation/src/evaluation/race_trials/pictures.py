@@ -42,8 +42,7 @@ def write_chart(laps: Sequence[Lap], path: Path) -> None:
 def _draw(axes: object, laps: Sequence[Lap], value: Callable[[Lap], float]) -> None:
     seeds = sorted({lap.seed for lap in laps})
     followers = list(dict.fromkeys(lap.follower for lap in laps))
-    for (follower, closed), found in grouped(
-            laps, lambda lap: (lap.follower, lap.closed)).items():
+    for (follower, closed), found in grouped(laps, lambda lap: (lap.follower, lap.closed)).items():
         axes.plot([seeds.index(lap.seed) for lap in found], [value(lap) for lap in found],
                   "o" if closed else "x", label=f"{follower}{'' if closed else ', not closed'}",
                   color=COLOURS[followers.index(follower) % len(COLOURS)])

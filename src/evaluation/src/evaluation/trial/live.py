@@ -195,6 +195,8 @@ def _make_room(drive: LiveDrive) -> None:
         for path in filter(Path.exists, owned):
             earlier.mkdir(exist_ok=True)
             path.replace(earlier / path.name)
+        for half in drive.out.glob("*.part.*"):  # of a film whose run was killed
+            half.unlink()
     except PermissionError:
         raise
     except OSError as error:

@@ -31,5 +31,8 @@ class Pacer:
             step = (simulated - self._simulated) / self.factor
             self._simulated = simulated
             self._fair = max(self._fair + step, now - SLACK)
-            self._until = max(self._fair, self._until + step / CATCH_UP, now)
+            if step < 0:  # something came that is due before: no time has been lost by waiting
+                self._until += step
+            else:
+                self._until = max(self._fair, self._until + step / CATCH_UP, now)
         return max(0.0, self._until - now)

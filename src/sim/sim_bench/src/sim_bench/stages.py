@@ -14,24 +14,26 @@ _TABLE = re.compile(r"^stage +times .*$", re.MULTILINE)
 _ROW = re.compile(r"^(\S.*?) +(\d+) +([\d.]+) +[\d.]+ +[\d.]+%$")  # name, times, ms each, ...
 
 
-def stage_figures(name: str, log: Path, turn: str) -> list[Figure]:
-    """`NAME.stage.STAGE`: ms of wall time of each stage in a turn.
+def stages(log: Path, turn: str) -> dict[str, float]:
+    """ms of wall time that each stage of work takes in a turn.
 
-    A turn is what the stage `turn` is done once in, a frame for example; none where it was not
+    A turn is what the stage `turn` is done once in, a frame for example; empty where it was not
     done. From the first table of the log to the last, or of the only one.
     """
     tables = _tables(log.read_text(encoding="utf-8", errors="replace"))
     if not tables:
-        return []
+        return {}
     first, last = (tables[0] if len(tables) > 1 else {}), tables[-1]
     spent = {stage: (times - first.get(stage, (0, 0.0))[0], ms - first.get(stage, (0, 0.0))[1])
              for stage, (times, ms) in last.items()}
     turns = spent.get(turn, (0, 0.0))[0]
-    if turns <= 0:
-        return []
-    work = {stage: ms for stage, (_, ms) in spent.items() if stage != WAITING}
+    return {stage: ms / turns for stage, (_, ms) in spent.items() if stage != WAITING and turns > 0}
+
+
+def stage_figures(name: str, work: dict[str, float]) -> list[Figure]:
+    """`NAME.stage.STAGE`, the greatest first, without those that make no difference."""
     least = LEAST * sum(work.values())
-    return [figure(f"{name}.stage.{stage.replace(' ', '_')}", "ms", [ms / turns])
+    return [figure(f"{name}.stage.{stage.replace(' ', '_')}", "ms", [ms])
             for stage, ms in sorted(work.items(), key=lambda item: -item[1]) if ms > least]
 
 

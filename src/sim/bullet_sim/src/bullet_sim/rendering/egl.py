@@ -142,7 +142,7 @@ class EglRenderer:
         self._context.release()
 
     def _target(self, width: int, height: int, depth: bool) -> Target:
-        samples = 0 if depth else self._quality.samples  # a mean of two depths is the depth of none
+        samples = self._quality.samples_of((width, height), depth)
         key = (width, height, samples)
         if key not in self._targets:
             self._targets[key] = Target(self._context, (width, height), samples,

@@ -10,7 +10,9 @@ import numpy as np
 
 from bullet_sim.rendering.own_memory import own_array, own_blocks
 
-_SOFTWARE = ("llvmpipe", "softpipe", "swr")  # Mesa's, in GL_RENDERER
+# In GL_RENDERER of what draws on the processor, perhaps behind another driver.
+_SOFTWARE = ("llvm", "softpipe", "swr", "swiftshader", "basic render")
+_MOST_SAMPLES = 1 << 26  # in a picture; 512 MB of colour and depth
 _SAMPLES, _ANISOTROPY = 4, 8.0  # OGRE's usual FSAA in Gazebo; enough for a floor at a flat angle
 
 
@@ -22,10 +24,16 @@ class Quality:
     anisotropy: float = 1.0  # of textures
     pixel_buffers: bool = False  # read back while nobody waits with Python's lock
 
+    def samples_of(self, size: tuple[int, int], depth: bool) -> int:
+        """For a picture of that size, px; a mean of two depths is the depth of none."""
+        width, height = size
+        return 0 if depth or width * height * self.samples > _MOST_SAMPLES else self.samples
+
 
 def quality_of(context: moderngl.Context) -> Quality:
     """As fits the device."""
-    if context.info["GL_RENDERER"].lower().startswith(_SOFTWARE):
+    name = context.info["GL_RENDERER"].lower()
+    if any(word in name for word in _SOFTWARE):
         return Quality()
     return card_quality(context)
 
@@ -48,8 +56,9 @@ class Target:
                 self.framebuffer = _framebuffer(context, size, samples)
         width, height = size
         self._rgba = own_array((height, width, 4))
-        self._buffers = [context.buffer(reserve=4 * width * height) for _ in range(2)
-                         ] if pixel_buffers else []
+        reads = 1 if samples else 2  # colour, and perhaps depth
+        self._buffers = [context.buffer(reserve=4 * width * height)
+                         for _ in range(reads if pixel_buffers else 0)]
 
     def start(self, background: tuple[float, ...]) -> None:
         """Begin a picture."""

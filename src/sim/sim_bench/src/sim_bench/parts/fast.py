@@ -25,7 +25,7 @@ from sim_bench.marked_lap import marked_lap
 from sim_bench.parts.step import bare_step_time
 from sim_bench.ros_run import RosRun, ros_run
 from sim_bench.settings import Settings
-from sim_bench.stages import PROFILE, stage_figures
+from sim_bench.stages import PROFILE, stage_figures, stages
 
 SIZE = (640, 480)
 WINDOWS, WINDOW = 5, 4.0  # s, wall
@@ -69,7 +69,7 @@ def _lockstep(run: RosRun, settings: Settings) -> list[Figure]:
         figure("lockstep.real_time_factor", "x", factors),
         figure("lockstep.frames", "frames/s", [len(frames) / wall]),
         figure("lockstep.frames_a_simulated_s", "frames", [len(frames) / (end - start)]),
-        *stage_figures("lockstep", launched.log, turn="send"),
+        *stage_figures("lockstep", stages(launched.log, turn="send")),
     ]
 
 

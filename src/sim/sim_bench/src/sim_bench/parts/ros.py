@@ -30,7 +30,7 @@ from sim_bench.frame_age import frame_ages, real_time_factor
 from sim_bench.marked_lap import marked_lap
 from sim_bench.ros_run import RosRun, ros_run
 from sim_bench.settings import Settings
-from sim_bench.stages import PROFILE, stage_figures
+from sim_bench.stages import PROFILE, stage_figures, stages
 
 SIZES = {"1080p": (1920, 1080), "720p": (1280, 720)}
 WINDOWS, WINDOW = {"1080p": 7, "720p": 4}, 10.0  # s, wall
@@ -73,7 +73,7 @@ def _drive(run: RosRun, name: str, size: tuple[int, int], settings: Settings) ->
     run.end(follower.child)
     run.end(launched)
     return [*drive_figures(name, follower.seen(), edges, cpu),
-            *stage_figures(name, launched.log, turn="send")]
+            *stage_figures(name, stages(launched.log, turn="send"))]
 
 
 def drive_figures(

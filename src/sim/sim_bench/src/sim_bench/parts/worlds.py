@@ -16,11 +16,11 @@ from sim_bench.figures import Figure, figure
 from sim_bench.made_worlds import MadeWorld
 from sim_bench.ros_run import START_LIMIT, RosRun, read_lines, ros_run
 from sim_bench.settings import Settings
-from sim_bench.stages import PROFILE, stage_figures
+from sim_bench.stages import PROFILE, stage_figures, stages
 
 TRIANGLES = (30_000, 100_000, 300_000, 1_000_000)
 RUNS, WINDOW, SETTLING = 3, 6.0, 3.0  # s, wall
-FRAME = ("draw", "read_back", "convert")  # stages of a picture
+FRAME = ("draw", "read back", "convert")  # stages of a picture
 
 WORLDS: dict[str, Callable[[Path], MadeWorld]] = {
     **{f"signs.{count}": lambda folder, count=count: made_worlds.signs(folder, count)
@@ -39,17 +39,16 @@ def measure(settings: Settings) -> list[Figure]:
     for name, make in WORLDS.items():
         settings.say(name)
         with ros_run(settings, f"worlds/{name}", roscore=False) as run:
-            factors, stages = _at_work(run, name, make(run.folder), settings)
-        found += [figure(f"real_time_factor.{name}", "x", factors), *stages]
-        drawing = [stage.median for stage in stages if stage.name.rpartition(".")[2] in FRAME]
-        if drawing:
-            found.append(figure(f"frame.{name}", "ms", [sum(drawing)]))
+            factors, work = _at_work(run, make(run.folder), settings)
+        found += [figure(f"real_time_factor.{name}", "x", factors), *stage_figures(name, work)]
+        if work:
+            found.append(figure(f"frame.{name}", "ms", [sum(work.get(one, 0) for one in FRAME)]))
     return found
 
 
-def _at_work(run: RosRun, name: str, world: MadeWorld,
-             settings: Settings) -> tuple[list[float], list[Figure]]:
-    """Real-time factors, and what the stages cost in a frame."""
+def _at_work(run: RosRun, world: MadeWorld,
+             settings: Settings) -> tuple[list[float], dict[str, float]]:
+    """Real-time factors, and what the stages cost in a picture, ms."""
     launched = run.launch("gazebo_ros", "empty_world.launch", "gui:=false", PROFILE,
                           f"world_name:={world.file}")
     run.wait(simulator.models, START_LIMIT, "the simulator")
@@ -64,7 +63,7 @@ def _at_work(run: RosRun, name: str, world: MadeWorld,
         run.pause(settings.seconds(WINDOW))
         factors.append((simulator.simulated_time() - start) / (time.monotonic() - began))
     run.end(launched)
-    return factors, stage_figures(name, launched.log, turn="draw")
+    return factors, stages(launched.log, turn="draw")
 
 
 def _all_heard(file: Path, topics: int) -> bool:
