@@ -1,5 +1,6 @@
 """Mapping and navigation with the real simulator, in one small room: passed, and interrupted."""
 
+import contextlib
 import json
 import os
 import signal
@@ -88,7 +89,8 @@ def start(tmp_path) -> Iterator[Callable[..., Run]]:
         run.process.kill()
         run.process.wait()
         for pid in run.processes():
-            os.kill(pid, signal.SIGKILL)
+            with contextlib.suppress(ProcessLookupError):  # it ended meanwhile
+                os.kill(pid, signal.SIGKILL)
 
 
 @pytest.mark.timeout(LIMIT + 30)

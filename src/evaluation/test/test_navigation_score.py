@@ -112,6 +112,13 @@ def test_poses_are_compared_at_the_same_moments():
     assert records.longest_unseen == pytest.approx(0.3)
 
 
+def test_only_looks_that_a_drive_missed_count():
+    records = Records(truth=[(time, 0.0, 0.0, 0.0) for time in (0.0, 2.0, 2.1, 2.5)])
+    assert records.longest_unseen == 2.0
+    records.begun = 2.0
+    assert records.longest_unseen == pytest.approx(0.4)
+
+
 def test_errors_of_localisation_are_taken_in_the_world():
     records = records_of(np.random.default_rng(0).normal(size=(10, 3)), np.array([0.03, 0.04, 0.1]))
     errors = records.errors(0.4, SHIFT)[1]

@@ -34,6 +34,7 @@ class Records:
     believed: list[tuple[float, float, float, float]] = field(default_factory=list)  # on the map
     contacts: list[Contact] = field(default_factory=list)
     nearest: tuple[float, float] = (np.inf, 0.0)  # smallest gap to anything, m, and when, s
+    begun: float = 0.0  # s, simulated, of the pose from which on it drives
 
     @property
     def now(self) -> float:
@@ -58,8 +59,9 @@ class Records:
 
     @property
     def longest_unseen(self) -> float:
-        """s, simulated, between two looks at the true pose, at most."""
-        return max(np.diff([row[0] for row in self.truth]), default=0.0)
+        """s, simulated, between two looks at the true pose since it drives, at most."""
+        times = [row[0] for row in self.truth if row[0] >= self.begun]
+        return max(np.diff(times), default=0.0)
 
     def show(self, progress: StatusLine, part: str, what: str) -> None:
         """The progress line of a part of the run, if one is due."""

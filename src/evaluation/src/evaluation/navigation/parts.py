@@ -74,9 +74,10 @@ class Part:
         return self._driver
 
     def _begin(self) -> None:
-        """From here on time and processors are counted."""
+        """From here on the robot may drive; time and processors are counted."""
         self._cpu = CpuMeter()
         self._began, self._begin_time = time.monotonic(), self._watch.records.now
+        self._watch.records.begun = self._begin_time
 
     def _pace(self) -> score.Pace:
         simulated = self._watch.records.now - self._begin_time
