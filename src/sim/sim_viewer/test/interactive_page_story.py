@@ -6,6 +6,7 @@ import sys
 import unittest
 
 import chromium
+import firefox
 import rospy
 import rostest
 import rviz_messages as made_up
@@ -14,6 +15,7 @@ from interactive_markers.interactive_marker_server import InteractiveMarkerServe
 from interactive_messages import EVENTS, scene
 from tf2_msgs.msg import TFMessage
 
+BROWSERS = {"chromium": chromium, "firefox": firefox}
 TOLERANCE = 0.05  # m, of a click: a pixel or two
 PROJECT = """((x, y, z) => {
     const { viewport } = window.rviz;
@@ -34,7 +36,7 @@ class InteractivePage(unittest.TestCase):
         for marker in scene():
             cls.server.insert(marker, cls.take)
         cls.server.applyChanges()
-        cls.browser = chromium.Browser()
+        cls.browser = BROWSERS[rospy.get_param("~browser", "chromium")].Browser()
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.open("/sim_viewer/url")
 
