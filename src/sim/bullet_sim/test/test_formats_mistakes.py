@@ -105,6 +105,15 @@ def test_a_line_of_a_huge_name_is_short_and_keeps_both_ends(load, caplog):
     assert len(line) < 600 and "test.world" in line and line.endswith("is used instead")
 
 
+@pytest.mark.parametrize("contents", [
+    "<include><uri>mod\n el://square</uri></include>",
+    "<include><uri>model://square\u2028b</uri></include>", '<model name="a\x85b"/>'])
+def test_a_name_of_two_lines_is_told_in_one(load, caplog, contents):
+    load(contents)
+    assert errors(caplog)
+    assert all(len(line.splitlines()) == 1 for line in errors(caplog))
+
+
 def test_a_file_without_a_world_is_still_refused(tmp_path):
     file = tmp_path / "x.world"
     for text, said in (("<sdf/>", "has no <world>"), ("<sdf>", "is not well-formed XML")):

@@ -1,14 +1,17 @@
 """The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
+LINE_BREAK = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")  # those of str.splitlines
 LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
 
 
 def shortened(text: str, longest: int = LONGEST_LINE) -> str:
-    """Both ends of one that is too long: what is wrong, and what to do about it."""
+    """One line, and both ends of one that is too long: what is wrong, and what to do about it."""
+    text = LINE_BREAK.sub(" ", text)
     half = longest // 2
     return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
 
