@@ -81,8 +81,7 @@ class CourseRun(CarDrive):
         self.track_file = load_track_file(options.track)
         course = options.course
         super().__init__(options, course, LapScorer(
-            build_track(self.track_file), options.laps, course.off_course,
-            options.duration))
+            build_track(self.track_file), options.laps, course.off_course, options.duration))
         self.driver = options.follower
         if options.video:
             period = FAST_FILM_PERIOD if options.fast else FILM_PERIOD

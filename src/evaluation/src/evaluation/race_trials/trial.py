@@ -75,8 +75,7 @@ class RaceTrial(LapTrial):
         name = venue.world.stem
         self._out, folder = out, out / "laps" / f"{name}-{case.seed}"
         return Outing(f"{case.follower} on {name}, seed {case.seed}", "race", case.follower, venue,
-                      folder, folder / Path(case.follower).stem, draw(case.seed, RACE),
-                      LONGEST_LAP)
+                      folder, folder / Path(case.follower).stem, draw(case.seed, RACE), LONGEST_LAP)
 
     def score(self, record: dict) -> Lap:
         case, outing = self._case, self._outing

@@ -28,13 +28,14 @@ def write_chart(results: Results, path: Path) -> None:
     """Draw what there is; a panel without any figure is left out."""
     figures = results.figures()
     panels = [panel for panel in PANELS if _wanted(figures, panel)]
-    rows = max(1, -(-len(panels) // COLUMNS))
-    columns = max(1, min(COLUMNS, len(panels)))
-    size = (PANEL_WIDTH * columns, PANEL_HEIGHT * rows)
-    sheet, grid = pyplot.subplots(rows, columns, figsize=size, squeeze=False)
-    for axes in grid.flat[len(panels):]:
-        axes.set_visible(False)
-    for axes, (title, _, draw) in zip(grid.flat, panels):
+    others = max(0, len(panels) - 1)
+    rows, columns = max(1, -(-others // COLUMNS)), min(COLUMNS, others)
+    sheet = pyplot.figure(figsize=(PANEL_WIDTH * (columns + 1), PANEL_HEIGHT * rows))
+    grid = sheet.add_gridspec(rows, columns + 1)
+    places = [grid[number // columns, number % columns] for number in range(others)]
+    # The last one has a bar for each goal.
+    for place, (title, _, draw) in zip([*places, grid[:, columns]], panels):
+        axes = sheet.add_subplot(place)
         draw(axes, figures)
         axes.set_title(title, fontsize=10)
         axes.tick_params(labelsize=8)

@@ -33,7 +33,7 @@ LIMIT = 120.0  # s, wall, for an answer
 
 
 def measure(settings: Settings) -> list[Figure]:
-    """Milliseconds on the wall; `cpu`: of processor time, of all threads together."""
+    """Milliseconds on the wall; `_cpu`: of processor time, of all threads together."""
     settings.say("a picture of one colour")
     runs, spawn = settings.runs(RUNS), multiprocessing.get_context("spawn")
     try:
@@ -45,7 +45,7 @@ def measure(settings: Settings) -> list[Figure]:
     found = []
     for (width, height), (wall, cpu) in times.items():
         found += [figure(f"flat_picture.{width}x{height}", "ms", wall),
-                  figure(f"flat_picture.cpu.{width}x{height}", "ms", cpu)]
+                  figure(f"flat_picture_cpu.{width}x{height}", "ms", cpu)]
     settings.say(f"{DEPTH_FRAME / 1e6:.0f} MB in memory, and from process to process")
     return [*found, figure("depth_frame.copy", "ms", _copies(runs)),
             figure("depth_frame.loopback", "ms", _loopback(runs))]
