@@ -4,8 +4,9 @@ from sim_viewer import registry
 
 LOOKING = {"bag_info", "parameter", "parameters", "plot_expand", "plot_fields", "rviz_change",
            "rviz_config", "rviz_drawn", "rviz_types", "service", "services"}
-CHANGING = {"call_service", "delete_parameter", "pause", "play", "record", "reset", "rviz_publish",
-            "rviz_tool", "set_parameter", "step", "stop_play", "stop_record"}
+CHANGING = {"call_service", "delete_parameter", "pause", "play", "record", "reset", "rviz_feedback",
+            "rviz_menu", "rviz_publish", "rviz_tool", "set_parameter", "step", "stop_play",
+            "stop_record"}
 
 
 def test_only_looking_needs_no_control():
