@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Simulated time against the wall clock: as the options and services say, whoever hangs on it."""
 
+import math
 import os
 import re
 import signal
 import socket
+import statistics
 import struct
 import subprocess
 import sys
@@ -121,8 +123,10 @@ class Pace(unittest.TestCase):
         wait_until(lambda: len(images) > 25 and len(scans) > 12, "images and scans")
         for messages, period in ((images[1:], 0.05), (scans[1:], 0.1)):  # one may be of before
             stamps = [message.header.stamp.to_sec() for message in messages]
-            for before, now in pairwise(stamps):
-                self.assertAlmostEqual(now - before, period, places=6)
+            gaps = [now - before for before, now in pairwise(stamps)]
+            self.assertAlmostEqual(statistics.median(gaps), period, places=6)
+            for gap in gaps:  # who is slower than the simulation misses some
+                self.assertAlmostEqual(math.remainder(gap, period), 0.0, places=6)
 
     # --- physics properties
 
