@@ -92,6 +92,8 @@ CRITERIA = (
     Criterion("depth camera, 1920x1080, real time", "worlds/real_time_factor.depth.1920x1080",
               at_least=0.8, bound_by=("worlds/depth.1920x1080.stage.", "limits/depth_frame.")),
     Criterion("300,000 triangles, a picture", "worlds/frame.signs.300000", at_most=8),
+    Criterion("300,000 triangles, a picture at work", "worlds/frame_at_work.signs.300000",
+              at_most=8, bound_by=("worlds/signs.300000.stage.",)),
     *(Criterion(f"coarse environment against {name}, {size}, {processes} at once",
                 f"learning/ratio.coarse.{kind}.{size}.{processes}", at_least=bound)
       for kind, name, bound in (("tiny", "TinyRenderer", 20), ("plugin", "EGL plugin", 3))

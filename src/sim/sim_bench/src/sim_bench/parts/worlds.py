@@ -22,6 +22,7 @@ from sim_bench.stages import PROFILE, stage_figures, stages
 
 TRIANGLES = (30_000, 100_000, 300_000, 1_000_000)
 RUNS, WINDOW, SETTLING = 3, 6.0, 3.0  # s, wall
+DRAWING = ("draw", "read back", "convert")
 FRAME = re.compile(r"camera \S+ \(\d+x\d+\): ([\d.]+) ms a frame")  # as the simulator logs it
 
 WORLDS: dict[str, Callable[[Path], MadeWorld]] = {
@@ -42,8 +43,11 @@ def measure(settings: Settings) -> list[Figure]:
         settings.say(name)
         with ros_run(settings, f"worlds/{name}", roscore=False) as run:
             factors, log = _at_work(run, make(run.folder), settings)
-        found += [figure(f"real_time_factor.{name}", "x", factors),
-                  *stage_figures(name, stages(log, turn="draw"))]
+        work = stages(log, turn="draw")
+        found += [figure(f"real_time_factor.{name}", "x", factors), *stage_figures(name, work)]
+        if work:
+            drawing = sum(work.get(stage, 0.0) for stage in DRAWING)
+            found.append(figure(f"frame_at_work.{name}", "ms", [drawing]))
         if said := FRAME.findall(log.read_text(encoding="utf-8", errors="replace")):
             found.append(figure(f"frame.{name}", "ms", map(float, said)))
     return found
