@@ -12,6 +12,7 @@ import cv2
 COMPLAINT = "course_run: "
 TRACEBACK = "Traceback (most recent call last):\n"
 FAILURE = re.compile(r"^(?!KeyboardInterrupt)[\w.]*(Error|Exception|Interrupt|Iteration)\b", re.M)
+OTHERS = re.compile(r'  File "(/usr/bin/rosversion|[^"]*/logging/__init__\.py)"')
 NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 
@@ -34,15 +35,13 @@ def wrong_logs(folder: Path) -> Iterator[str]:
 
 def _has_traceback(text: str) -> bool:
     """But for those that are not ours to keep back."""
-    parts = text.split(TRACEBACK)
-    return not all(map(_is_anothers, parts, parts[1:]))
+    return not all(map(_is_anothers, text.split(TRACEBACK)[1:]))
 
 
-def _is_anothers(before: str, after: str) -> bool:
+def _is_anothers(traceback: str) -> bool:
     """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
     of Debian's rosversion, whose roscore was killed. Of several at once the lines are mixed."""
-    return (before.endswith("--- Logging error ---\n")
-            or after.startswith('  File "/usr/bin/rosversion"') or not FAILURE.search(after))
+    return bool(OTHERS.match(traceback)) or not FAILURE.search(traceback)
 
 
 def half_files(folder: Path) -> Iterator[str]:
