@@ -57,7 +57,7 @@ def test_who_ends_early_says_one_line(chaos, said, code, faults):
     (f"KeyboardInterrupt\n{TRACEBACK}ValueError\n", 1),
     (f"{TRACEBACK}rospy.exceptions.ROSInterruptException: shutdown\n", 1),
     (f'{TRACEBACK}  File "/usr/bin/rosversion", line 33\nBrokenPipeError\n', 0),
-    (f"{TRACEBACK}KeyboardInterrupt\nException ignored in atexit\n{TRACEBACK}KeyboardInterrupt: ", 0),
+    (f"{TRACEBACK}KeyboardInterrupt\nException ignored in it\n{TRACEBACK}KeyboardInterrupt: ", 0),
     (f"Exception ignored in atexit\n{TRACEBACK}ValueError\n", 1),
     (f"{TRACEBACK}{TRACEBACK}KeyboardInterrupt\nKeyboardInterrupt\n", 0),  # of two at once
     (f'--- Logging error ---\nkilling on exit\n{TRACEBACK}  File "/usr/lib/python3.11/logging/'

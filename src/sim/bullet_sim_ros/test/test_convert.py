@@ -16,6 +16,7 @@ from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.twist import Twist
 from bullet_sim_ros import convert
+from bullet_sim_ros.array_messages import ArrayImage, ArrayPointCloud2
 
 
 @pytest.mark.parametrize("seconds, secs, nsecs", [
@@ -124,6 +125,27 @@ def test_points_go_out_as_the_generated_class_packs_them(hole):
     back = PointCloud2().deserialize(sent.getvalue())
     assert (back.width, back.height, back.point_step, back.row_step) == (5, 3, 16, 80)
     assert back.is_dense is not hole and back.header.stamp.to_sec() == 1.5
+
+
+class Uncopied(np.ndarray):
+    """An array that may be written to the wire, and not be made bytes before."""
+
+    def tobytes(self, *_):
+        raise AssertionError("copied")
+
+
+@pytest.mark.parametrize("made", [
+    lambda: ArrayImage(np.zeros((3, 5, 3), np.uint8).view(Uncopied), encoding="rgb8"),
+    lambda: ArrayPointCloud2(np.zeros((3, 5, 4), np.float32).view(Uncopied), "xyz_")])
+def test_what_an_array_holds_is_not_copied_before_it_is_sent(made):
+    made().serialize(io.BytesIO())
+
+
+def test_depth_that_is_too_near_or_too_far_is_none():
+    depth = np.array([[0.3, 0.4], [3.0, np.inf]] * 20, np.float32)  # more rows than go at once
+    convert.remove_outside(depth, 0.4, 3.0)
+    assert np.array_equal(depth, np.array([[np.nan, 0.4], [3.0, np.nan]] * 20, np.float32),
+                          equal_nan=True)
 
 
 def test_camera_info_has_gazebos_principal_point():

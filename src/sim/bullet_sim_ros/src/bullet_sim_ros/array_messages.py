@@ -19,10 +19,11 @@ class ArrayImage(Image):
 
     def __init__(self, pixels: np.ndarray, profiler: Profiler | None = None, **fields):
         """`pixels`: (h, w) or (h, w, channels), C-contiguous; `fields` are those of Image."""
-        self._pixels = pixels
+        self._pixels = np.empty(0)  # the generated constructor reads every field
         self._profiler = profiler or Profiler()
         super().__init__(height=pixels.shape[0], width=pixels.shape[1],
                          step=pixels.nbytes // pixels.shape[0], is_bigendian=0, **fields)
+        self._pixels = pixels
 
     @property
     def data(self) -> bytes:
@@ -49,13 +50,14 @@ class ArrayPointCloud2(PointCloud2):
 
     def __init__(self, points: np.ndarray, names: Sequence[str], **fields):
         """`points`: (h, w, len(names)) float32, C-contiguous; `fields` are those of PointCloud2."""
-        self._points = points
+        self._points = np.empty(0)  # as ArrayImage's
         height, width, _ = points.shape
         step = points.strides[1]
         super().__init__(
             height=height, width=width, point_step=step, row_step=step * width, is_bigendian=False,
             fields=[PointField(name, 4 * place, PointField.FLOAT32, 1)
                     for place, name in enumerate(names)], **fields)
+        self._points = points
 
     @property
     def data(self) -> bytes:

@@ -18,6 +18,7 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
 from bullet_sim.profiler import Profiler
+from bullet_sim.rendering.frame import strips
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
@@ -29,7 +30,6 @@ Message = TypeVar("Message")  # with a header
 UNKNOWN_VARIANCE = 1e12
 # m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
 LARGEST = 1e6
-STRIP = 16  # rows of a cloud at once, so that what lies between stays in the processor's cache
 
 
 def stamp(seconds: float) -> rospy.Time:
@@ -156,6 +156,13 @@ def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8
     return _image(encode(rgb, encoding), time, frame, encoding, profiler)
 
 
+def remove_outside(depth: np.ndarray, near: float, far: float) -> None:
+    """Make NaN of what of an (h, w) float32 depth in m is not from `near` to `far`."""
+    for rows in strips(len(depth)):
+        part = depth[rows]
+        np.copyto(part, np.float32(math.nan), where=(part < near) | (part > far))
+
+
 def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:
     """32FC1 in m with NaN for no value, or 16UC1 in mm with 0."""
     if not millimetres:
@@ -177,14 +184,15 @@ def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: flo
     columns = (np.arange(width, dtype=np.float32) - (width - 1) / 2) / np.float32(focal_px)
     rows = (np.arange(height, dtype=np.float32)[:, None] - (height - 1) / 2) / np.float32(focal_px)
     points = np.empty((height, width, 4), np.float32)
-    for top in range(0, height, STRIP):
-        strip = slice(top, top + STRIP)
+    is_dense = True
+    for strip in strips(height):
         colours = cv2.cvtColor(rgb[strip], cv2.COLOR_RGB2BGRA).view("<u4")[..., 0]
         colours &= 0xFFFFFF
         z = depth[strip]
         cv2.merge([z * columns, z * rows[strip], z, colours.view(np.float32)], points[strip])
-    return stamped(ArrayPointCloud2(points, ("x", "y", "z", "rgb"),
-                              is_dense=not np.isnan(depth).any()), time, frame)
+        is_dense = is_dense and not np.isnan(z).any()
+    return stamped(ArrayPointCloud2(points, ("x", "y", "z", "rgb"), is_dense=is_dense), time,
+                   frame)
 
 
 def camera_info_to_msg(camera: CameraDescription, time: float, frame: str, *, centre_x: float = 0,

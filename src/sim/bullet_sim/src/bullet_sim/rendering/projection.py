@@ -9,7 +9,7 @@ camera frame (x forward, y left, z up) falls at column (width - 1) / 2 - f y / x
 import numpy as np
 
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.frame import CameraView
+from bullet_sim.rendering.frame import CameraView, strips
 
 # Camera frame (x forward, y left, z up) to OpenGL's eye frame (x right, y up, z backward).
 _EYE_FROM_CAMERA = np.array([
@@ -38,14 +38,17 @@ def view_matrix(pose: Pose) -> np.ndarray:
 
 
 def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
-    """Depth buffer values 0..1 to m along the optical axis, float32; inf where nothing was drawn.
+    """Depth buffer values 0..1 (h, w) to m along the optical axis, float32; inf where nothing was
+    drawn.
 
     Written with 1 - depth, which is exact where depth is close to 1: no cancellation far away.
     """
-    result = np.subtract(np.float32(1), depth, dtype=np.float32)
-    background = result <= 0
-    result *= np.float32(1 / near - 1 / far)
-    result += np.float32(1 / far)
-    np.reciprocal(result, out=result)
-    result[background] = np.inf
+    result = np.empty(depth.shape, np.float32)
+    for rows in strips(len(depth)):
+        part = np.subtract(np.float32(1), depth[rows], out=result[rows], dtype=np.float32)
+        background = part <= 0
+        part *= np.float32(1 / near - 1 / far)
+        part += np.float32(1 / far)
+        np.reciprocal(part, out=part)
+        part[background] = np.inf
     return result

@@ -71,9 +71,8 @@ class DepthCameraPublisher(CameraPublisher):
 
     def _publish_depth(self, reading: CameraReading, focal_px: float, depth: bool,
                        points: bool) -> None:
-        inside = (reading.depth >= self._near) & (reading.depth <= self._far)
-        metres = np.where(inside, reading.depth, np.float32(math.nan))
-        frame = self.settings.frame
+        metres, frame = reading.depth, self.settings.frame
+        convert.remove_outside(metres, self._near, self._far)
         if depth:
             self._depths.publish(
                 convert.depth_to_msg(metres, reading.time, frame, self._millimetres))

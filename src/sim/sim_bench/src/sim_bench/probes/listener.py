@@ -3,7 +3,8 @@
     python3 -m sim_bench.probes.listener OUT TOPIC...
 
 Rewrites OUT once a wall second with a line `TIME MESSAGES BYTES` for each topic, in their order;
-TIME is CLOCK_MONOTONIC in s.
+TIME is CLOCK_MONOTONIC in s. It reads as rospy does unless told; to read 64 MB at once costs 30 ms
+more for the 48 MB of a depth camera's picture of 1920x1080: memory that is new each time.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ from pathlib import Path
 import rospy
 
 WRITE_PERIOD = 1.0  # s, wall
-LARGEST_MESSAGE = 1 << 26  # bytes read at once
 
 
 class Count:
@@ -23,7 +23,7 @@ class Count:
 
     def __init__(self, topic: str):
         self.messages = self.bytes = 0
-        rospy.Subscriber(topic, rospy.AnyMsg, self._add, buff_size=LARGEST_MESSAGE, queue_size=1)
+        rospy.Subscriber(topic, rospy.AnyMsg, self._add, queue_size=1)
 
     def _add(self, message: rospy.AnyMsg) -> None:
         self.messages += 1
