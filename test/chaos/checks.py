@@ -13,7 +13,7 @@ COMPLAINT = "course_run: "
 TRACEBACK = "Traceback (most recent call last):\n"
 FAILURE = re.compile(
     r"^(?!KeyboardInterrupt|Exception ignored)[\w.]*(Error|Exception|Interrupt|Iteration)\b", re.M)
-OTHERS = re.compile(r'  File "(/usr/bin/rosversion|[^"]*/logging/__init__\.py)"')
+OTHERS = re.compile(r'  File "(/usr/bin/rosversion|[^"]*/logging/\w+\.py)"')
 NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 
