@@ -130,7 +130,10 @@ def read_parameters(given):
 
 
 def main():
-    rospy.init_node("lane_keeping")
+    try:
+        rospy.init_node("lane_keeping")
+    except rospy.ROSInitException:
+        sys.exit(1)  # Ctrl-C while it looked for the master, which has been said
     given = rospy.get_param("~", {})
     for key in load_command_line_node_params(sys.argv):
         rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
