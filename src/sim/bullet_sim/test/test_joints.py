@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from bullet_sim.description import WorldDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.joint import LoopJoint
@@ -466,3 +467,26 @@ def test_what_a_joint_bears_is_measured_on_after_a_motion_that_is_not_finite(wor
     for lamp in lamps:
         force, _ = lamp.joint("j").reaction()
         assert force == pytest.approx((0.0, 0.0, -GRAVITY), abs=1e-3)
+
+
+def test_a_damped_joint_too_far_from_what_it_holds_has_no_mass_matrix():
+    far = "1e9 1e9 1e9 1e9 -1e9 1e9"
+    hinge = joint("hinge", "revolute", "frame", "leaf", f"<pose>-0.3 {far[4:]}</pose>" + axis(
+        "1e9 1e9 1", "<dynamics><damping>0.5</damping><spring_reference>1e9</spring_reference>"
+        "<spring_stiffness>1e9</spring_stiffness></dynamics>"))
+    world = World(WorldDescription())
+    try:
+        world.spawn(read(link("frame", far) + link("leaf", far) + hinge))
+        world.step(3)
+    finally:
+        world.close()
+
+
+def test_a_joint_with_a_name_that_the_engine_cannot_hold_is_refused():
+    world = World(WorldDescription())
+    try:
+        with pytest.raises(SimulationError, match="names of 1023 characters, not one of 1000000"):
+            world.spawn(read(link("a") + link("b") + joint(
+                "x" * 1_000_000, "revolute", "a", "b", axis("0 0 1"))))
+    finally:
+        world.close()

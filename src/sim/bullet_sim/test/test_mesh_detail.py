@@ -167,3 +167,12 @@ def test_broken_meshes_are_drawn_all_the_same(broken):
     part = smooth_shaded(broken.reshape(-1, 3), np.arange(1800).reshape(-1, 3))
     for level in levels(part):
         assert np.isfinite(level.part.vertices).all() and np.isfinite(level.part.normals).all()
+
+
+@pytest.mark.parametrize("corners", [1, 3, 7])
+def test_a_part_of_few_corners_gives_their_normals(corners):
+    up = np.tile(np.float32([0, 0, 1]), (corners, 1))
+    places = np.float32([[number, number % 2, 0] for number in range(corners)])
+    part = MeshPart(places, up, None, np.zeros((1, 3), np.uint32))
+    coarse = detail._Shading(part).of(np.array([[[0, 0, 0], [6, 0, 0], [0, 6, 0]]], float))
+    assert coarse.normals == pytest.approx(np.tile([0, 0, 1], (3, 1)))

@@ -111,8 +111,10 @@ class _Shading:
         """Corners (j, 3, 3). A normal is the mean of the nearest that point as its triangle."""
         corners = triangles.reshape(-1, 3)
         own = np.repeat(face_normals(triangles), 3, axis=0)
-        away, near = self._near.query(corners, NEIGHBOURS)
-        normals = self._part.normals[near]  # (3 j, NEIGHBOURS, 3)
+        # A list, also of one, gives an array for each corner.
+        nearest = list(range(1, min(NEIGHBOURS, len(self._part.vertices)) + 1))
+        away, near = self._near.query(corners, nearest)
+        normals = self._part.normals[near]  # (3 j, at most NEIGHBOURS, 3)
         alike = (normals * own[:, None]).sum(axis=2) > SAME_WAY
         weights = alike / (away / (away.mean(axis=1, keepdims=True) + 1e-9) + 1e-3) ** 2
         mean = (normals * weights[..., None]).sum(axis=1)

@@ -54,7 +54,10 @@ def _inertias(body: BodyJoints, joints: int) -> list[float]:
         return [_own_inertia(body, name) for name in body.joint_index]
     positions = [body.joint_state(name)[0] for name in body.joint_index]
     moving = [index for index, name in enumerate(body.joint_index) if not body.is_locked(name)]
-    rows = body.read(pybullet.calculateMassMatrix, [positions[index] for index in moving])
+    try:
+        rows = body.read(pybullet.calculateMassMatrix, [positions[index] for index in moving])
+    except SystemError:  # PyBullet says so that there is none, as for a door 1e9 m from its hinge
+        return [_own_inertia(body, name) for name in body.joint_index]
     free = np.linalg.pinv(np.array(rows))[-len(moving):, -len(moving):] if moving else ()
     inertias = [math.inf] * joints
     for place, index in enumerate(moving):
