@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from mutating import TEXT, XML_TEXT, spoilt
@@ -23,6 +24,7 @@ STEPS = 3
 REFUSED = 2  # exit code of xacro
 
 
+@cache
 def _package(name: str) -> str:
     for path in (ROOT / "src").glob(f"**/{name}/package.xml"):
         return str(path.parent)
