@@ -1,6 +1,7 @@
 """The simulator node's command line, without a master."""
 
 import logging
+import signal
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,27 @@ def test_without_a_master_it_says_so_and_waits(monkeypatch, capsys):
     node.wait_for_master()
     assert "No ROS master - start roscore to continue..." in capsys.readouterr().err
     assert next(looks, "all taken") == "all taken"
+
+
+@pytest.mark.parametrize("lost", ["read_node_parameters", "open_network"])
+def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, lost):
+    """Chaos: race, seed 106, restarts the master while the simulator starts."""
+    def lose(*_):
+        raise ConnectionRefusedError(111, "Connection refused")
+
+    for name in ("wait_for_master", "send_promptly", "check_engine", "forward_core_log",
+                 "register_plugins"):
+        monkeypatch.setattr(node, name, lambda *_: None)
+    monkeypatch.setattr(node, "read_node_parameters", NodeParameters)
+    monkeypatch.setattr(node, lost, lose)
+    monkeypatch.setattr(rospy, "init_node", lambda *_, **__: None)
+    monkeypatch.setattr("sys.argv", ["gzserver", "--world", WORLD])
+    monkeypatch.setattr("sys.setswitchinterval", lambda _: None)
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    assert node.main() == 1
+    told = [record for record in caplog.records if record.levelno == logging.CRITICAL]
+    assert len(told) == 1 and "has ended while the simulator started" in told[0].getMessage()
+    assert "Traceback" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("engine, said", [

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from http.client import HTTPException
 from pathlib import Path
 from typing import NoReturn
 
@@ -48,6 +49,7 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
 SWITCH_INTERVAL = 0.0005
 FASTEST = 1000.0  # real-time factor; 0 is for more
 LATEST = 4e9  # s; ROS counts to 2**32
+MASTER_LOST = (ConnectionError, HTTPException)  # of a master that ends while it is asked
 ENGINES = ("ode", "bullet", "dart", "simbody")  # that Gazebo 11 knows
 
 
@@ -124,8 +126,15 @@ def check_engine(name: str) -> None:
                      "asked for", name, ", ".join(ENGINES))
 
 
+def say_master_lost(error: Exception) -> int:
+    """One line; the exit code."""
+    rospy.logfatal("the ROS master at %s has ended while the simulator started: %s; start both "
+                   "again", rosgraph.get_master_uri(), error)
+    return 1
+
+
 def main() -> int:
-    """Run until shutdown; 1 if the world cannot be opened."""
+    """Run until shutdown; 1 if the world cannot be opened, or the master ends before it is."""
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
@@ -144,7 +153,10 @@ def main() -> int:
     except SimulationError as error:
         rospy.logfatal("Could not open file %s: %s", options.world, error)
         return 1
-    parameters = read_node_parameters()
+    try:
+        parameters = read_node_parameters()
+    except MASTER_LOST as error:
+        return say_master_lost(error)
     for name, topics in ((names.LOCKSTEP, parameters.lockstep),
                          (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
         if not all(is_legal_name(topic) for topic in split(topics)):
@@ -154,7 +166,11 @@ def main() -> int:
     simulation = Simulation(world, parameters)
     for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
         signal.signal(number, lambda _number, _frame: simulation.stop())
-    open_network(simulation, resources, parameters)
+    try:
+        open_network(simulation, resources, parameters)
+    except MASTER_LOST as error:
+        simulation.close()
+        return say_master_lost(error)
     if parameters.state_log:
         try:
             StateLog(simulation, Path(parameters.state_log))
