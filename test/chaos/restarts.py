@@ -22,6 +22,9 @@ class PlayByHand:
         self._round, self._folder = played, folder
         self._victim = played.fault.victim
         self._terminal = OWNERS.get(self._victim, self._victim)
+        # What a killed roslaunch leaves has the names of what is started next: rosmaster would ask
+        # the old one to end, and the new one when the old one next logs.
+        self._leaves_nodes = self._victim == "roslaunch" and played.fault.roscore
         self._rng = Random(f"{played.course.name}/{played.seed}/act")
 
     @property
@@ -71,12 +74,19 @@ class PlayByHand:
             yield f"{self._terminal} has not ended"
             return
         time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
-        since = 0.0 if self._terminal == WORLD or self._without_master else hands.now()
+        since = hands.now() if self._victim in self._round.course.drivers else 0.0
+        if self._leaves_nodes and not hands.kill_nodes(END_LIMIT):
+            yield "nodes do not end by rosnode kill -a"
+            return
         hands.start(self._terminal)
-        if self._without_master:
+        if self._leaves_nodes:
+            for name in [name for name in hands.open if name not in (ROSCORE, WORLD)]:
+                if not hands.ended(name, END_LIMIT):
+                    yield f"{name} has not ended by rosnode kill -a"
+        elif self._without_master:
             yield from self._start_others_again(hands, told)
         else:
-            yield from _ended_by_themselves(hands, told, but=self._terminal)
+            yield from ended_by_themselves(hands, told, but=self._terminal)
         if not hands.start_usual(START_LIMIT):
             yield "does not start again"
         elif not hands.wait_for(
@@ -86,7 +96,7 @@ class PlayByHand:
         yield from self._wrong_nodes(hands)
 
     def _meanwhile(self, hands: Terminals) -> Iterator[str]:
-        """Without its driver the car stands; without a master it drives on."""
+        """Without its driver the car stands; without a master or roslaunch it drives on."""
         since = hands.now()
         if self._round.starting:
             return
@@ -94,10 +104,10 @@ class PlayByHand:
             wait_until(lambda: hands.now() > since + WATCHED, WATCH_LIMIT)
             if late := drives_on(hands.places(), since, hands.now()):
                 yield late
-        elif self._terminal == ROSCORE and not wait_until(
+        elif (self._terminal == ROSCORE or self._leaves_nodes) and not wait_until(
                 lambda: driven([at for at in hands.places() if at[0] >= since]) > STARTED,
                 WATCH_LIMIT):
-            yield "does not drive on without a master"
+            yield "does not drive on"
 
     def _start_others_again(self, hands: Terminals, told: dict[str, int]) -> Iterator[str]:
         """All that the new master does not know."""
@@ -105,7 +115,7 @@ class PlayByHand:
             yield f"{self._terminal} does not start again"
             return
         time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
-        yield from _ended_by_themselves(hands, told, but=self._terminal)
+        yield from ended_by_themselves(hands, told, but=self._terminal)
         yield from self._wrong_nodes(hands)
         for name in reversed([name for name in hands.open if name != self._terminal]):
             yield from _end(hands, name)
@@ -117,12 +127,12 @@ class PlayByHand:
                 yield f"node {node} has died"
 
 
-def _ended_by_themselves(hands: Terminals, told: dict[str, int], but: str) -> Iterator[str]:
-    """They say why in one line, and are to be started again."""
+def ended_by_themselves(hands: Terminals, told: dict[str, int], but: str) -> Iterator[str]:
+    """They say why in one line, roslaunch in a banner, and are to be started again."""
     for name in [name for name in hands.open if name != but]:
         if hands.open[name].poll() is not None:
             hands.ended(name, 0.0)
-            if (lines := len(hands.said(name)) - told[name]) != 1:
+            if name != WORLD and (lines := len(hands.said(name)) - told[name]) != 1:
                 yield f"{name} ended by itself with {lines} lines"
 
 

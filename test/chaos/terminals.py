@@ -21,6 +21,8 @@ MASTER = f"http://localhost:{USUAL_PORT}"  # nobody else's: a round has a networ
 ROSCORE, WORLD = "roscore", "world"  # terminals; others have their driver's name
 OWNERS = {"simulator": WORLD, "roslaunch": WORLD, "master": ROSCORE}  # their terminals
 
+NODE = r"__name:=(?!rosout\b)"  # of roslaunch's, but for roscore's own
+
 
 class Terminals(Watched):
     """A terminal is open from the start of its command to its end; it may be opened again."""
@@ -83,6 +85,19 @@ class Terminals(Watched):
             return False
         del self.open[name]
         return True
+
+    def kill_nodes(self, limit: float) -> bool:
+        """`rosnode kill -a`, again for those that were only starting; whether nothing that
+        roslaunch has started is left within `limit`, s, wall."""
+
+        def are_gone() -> bool:
+            if not matching(self.mark, NODE):
+                return True
+            subprocess.run(["rosnode", "kill", "-a"], capture_output=True, check=False,
+                           cwd=self.folder, env=self._environment)
+            return False
+
+        return wait_until(are_gone, limit)
 
     def said(self, name: str) -> list[str]:
         """Lines, since its command was typed last."""
