@@ -78,6 +78,8 @@ class PlayByHand:
         if self._leaves_nodes and not hands.kill_nodes(END_LIMIT):
             yield "nodes do not end by rosnode kill -a"
             return
+        if self._terminal == ROSCORE and self._round.starting:  # roslaunch may bring its own then
+            yield from self._end_others(hands, told)
         hands.start(self._terminal)
         if self._leaves_nodes:
             for name in [name for name in hands.open if name not in (ROSCORE, WORLD)]:
@@ -115,6 +117,9 @@ class PlayByHand:
             yield f"{self._terminal} does not start again"
             return
         time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+        yield from self._end_others(hands, told)
+
+    def _end_others(self, hands: Terminals, told: dict[str, int]) -> Iterator[str]:
         yield from ended_by_themselves(hands, told, but=self._terminal)
         yield from self._wrong_nodes(hands)
         for name in reversed([name for name in hands.open if name != self._terminal]):

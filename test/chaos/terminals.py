@@ -21,7 +21,8 @@ MASTER = f"http://localhost:{USUAL_PORT}"  # nobody else's: a round has a networ
 ROSCORE, WORLD = "roscore", "world"  # terminals; others have their driver's name
 OWNERS = {"simulator": WORLD, "roslaunch": WORLD, "master": ROSCORE}  # their terminals
 
-NODE = r"__name:=(?!rosout\b)"  # of roslaunch's, but for roscore's own
+# Of roslaunch's, but for roscore's own, and for what is no node and ends with the master.
+NODE = r"__name:=(?!rosout\b|gazebo_gui\b)"
 
 
 class Terminals(Watched):

@@ -2,11 +2,13 @@
 
 import logging
 import signal
+import threading
 from pathlib import Path
 
 import pytest
 import rosgraph
 import rospy
+from rospy import core
 
 from bullet_sim_ros import log_bridge, node
 from bullet_sim_ros.node import open_world, parse
@@ -92,6 +94,23 @@ def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, l
     told = [record for record in caplog.records if record.levelno == logging.CRITICAL]
     assert len(told) == 1 and "has ended while the simulator started" in told[0].getMessage()
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_no_topic_is_closed_while_the_loop_still_publishes(monkeypatch):
+    """Chaos: race, seed 203, ends it by rosnode kill; rospy closes topics in its preshutdown."""
+    monkeypatch.setattr(core, "_client_shutdown_hooks", [])
+    closed, asked = threading.Event(), threading.Event()
+    monkeypatch.setattr(core, "_preshutdown_hooks", [lambda _: closed.set()])
+    monkeypatch.setattr(core, "_shutdown_hooks", [])
+    for flag in ("_shutdown_flag", "_in_shutdown"):
+        monkeypatch.setattr(core, flag, False)
+    ended = node.end_before_topics(asked.set)
+    master = threading.Thread(target=rospy.signal_shutdown, args=("user request",))
+    master.start()
+    assert asked.wait(10.0) and not closed.wait(0.3)
+    ended.set()
+    master.join(10.0)
+    assert closed.is_set()
 
 
 @pytest.mark.parametrize("engine, said", [
