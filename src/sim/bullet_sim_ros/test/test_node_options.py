@@ -3,6 +3,7 @@
 import logging
 import signal
 import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -100,17 +101,19 @@ def test_no_topic_is_closed_while_the_loop_still_publishes(monkeypatch):
     """Chaos: race, seed 203, ends it by rosnode kill; rospy closes topics in its preshutdown."""
     monkeypatch.setattr(core, "_client_shutdown_hooks", [])
     closed, asked = threading.Event(), threading.Event()
-    monkeypatch.setattr(core, "_preshutdown_hooks", [lambda _: closed.set()])
+    monkeypatch.setattr(core, "_preshutdown_hooks",
+                        [lambda _: time.sleep(0.2), lambda _: closed.set()])
     monkeypatch.setattr(core, "_shutdown_hooks", [])
     for flag in ("_shutdown_flag", "_in_shutdown"):
         monkeypatch.setattr(core, flag, False)
     ended = node.end_before_topics(asked.set)
     master = threading.Thread(target=rospy.signal_shutdown, args=("user request",))
     master.start()
-    assert asked.wait(10.0) and not closed.wait(0.3)
+    assert asked.wait(10.0) and not closed.wait(0.5)
     ended.set()
+    node.shut_down()  # the main thread's
+    assert closed.is_set() and rospy.is_shutdown()
     master.join(10.0)
-    assert closed.is_set()
 
 
 @pytest.mark.parametrize("engine, said", [
