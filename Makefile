@@ -91,7 +91,7 @@ fuzz: ## give spoilt files, requests and messages to what takes them [MINUTES=10
 	@scripts/fuzz.sh $(if $(MINUTES),--minutes "$(MINUTES)") $(if $(TARGET),--target "$(TARGET)") \
 	  $(if $(SEED),--seed "$(SEED)") $(if $(INPUT),--input "$(INPUT)")
 
-chaos: ## kill, stop, starve parts of drives at random moments [ROUNDS=20] [SEED=1] [COURSE=course|race|lane_empty] [ONLY=kill]
+chaos: ## kill, stop, starve, restart parts of drives at random moments [ROUNDS=20] [SEED=1] [COURSE=course|race|lane_empty] [ONLY=kill]
 	@scripts/chaos.sh $(if $(ROUNDS),--rounds "$(ROUNDS)") $(if $(SEED),--seed "$(SEED)") \
 	  $(if $(COURSE),--course "$(COURSE)") $(if $(ONLY),--only "$(ONLY)")
 

@@ -24,7 +24,8 @@ for _ in sys.stdin:
 
 @pytest.fixture(scope="module")
 def chaos(modules):
-    return modules("chaos", "checks", "clock", "course", "members", "rounds", "states")
+    return modules("chaos", "checks", "clock", "course", "members", "restarts", "rounds", "states",
+                   "terminals")
 
 
 def test_half_a_file_is_noticed(chaos, tmp_path):
@@ -106,6 +107,52 @@ def test_a_seed_is_a_round_and_every_fault_has_one(chaos, name):
     assert [each.title for each in rounds] == [drawn(course, seed).title for seed in range(1, 201)]
     faults = chaos["rounds"].faults_of(course.drivers)
     assert {each.fault.name for each in rounds} == {fault.name for fault in faults}
+
+
+@pytest.fixture
+def hands(chaos, tmp_path, monkeypatch):
+    """Terminals in which shell lines are typed in place of ROS's commands."""
+    made = chaos["terminals"].Terminals(chaos["course"].COURSES["course"], tmp_path, True)
+    lines = {"roscore": "sleep 1000", "world": "exec sleep 1000", "follower": "echo 1; sleep 1000"}
+    monkeypatch.setattr(made, "_command", lambda name: ["sh", "-c", lines[name]])
+    monkeypatch.setattr(made, "_is_ready", lambda name: True)
+    made.lines = lines
+    yield made
+    made.close(0.0)
+
+
+def test_a_terminal_ends_by_ctrl_c_and_is_opened_again(chaos, hands):
+    assert hands.start_usual(10.0) and list(hands.open) == ["roscore", "world", "follower"]
+    assert not hands.ended("world", 0.0)
+    hands.interrupt("roslaunch")  # in the world's terminal
+    assert hands.ended("world", 10.0) and list(hands.open) == ["roscore", "follower"]
+    hands.lines["world"] = "echo '[gazebo-1] process has died [pid 7, exit code -9, cmd x]'"
+    assert hands.start_usual(10.0, last="world") and hands.open["world"].wait(10.0) == 0
+    assert hands.dead_nodes() == {"gazebo"} and not hands.lives()
+    assert sorted(path.name for path in hands.folder.glob("log/*.log")) == [
+        "follower-0.log", "roscore-0.log", "world-0.log", "world-1.log"]
+
+
+@pytest.mark.parametrize("said, faults", [
+    ("no more pictures", []), ("one; echo two", ["follower ended by itself with 2 lines"])])
+def test_a_survivor_that_ends_says_why_in_one_line(chaos, hands, said, faults):
+    hands.lines["follower"] = f"echo it drives; read go < {hands.folder}/go; echo {said}"
+    os.mkfifo(hands.folder / "go")
+    assert hands.start_usual(10.0) and hands.wait_for(lambda: hands.said("follower"), 10.0)
+    told = {name: len(hands.said(name)) for name in hands.open}
+    (hands.folder / "go").write_text("\n")
+    hands.open["follower"].wait(10.0)
+    ended = chaos["restarts"].ended_by_themselves(hands, told, but="world")
+    assert list(ended) == faults and list(hands.open) == ["roscore", "world"]
+
+
+@pytest.mark.parametrize("name", ["course", "race", "lane_empty"])
+def test_restarts_can_be_asked_for_alone(chaos, name):
+    rounds = [chaos["rounds"].drawn(chaos["course"].COURSES[name], seed, "restart")
+              for seed in range(1, 51)]
+    assert all(each.fault.by_hand for each in rounds)
+    assert {each.roscore for each in rounds if each.fault.victim == "simulator"} == {True, False}
+    assert all(each.roscore for each in rounds if each.fault.victim in ("master", "roscore"))
 
 
 def test_what_is_left_behind_is_named_and_ended(chaos, tmp_path):

@@ -21,6 +21,7 @@ from pathlib import Path
 
 from course import COURSES
 from faults import faults_of, set_loopback
+from restarts import PlayByHand
 from rounds import RESULTS, Play, drawn
 
 from evaluation.trial.command_line import LARGEST_SEED, Parser, one_of
@@ -59,7 +60,8 @@ def _play(seed: int, options: argparse.Namespace, played: Counter, found: Counte
     this = drawn(course, seed, options.only)
     folder, results = OUT / f"{course.name}-{seed}", OUT / f"{course.name}-results"
     shutil.rmtree(folder, ignore_errors=True)
-    faults = Play(this, folder, results).faults()
+    play = PlayByHand(this, folder) if this.fault.by_hand else Play(this, folder, results)
+    faults = play.faults()
     played[this.title] += 1
     for fault in faults:
         print(f"{course.name} {seed}: {this.title}: {fault}", flush=True)
@@ -69,7 +71,7 @@ def _play(seed: int, options: argparse.Namespace, played: Counter, found: Counte
     found[this.title] += 1
     only = f" ONLY='{options.only}'" if options.only else ""
     print(f"  again: make chaos COURSE={course.name} SEED={seed} ROUNDS=1{only}", flush=True)
-    if not (folder / RESULTS).exists() and results.exists():
+    if not this.fault.by_hand and not (folder / RESULTS).exists() and results.exists():
         shutil.move(results, folder / RESULTS)
 
 

@@ -1,16 +1,15 @@
-"""One watched drive, as `make course` starts it, and what a round may do to it."""
+"""One watched drive, as `make course` starts it or by hand, and what a round may do to it."""
 
 from __future__ import annotations
 
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 from course import WATCHED, Course
-from members import MARK, POLL, end_left_over, matching
+from members import MARK, end_left_over, matching, wait_until
 from states import Place, driven, places
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -18,51 +17,81 @@ PROGRAM = ROOT / "src" / "evaluation" / "scripts" / "course_run.py"
 CAMERA = "320x240"  # px; the car is to move, not to keep its line
 DURATION = 4.0  # s, simulated
 STARTED = 0.02  # m
+LAUNCH = ("chaos_course", "watched.launch")
 PACKAGE = "<package format='2'><name>chaos_course</name><version>0.0.0</version></package>\n"
 
 
-class Drive:
-    """Started at once; `results` is its folder for results, all else goes to `folder`."""
+class Watched:
+    """A drive whose car is followed by the simulator's own log, and whose processes are known."""
 
-    def __init__(self, course: Course, folder: Path, results: Path, fast: bool, film: bool,
-                 environment: dict[str, str]):
-        self.course, self.folder, self.results = course, folder, results
-        self.mark, self.states, self.log = str(folder), folder / "states", folder / "said"
-        self._write_launch()
-        words = ["--course", course.name, "--follower", course.follower, "--camera", CAMERA,
-                 "--duration", f"{DURATION:g}", "--startup-timeout", "600",
-                 "--stuck-timeout", "60", "--out", str(results), "--launch",
-                 "chaos_course", "watched.launch",
-                 *(["--fast"] if fast else []), *([] if film else ["--no-video"])]
-        with self.log.open("wb") as output:
-            self.judge = subprocess.Popen(
-                [sys.executable, str(PROGRAM), *words], stdin=subprocess.DEVNULL, stdout=output,
-                stderr=subprocess.STDOUT, start_new_session=True, cwd=folder,
-                env={**os.environ, **environment, MARK: self.mark, "ROS_HOME": str(folder / "ros"),
-                     "ROS_PACKAGE_PATH": f"{folder}:{os.environ['ROS_PACKAGE_PATH']}"})
+    def __init__(self, course: Course, folder: Path, environment: dict[str, str]):
+        self.course, self.folder = course, folder
+        self.mark, self.states = str(folder), folder / "states"
+        self._environment = {
+            **os.environ, **environment, MARK: self.mark, "ROS_HOME": str(folder / "ros"),
+            "ROS_PACKAGE_PATH": f"{folder}:{os.environ['ROS_PACKAGE_PATH']}"}
+        (folder / "package.xml").write_text(PACKAGE, encoding="utf-8")
 
     def places(self) -> list[Place]:
         """The car's so far."""
         return places(self.states, self.course.robot)
 
+    def now(self) -> float:
+        """s, simulated."""
+        seen = self.places()
+        return seen[-1][0] if seen else 0.0
+
     def moves(self) -> bool:
         """Whether the car has set off."""
         return driven(self.places()) > STARTED
 
+    def lives(self) -> bool:
+        """Whether what was started last is there."""
+        raise NotImplementedError
+
     def wait_for(self, condition: Callable[[], object], limit: float) -> bool:
-        """Whether it came true within `limit` s, wall, while the judge lives."""
-        until = time.monotonic() + limit
-        while not condition():
-            if self.judge.poll() is not None or time.monotonic() > until:
-                return False
-            time.sleep(POLL)
-        return True
+        """Whether it came true within `limit` s, wall, while that lives."""
+        return bool(wait_until(lambda: condition() or not self.lives(), limit) and condition())
 
     def pids(self, victim: str) -> list[int]:
         """Of one of PATTERNS, or of a node."""
-        if victim == "judge":
-            return [self.judge.pid]
         return matching(self.mark, PATTERNS.get(victim, rf"__name:={victim}\b"))
+
+    def close(self, grace: float) -> list[str]:
+        """Command lines of what was left behind; nothing is afterwards."""
+        return end_left_over(self.mark, grace)
+
+    def _write_launch(self, launch: tuple[str, str]) -> None:
+        package, file = launch
+        text = WATCHED.format(states=self.states, package=package, file=file)
+        (self.folder / LAUNCH[1]).write_text(text, encoding="utf-8")
+
+
+class Drive(Watched):
+    """Started at once; `results` is its folder for results, all else goes to `folder`."""
+
+    def __init__(self, course: Course, folder: Path, results: Path, fast: bool, film: bool,
+                 environment: dict[str, str]):
+        super().__init__(course, folder, environment)
+        self.results, self.log = results, folder / "said"
+        self._write_launch(course.launch)
+        words = ["--course", course.name, "--follower", course.follower, "--camera", CAMERA,
+                 "--duration", f"{DURATION:g}", "--startup-timeout", "600",
+                 "--stuck-timeout", "60", "--out", str(results), "--launch", *LAUNCH,
+                 *(["--fast"] if fast else []), *([] if film else ["--no-video"])]
+        with self.log.open("wb") as output:
+            self.judge = subprocess.Popen(
+                [sys.executable, str(PROGRAM), *words], stdin=subprocess.DEVNULL, stdout=output,
+                stderr=subprocess.STDOUT, start_new_session=True, cwd=folder,
+                env=self._environment)
+
+    def lives(self) -> bool:
+        """Whether the judge does."""
+        return self.judge.poll() is None
+
+    def pids(self, victim: str) -> list[int]:
+        """The judge's, too."""
+        return [self.judge.pid] if victim == "judge" else super().pids(victim)
 
     def wait(self, limit: float) -> int | None:
         """The judge's exit code; None if it has not ended within `limit`, s, wall."""
@@ -73,16 +102,10 @@ class Drive:
 
     def close(self, grace: float) -> list[str]:
         """Command lines of what was left behind; nothing is afterwards."""
-        if self.judge.poll() is None:
+        if self.lives():
             self.judge.kill()
             self.judge.wait()
-        return end_left_over(self.mark, grace)
-
-    def _write_launch(self) -> None:
-        package, file = self.course.launch
-        text = WATCHED.format(states=self.states, package=package, file=file)
-        (self.folder / "watched.launch").write_text(text, encoding="utf-8")
-        (self.folder / "package.xml").write_text(PACKAGE, encoding="utf-8")
+        return super().close(grace)
 
 
 PATTERNS = {"simulator": r"__name:=gazebo\b", "master": r"bin/rosmaster\b",

@@ -13,7 +13,7 @@ from pathlib import Path
 from random import Random
 
 from clock import set_clock
-from drive import Drive
+from drive import Drive, Watched
 from members import send
 
 LONGEST_JUMP = 7200.0  # s
@@ -28,11 +28,13 @@ class Fault:
     """`begin` does it to a drive, `end` undoes it after a while, if it is undone at all."""
 
     name: str
-    begin: Callable[[Drive, Random], object]
+    begin: Callable[[Watched, Random], object]
     codes: tuple[int, ...]  # what the judge may then end with
     victim: str = ""  # process or node that it happens to
     end: Callable[[Drive], object] | None = None
     on_tmpfs: bool = False  # results lie on a small disk of their own
+    by_hand: bool = False  # `begin` ends the victim, which is then started again
+    roscore: bool = False  # by hand: there is a master that roslaunch does not end
 
 
 def _kill(victim: str, codes: tuple[int, ...] = ENDED) -> Fault:
@@ -54,6 +56,15 @@ def _kill_driver(victim: str) -> Fault:
 def _stop(victim: str) -> Fault:
     return Fault(f"stop {victim}", lambda drive, _: send(drive.pids(victim), signal.SIGSTOP),
                  DRIVEN, victim, lambda drive: send(drive.pids(victim), signal.SIGCONT))
+
+
+def _restart(victim: str, killed: bool, roscore: bool = False) -> Fault:
+    if killed:
+        return Fault(f"restart {victim} after kill -9",
+                     lambda hands, _: send(hands.pids(victim), signal.SIGKILL), (), victim,
+                     by_hand=True, roscore=roscore)
+    return Fault(f"restart {victim}", lambda hands, _: hands.interrupt(victim), (), victim,
+                 by_hand=True, roscore=roscore)
 
 
 def fill_disk(drive: Drive, rng: Random) -> None:
@@ -94,4 +105,8 @@ def faults_of(drivers: tuple[str, ...]) -> list[Fault]:
             Fault("disk", fill_disk, (*DRIVEN, *ENDED), on_tmpfs=True),
             Fault("interface", lambda *_: set_loopback(False), (*DRIVEN, *ENDED),
                   end=lambda _: set_loopback(True)),
-            Fault(CLOCK, jump_clock, DRIVEN)]
+            Fault(CLOCK, jump_clock, DRIVEN),
+            *(_restart(driver, killed) for driver in drivers for killed in (False, True)),
+            _restart("roslaunch", False), _restart("roslaunch", True, roscore=True),
+            _restart("simulator", True), _restart("roscore", False, roscore=True),
+            _restart("master", True, roscore=True)]

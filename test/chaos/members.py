@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 MARK = "CHAOS_ROUND"  # environment variable
@@ -36,11 +37,20 @@ def send(pids: list[int], number: signal.Signals) -> None:
             os.kill(pid, number)
 
 
+def wait_until(condition: Callable[[], object], limit: float) -> bool:
+    """Whether it came true within `limit` s, wall."""
+    until = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > until:
+            return False
+        time.sleep(POLL)
+    return True
+
+
 def end_left_over(mark: str, grace: float) -> list[str]:
     """Command lines of what lives `grace` s, wall, on; none of it does afterwards."""
-    until = time.monotonic() + grace
-    while (left := members(mark)) and time.monotonic() < until:
-        time.sleep(POLL)
+    wait_until(lambda: not members(mark), grace)
+    left = members(mark)
     lines = list(left.values())
     while left:
         send(list(left), signal.SIGKILL)

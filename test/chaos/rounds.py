@@ -6,7 +6,7 @@ import math
 import shutil
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -16,7 +16,7 @@ from clock import clock_environment
 from course import Course
 from drive import DURATION, Drive
 from faults import CLOCK, Fault, empty_disk, faults_of
-from members import POLL
+from members import wait_until
 from states import STOP_TIME, drives_on
 
 START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a machine with other work
@@ -39,6 +39,7 @@ class Round:
     film: bool
     starting: bool  # it happens before the car drives
     delay: float  # s, wall
+    roscore: bool  # by hand: in a terminal of its own, not roslaunch's
 
     @property
     def title(self) -> str:
@@ -53,7 +54,8 @@ def drawn(course: Course, seed: int, only: str = "") -> Round:
     fault = rng.choice(choice)
     encoder = fault.victim == "encoder"
     return Round(course, seed, fault, rng.random() < 0.4, encoder or rng.random() < 0.5,
-                 not encoder and rng.random() < 0.3, rng.uniform(0.0, 2.5))
+                 not encoder and rng.random() < 0.3, rng.uniform(0.0, 2.5),
+                 fault.roscore or rng.random() < 0.5)
 
 
 class Play:
@@ -125,20 +127,20 @@ class Play:
         """Near its end there need be none."""
         victim = self._round.fault.victim
         return bool(not victim or drive.pids(victim) or drive.judge.poll() is not None
-                    or _is_late(_now(drive)))
+                    or _is_late(drive.now()))
 
     def _act(self, drive: Drive) -> tuple[float, float]:
         """From when until when, s, simulated, it lasted."""
         fault = self._round.fault
         fault.begin(drive, self._rng)
-        since = _now(drive)
+        since = drive.now()
         if fault.end is None:
             return since, math.inf
         try:
             time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
             if self._without_driver:
-                _wait(lambda: _now(drive) > since + WATCHED, WATCH_LIMIT)
-            return since, _now(drive)
+                wait_until(lambda: drive.now() > since + WATCHED, WATCH_LIMIT)
+            return since, drive.now()
         finally:
             fault.end(drive)
 
@@ -150,17 +152,6 @@ class Play:
 
 def _is_late(now: float) -> bool:
     return now > DURATION / 2
-
-
-def _wait(condition: Callable[[], bool], limit: float) -> None:
-    until = time.monotonic() + limit
-    while not condition() and time.monotonic() < until:
-        time.sleep(POLL)
-
-
-def _now(drive: Drive) -> float:
-    seen = drive.places()
-    return seen[-1][0] if seen else 0.0
 
 
 def _last_line(drive: Drive) -> str:

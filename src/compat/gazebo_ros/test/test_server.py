@@ -1,5 +1,6 @@
 """gzserver and gzclient: Gazebo's options to the node's, and processes that end when told."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -120,3 +121,19 @@ def test_the_client_ends_when_the_master_is_gone(start):
     assert process.poll() is None
     master.close()
     assert process.wait(20) == 0
+
+
+def test_the_client_ends_when_roslaunch_was_killed():
+    """Chaos: course, seed 101, kills roslaunch; the master is another terminal's and stays."""
+    with socket.create_server(("localhost", 0)) as master:
+        started = subprocess.Popen(
+            ["sh", "-c", f"{sys.executable} {SCRIPTS / 'gzclient'} & exec sleep 1000"],
+            env=os.environ | {"ROS_MASTER_URI": f"http://localhost:{master.getsockname()[1]}"},
+            stdout=subprocess.PIPE, text=True, start_new_session=True)
+        try:
+            assert "image_view" in started.stdout.readline()
+            started.kill()
+            started.communicate(timeout=20)  # until nobody has its output open
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(started.pid, signal.SIGKILL)

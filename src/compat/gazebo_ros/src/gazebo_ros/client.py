@@ -33,7 +33,7 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))
     print(f"[gzclient] {HOW_TO_LOOK}", flush=True)
-    seen = False
-    while (there := master_is_there()) or not seen:
+    seen, parent = False, os.getppid()
+    while os.getppid() == parent and ((there := master_is_there()) or not seen):
         seen |= there
         time.sleep(POLL_PERIOD)

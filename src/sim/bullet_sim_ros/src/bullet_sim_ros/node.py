@@ -4,9 +4,11 @@ import argparse
 import gc
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from http.client import HTTPException
 from pathlib import Path
 from typing import NoReturn
 
@@ -47,7 +49,10 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
 SWITCH_INTERVAL = 0.0005
 FASTEST = 1000.0  # real-time factor; 0 is for more
+LOOP_END = 2.0  # s, wall, that a shutdown from outside waits at most for the loop
+SHUTDOWN_LIMIT = 2.0  # s, wall, for another thread's; a master that hangs answers nobody
 LATEST = 4e9  # s; ROS counts to 2**32
+MASTER_LOST = (ConnectionError, HTTPException)  # of a master that ends while it is asked
 ENGINES = ("ode", "bullet", "dart", "simbody")  # that Gazebo 11 knows
 
 
@@ -124,8 +129,37 @@ def check_engine(name: str) -> None:
                      "asked for", name, ", ".join(ENGINES))
 
 
+def end_before_topics(stop: Callable[[], None]) -> threading.Event:
+    """Have a shutdown from outside (`rosnode kill`, a second /gazebo) wait for the event, which is
+    the loop's end, before it closes topics: rospy says only afterwards that it shuts down, and what
+    is published meanwhile is an exception."""
+    ended = threading.Event()
+
+    def wait_for_the_end() -> None:
+        stop()
+        ended.wait(LOOP_END)
+
+    rospy.on_shutdown(wait_for_the_end)
+    return ended
+
+
+def shut_down() -> None:
+    """Returns when the master knows, even if another thread tells it."""
+    rospy.signal_shutdown("the simulation has ended")
+    until = time.monotonic() + SHUTDOWN_LIMIT
+    while not rospy.is_shutdown() and time.monotonic() < until:
+        time.sleep(0.01)
+
+
+def say_master_lost(error: Exception) -> int:
+    """One line; the exit code."""
+    rospy.logfatal("the ROS master at %s has ended while the simulator started: %s; start both "
+                   "again", rosgraph.get_master_uri(), error)
+    return 1
+
+
 def main() -> int:
-    """Run until shutdown; 1 if the world cannot be opened."""
+    """Run until shutdown; 1 if the world cannot be opened, or the master ends before it is."""
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
@@ -144,7 +178,10 @@ def main() -> int:
     except SimulationError as error:
         rospy.logfatal("Could not open file %s: %s", options.world, error)
         return 1
-    parameters = read_node_parameters()
+    try:
+        parameters = read_node_parameters()
+    except MASTER_LOST as error:
+        return say_master_lost(error)
     for name, topics in ((names.LOCKSTEP, parameters.lockstep),
                          (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
         if not all(is_legal_name(topic) for topic in split(topics)):
@@ -154,7 +191,11 @@ def main() -> int:
     simulation = Simulation(world, parameters)
     for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
         signal.signal(number, lambda _number, _frame: simulation.stop())
-    open_network(simulation, resources, parameters)
+    try:
+        open_network(simulation, resources, parameters)
+    except MASTER_LOST as error:
+        simulation.close()
+        return say_master_lost(error)
     if parameters.state_log:
         try:
             StateLog(simulation, Path(parameters.state_log))
@@ -164,10 +205,12 @@ def main() -> int:
             return 1
     rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
+    ended = end_before_topics(simulation.stop)
     try:
         simulation.run(options.iters)
     finally:
-        rospy.signal_shutdown("the simulation has ended")
+        ended.set()
+        shut_down()
         simulation.close()
     return 0
 
