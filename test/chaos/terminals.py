@@ -21,6 +21,7 @@ MASTER = f"http://localhost:{USUAL_PORT}"  # nobody else's: a round has a networ
 ROSCORE, WORLD = "roscore", "world"  # terminals; others have their driver's name
 OWNERS = {"simulator": WORLD, "roslaunch": WORLD, "master": ROSCORE}  # their terminals
 
+CORE_IS_UP = "started core service"  # a roscore whose master is killed before does not end well
 # Of roslaunch's, but for roscore's own, and for what is no node and ends with the master.
 NODE = r"__name:=(?!rosout\b|gazebo_gui\b)"
 
@@ -121,4 +122,6 @@ class Terminals(Watched):
     def _is_ready(self, name: str) -> bool:
         if name == WORLD:
             return bool(self.places())
-        return name != ROSCORE or is_up(MASTER)
+        if name == ROSCORE:
+            return is_up(MASTER) and any(line.startswith(CORE_IS_UP) for line in self.said(name))
+        return True

@@ -18,10 +18,14 @@ def start_node(name: str, anonymous: bool = False) -> None:
     """init_node without its signal handlers; parameters such as `_kp:=2.5` are for this run only.
 
     rospy would write them to the parameter server, where the next run would find them:
-    `read_settings` takes them from the command line itself.
+    `read_settings` takes them from the command line itself. Ctrl-C while rospy waits for a master,
+    about which it has said one line, ends the program.
     """
     names = [word for word in sys.argv if not load_command_line_node_params([word])]
-    rospy.init_node(name, argv=names, anonymous=anonymous, disable_signals=True)
+    try:
+        rospy.init_node(name, argv=names, anonymous=anonymous, disable_signals=True)
+    except KeyboardInterrupt:
+        sys.exit(128 + signal.SIGINT)
 
 
 def read_settings(kind: type[Settings], file_name: str, section: str | None = None) -> Settings:

@@ -27,13 +27,14 @@ def master_is_there() -> bool:
 
 def main() -> None:
     """No ROS node on purpose: one would be handed every /clock message."""
+    parent = os.getppid()  # before anybody is told anything
     parser = argparse.ArgumentParser(prog="gzclient", description=HOW_TO_LOOK)
     parser.add_argument("-v", "--version", action="version", version="gzclient: no window")
     parser.parse_known_args([word for word in sys.argv[1:] if ":=" not in word])
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))
     print(f"[gzclient] {HOW_TO_LOOK}", flush=True)
-    seen, parent = False, os.getppid()
+    seen = False
     while os.getppid() == parent and ((there := master_is_there()) or not seen):
         seen |= there
         time.sleep(POLL_PERIOD)
