@@ -11,6 +11,7 @@ from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
 from nav_algorithms.local_planning.following import Following, within
+from nav_algorithms.local_planning.free_arcs import free_arc
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
 from nav_algorithms.local_planning.oscillation import Oscillation
 from nav_algorithms.local_planning.pieces import cut
@@ -431,3 +432,14 @@ def test_a_simple_attractor_takes_no_notice_of_the_path(simple):
     command = commanded(rollout(simple_attractor=simple), path)
     assert command.vx > 0.0 if simple else command.omega > 0.3
     assert not simple or abs(command.omega) < 0.2
+
+
+def test_beside_a_blocked_arc_the_free_one_is_driven_that_ends_nearest_to_the_carrot():
+    costmap = window_around()
+    costmap.cells[29:31, 38:46] = LETHAL  # 0.4 m ahead
+    dot = np.array([[0.02, 0.02], [-0.02, 0.02], [-0.02, -0.02], [0.02, -0.02]])
+    for side in (1.0, -1.0):
+        carrot = np.array([np.sin(0.8), side * (1.0 - np.cos(0.8)), side * 0.8])
+        curvature, arc = free_arc(costmap, dot, ORIGIN, 0.8, 0.0, 2.0, carrot)
+        assert curvature == pytest.approx(side, abs=0.2)
+        assert arc[-1] == pytest.approx(carrot, abs=0.1)

@@ -209,3 +209,4 @@ def test_cholesky_and_its_solutions():
     solve_backwards(lower, vector)
     assert matrix @ vector == pytest.approx((1, 2, 3))
     assert not cholesky(-matrix, lower)
+    assert not cholesky(np.diag([1.0, 1.0, -1e-3]), lower)

@@ -4,8 +4,10 @@ import math
 
 import pytest
 
+from bullet_sim.description import Box, Collision, Surface
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.pose import Pose, conjugate, rotate
+from bullet_sim.physics.contact_parameters import contact_values
+from bullet_sim.pose import IDENTITY, Pose, conjugate, rotate
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
@@ -142,6 +144,15 @@ def test_fdir1_parts_mu_from_mu2(world, yaw, turned):
         slowed = 4.0 - sum(a * v for a, v in zip(along, model.twist.linear, strict=True))
         assert slowed == pytest.approx(mu * GRAVITY * 0.3, rel=0.06)
         world.delete("m")
+
+
+@pytest.mark.parametrize("mu, mu2, alike", [(0.5, 0.5, True), (0.0, 0.0, True), (0.5, 0.2, False)])
+def test_only_two_coefficients_that_differ_have_a_direction(mu, mu2, alike):
+    surface = Surface(mu, mu2, (1.0, 0.0, 0.0))
+    values = contact_values(Collision("c", Box((1.0, 1.0, 1.0)), surface=surface), False, IDENTITY,
+                            MASS)
+    assert ("anisotropicFriction" not in values) == alike
+    assert values["lateralFriction"] == mu
 
 
 # --- hardness and bounce
