@@ -9,7 +9,7 @@ from defaults import of
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import astar, navfn
 from nav_algorithms.global_planning.orientation import directions, orient
-from nav_algorithms.global_planning.potential import crossing_costs, spread
+from nav_algorithms.global_planning.potential import crossing_costs, spread, way_out
 from nav_algorithms.poses import wrap_angle
 
 START, GOAL = np.array([-4.0, -3.0, 0.3]), np.array([4.0, 3.0, 1.0])
@@ -184,6 +184,18 @@ def test_a_corridor_one_cell_wide_is_followed_either_way(end, yaw):
     path = navfn_plan(costmap, np.array([5.5, 5.5, 0.0]), goal)
     assert length(path) == pytest.approx(4.0)
     assert wrap_angle(path[1:, 2] - yaw) == pytest.approx(np.zeros(len(path) - 1), abs=1e-6)
+
+
+@pytest.mark.parametrize("turned", [slice(None), slice(None, None, -1)])
+def test_the_way_out_of_a_wall_is_the_nearest_over_what_is_not_solid(turned):
+    cells = np.full((3, 6), LETHAL, np.uint8)
+    cells[1, 1:5] = [0, INSCRIBED, UNKNOWN, INSCRIBED]
+    cells = np.ascontiguousarray(cells[turned, turned])
+    columns = np.arange(6)[turned]
+    found = way_out(cells, 1, int(columns[4]))
+    assert found.tolist() == [[1, columns[column]] for column in (4, 3, 2, 1)]
+    cells[1, columns[1]] = LETHAL
+    assert len(way_out(cells, 1, int(columns[4]))) == 0
 
 
 def test_navfn_s_costs_are_those_of_upstream():

@@ -73,6 +73,8 @@ def test_a_robot_that_turns_on_the_spot():
     path = plan(road(), start, goal, WAFFLE, turn_in_place=True)
     check(path, road(), start, np.array([3.0, 0, path[-1, 2]]), WAFFLE)
     assert 0 in {piece.direction for piece in cut(path)}
+    drives = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1e-6
+    assert wrap_angle(np.diff(path[:, 2]))[drives] == pytest.approx(0.0, abs=1e-6)  # no bends
     assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
 
 

@@ -4,9 +4,10 @@ import math
 
 import pytest
 
-from bullet_sim.description import Box, Collision, Surface
+from bullet_sim.description import Box, Collision, Cylinder, Plane, Sphere, Surface
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.physics.contact_parameters import contact_values
+from bullet_sim.physics.contacts import signed_distance
 from bullet_sim.pose import IDENTITY, Pose, conjugate, rotate
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
@@ -153,6 +154,15 @@ def test_only_two_coefficients_that_differ_have_a_direction(mu, mu2, alike):
                             MASS)
     assert ("anisotropicFriction" not in values) == alike
     assert values["lateralFriction"] == mu
+
+
+@pytest.mark.parametrize("shape, point, distance", [
+    (Box((2.0, 4.0, 6.0)), (0.5, 0.0, 0.0), -0.5), (Box((2.0, 4.0, 6.0)), (4.0, 6.0, 0.0), 5.0),
+    (Box((2.0, 4.0, 6.0)), (0.0, 0.0, -5.0), 2.0), (Sphere(0.5), (0.0, 3.0, 4.0), 4.5),
+    (Cylinder(1.0, 2.0), (0.0, 0.75, 0.5), -0.25), (Cylinder(1.0, 2.0), (4.0, 0.0, -5.0), 5.0),
+    (Plane((0.0, 0.0, 2.0), (1.0, 1.0)), (9.0, 9.0, 0.3), 0.3)])
+def test_a_point_s_distance_from_a_shape(shape, point, distance):
+    assert signed_distance(shape, point) == pytest.approx(distance)
 
 
 # --- hardness and bounce
