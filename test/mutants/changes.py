@@ -59,10 +59,10 @@ class Mutant:
 
     @cached_property
     def lines(self) -> tuple[str, str]:
-        """The lines that change, before and after."""
+        """The lines that change, before and after, with single blanks."""
         difference = list(difflib.ndiff(_text(self.path).split("\n"), self.source.split("\n")))
-        before, after = (" ".join(line[2:].strip() for line in difference if line[0] == sign)
-                         for sign in "-+")
+        before, after = (" ".join(" ".join(line[2:] for line in difference if line[0] == sign)
+                                  .split()) for sign in "-+")
         return before, after
 
     @property
@@ -99,10 +99,12 @@ class Equal:
 
 
 def module_name(path: Path) -> str:
-    """What a source file is imported as."""
-    package = next(each for each in (SIMULATOR, NAVIGATION) if path.is_relative_to(each))
-    words = path.relative_to(package.parent).with_suffix("").parts
-    return ".".join(words).removesuffix(".__init__")
+    """What a file of the core is imported as; what lies beside the tests has its own name."""
+    for package in (SIMULATOR, NAVIGATION):
+        if path.is_relative_to(package):
+            words = path.relative_to(package.parent).with_suffix("").parts
+            return ".".join(words).removesuffix(".__init__")
+    return path.stem
 
 
 def drawn(seed: int) -> Iterator[Mutant]:

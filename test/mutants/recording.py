@@ -102,8 +102,11 @@ class Recording:
                 yield from (test for test in self._seconds if test.startswith(f"{name}::"))
 
     def _of_files(self, paths: set[Path]) -> set[str]:
+        """Tests that run a line of one of them, or stand in one."""
+        within = {str(path.relative_to(ROOT)) for path in paths}
         return {name for path in paths for names in self._lines.get(path, {}).values()
-                for name in names}
+                for name in names} | {
+            name for name in self._seconds if name.partition("::")[0] in within}
 
 
 def recording(file: Path) -> Recording:
@@ -160,7 +163,7 @@ def _is_compiled(tree: ast.Module, line: int) -> bool:
 
 
 def _importers(path: Path, far: bool) -> set[Path]:
-    """The file and those of the core that import it; far: and those that import these."""
+    """The file and those of the core and its tests that import it; far: and who imports these."""
     found, new = {path}, {path}
     while new:
         names = {module_name(each) for each in new}
@@ -175,8 +178,8 @@ def _importers(path: Path, far: bool) -> set[Path]:
 def _imports() -> dict[Path, set[str]]:
     """File -> modules that it imports, or imports from."""
     found = defaultdict(set)
-    for package in (SIMULATOR, NAVIGATION):
-        for path in package.rglob("*.py"):
+    for folder in FOLDERS:
+        for path in [*folder.glob("src/**/*.py"), *folder.glob("test/*.py")]:
             for node in ast.walk(ast.parse(path.read_text("utf-8"))):
                 if isinstance(node, ast.Import):
                     found[path] |= {each.name for each in node.names}

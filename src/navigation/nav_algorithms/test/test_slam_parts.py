@@ -94,6 +94,18 @@ def test_the_search_finds_its_way_from_far():
     assert best == pytest.approx(truth, abs=1e-9)
 
 
+@pytest.mark.parametrize("yaw", [-2.0, 0.5, 1.0])
+def test_the_search_finds_its_way_for_a_robot_that_looks_anywhere(yaw):
+    maps = corner_map()
+    truth = maps.in_cells(np.array([[0.0, 0.0, yaw]]))[0]
+    turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+    best = np.empty(3)
+    search(maps.tables[0], maps.pool, beams_of(CORNER @ turn), truth + np.array([4.0, -3.0, 0.15]),
+           LOOSE, np.array([5, 5, 4]), np.array([1.0, 1.0, 0.05]), 2, best)
+    assert best[:2] == pytest.approx(truth[:2], abs=1.1)  # walls lie on the cells' edges
+    assert best[2] == pytest.approx(truth[2], abs=0.06)
+
+
 def test_patches_are_shared_until_one_owner_writes():
     maps = HitMaps(2, 0.1, (-3.2, -3.2), (3.2, 3.2))
     maps.add(np.zeros((2, 3)), np.array([[1.05, 1.05]]))
