@@ -22,6 +22,7 @@ from changes import NAVIGATION, ROOT, SIMULATOR, Mutant, module_name
 
 OURS = (SIMULATOR.name, NAVIGATION.name)
 LEAST, FACTOR = 10.0, 10.0  # a test may take so many s of processor time, and times the usual
+IMPORT = 180.0  # s of processor time until the first test, compiled loops among it
 LONGEST = 3600.0  # s, wall, for one change: others may have the processor
 MEMORY = 4 << 30  # bytes on top of what the process has at its start
 
@@ -48,7 +49,6 @@ class Chosen:
     def __init__(self, limits: dict[str, float]) -> None:
         self._limits = limits
         self.failed: list[str] = []
-        self.now = ""
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Leave out the others."""
@@ -58,9 +58,7 @@ class Chosen:
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """A signal ends the process when the test takes too long."""
         limit = LEAST + FACTOR * self._limits[nodeid]
-        most = resource.getrlimit(resource.RLIMIT_CPU)[1]
-        resource.setrlimit(resource.RLIMIT_CPU, (int(time.process_time() + limit) + 1, most))
-        self.now = nodeid
+        _limit(time.process_time() + limit)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """The first one says all."""
@@ -87,18 +85,19 @@ def import_all() -> None:
 def outcome(mutant: Mutant, groups: list[dict[str, float]]) -> tuple[str, str]:
     """What groups of tests (name -> usual seconds), one after the other, say, and which of them."""
     def work() -> str:
+        _limit(IMPORT)
         sys.meta_path.insert(0, Changed(mutant))
         if mutant.package == NAVIGATION.name:
             _compile_changed(mutant)
         for limits in groups:
             tests = Chosen(limits)
             code = run_pytest(["-x", *_files(limits)], tests)
-            if code:
+            if code not in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
                 return f"{code} {(tests.failed or ['while it is imported'])[0]}"
         return "0 "
 
     code, told = forked(work)
-    if code == -signal.SIGXCPU or code == -signal.SIGKILL:
+    if code in (-signal.SIGXCPU, -signal.SIGKILL):
         return "timed out", told
     if code:
         return "noticed", f"ends with {code}"
@@ -151,6 +150,12 @@ def _in_child(work: Callable[[], str], answer: int) -> None:
         os._exit(0)
     finally:
         os._exit(1)
+
+
+def _limit(seconds: float) -> None:
+    """Of processor time, all that this process has taken among it."""
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, hard))
 
 
 def _files(tests: Iterable[str]) -> list[str]:
