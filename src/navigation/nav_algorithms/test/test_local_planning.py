@@ -223,6 +223,14 @@ def test_at_the_goal_the_robot_stops_and_turns(planner):
     assert not chosen.reached(np.array([0.5, 0.0, 1.5]), STILL)
 
 
+@pytest.mark.parametrize("planner", [dwa, rollout])
+def test_it_stops_with_its_acceleration(planner):
+    chosen = planner(acc_lim_x=0.5, controller_frequency=10.0)
+    stopping = commanded(chosen, np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 1.5]]),
+                         velocity=(0.25, 0, 0))
+    assert stopping.vx == pytest.approx(0.25 - 0.5 / 10.0)
+
+
 def test_a_goal_that_was_reached_may_stay_so():
     for latch in (False, True):
         end = StopAndTurn(Arrival(0.1, 0.1, latch, 0.1, 0.1, 0.4, 1.0, (1.0, 1.0, 3.0), 0.05))

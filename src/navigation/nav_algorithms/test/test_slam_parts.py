@@ -7,8 +7,9 @@ import pytest
 
 from nav_algorithms import poses
 from nav_algorithms.beam_walls import ALONG, holds
+from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
-from nav_algorithms.map_rendering import MapRendering
+from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.scan_matching import refine, search
 from nav_algorithms.slam_motion import STILL, StepSum
@@ -171,6 +172,16 @@ def test_a_changed_path_leaves_no_trace_in_the_map():
     a, b = ours.cells_of(low), theirs.cells_of(low)
     assert (ours.cells[a[0]:a[0] + 40, a[1]:a[1] + 40]
             == theirs.cells[b[0]:b[0] + 40, b[1]:b[1] + 40]).all()
+
+
+def test_a_rendering_grows_by_what_is_seen_and_a_margin():
+    rendering = MapRendering(0.1, (-1, -1), (1, 1))
+    scan = (np.array([[3.0, 0.0], [0.0, 3.0]]), np.array([True, True]))
+    rendering.follow(np.array([[0.5, 0.0, 0.0]]), np.arange(1), [scan], np.zeros(2))
+    grid = rendering.grid(0.25)
+    assert grid.cells.max() == OCCUPIED
+    # 3 m about the robot, and at most MARGIN and three cells on each side
+    assert max(grid.cells.shape) * 0.1 <= 2 * (3.0 + MARGIN + 0.3) + 0.1
 
 
 def test_uncertain_steps_add_up():
