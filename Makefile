@@ -1,5 +1,5 @@
 # Every verb is a script in scripts/; run a script by itself to see its own exit code.
-.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes autorace mark drive viewer test fuzz chaos soak bench setup build deps deb lint clean
+.PHONY: help course race race-trials avoid navigate navigation-trials localisation-trials track track-trials lane lane-trials bench-lanes autorace mark drive viewer test fuzz chaos soak mutants bench setup build deps deb lint clean
 
 # Where the cases of a trial are tried: WORKERS= at a time here, or by the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
@@ -97,6 +97,9 @@ chaos: ## kill, stop, starve, restart parts of drives at random moments [ROUNDS=
 
 soak: ## let a course run with people beside it; does anything grow? [HOURS=4] [COURSE=course|race|navigation]
 	@scripts/soak.sh $(if $(HOURS),--hours "$(HOURS)") $(if $(COURSE),--course "$(COURSE)")
+
+mutants: ## change the core's code in small ways; how much do its tests notice? [SAMPLE=1000] [SEED=1]
+	@scripts/mutants.sh $(if $(SAMPLE),--sample "$(SAMPLE)") $(if $(SEED),--seed "$(SEED)")
 
 bench: ## measure, into out/bench/ [ONLY=renderer,step] [QUICK=1] [MEMORY_S=30000]
 	@scripts/bench.sh $(if $(ONLY),--only "$(ONLY)") $(if $(filter-out 0 no false,$(QUICK)),--quick) \

@@ -50,6 +50,14 @@ def test_known_shortest_drives(goal, length):
         assert shortest(curves.reeds_shepp, goal) == pytest.approx(length)
 
 
+@pytest.mark.parametrize("first", [1.0, -1.0])
+@pytest.mark.parametrize("last", [1.0, -1.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_two_short_arcs_and_a_straight_are_the_shortest_drive(first, last, way):
+    goal = end_of([(0.5 * way, first), (6.0 * way, 0.0), (0.4 * way, last)])
+    assert shortest(curves.reeds_shepp, goal) == pytest.approx(6.9)
+
+
 def test_turning_round_on_the_spot_takes_three_arcs():
     assert shortest(curves.reeds_shepp, (0, 0, np.pi)) == pytest.approx(np.pi)
     assert shortest(curves.dubins, (0, 0, np.pi)) == pytest.approx(7 * np.pi / 3)

@@ -8,8 +8,9 @@ from defaults import of
 
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import astar, navfn
-from nav_algorithms.global_planning.orientation import orient
-from nav_algorithms.global_planning.potential import spread
+from nav_algorithms.global_planning.orientation import directions, orient
+from nav_algorithms.global_planning.potential import crossing_costs, spread, way_out
+from nav_algorithms.poses import wrap_angle
 
 START, GOAL = np.array([-4.0, -3.0, 0.3]), np.array([4.0, 3.0, 1.0])
 
@@ -160,6 +161,49 @@ def test_orientations_that_interpolate():
         orient(path, 7)
     assert astar_plan(empty(), START, GOAL, orientation_mode=4)[5, 2] == pytest.approx(
         np.arctan2(-3, -4), abs=0.1)
+
+
+def test_a_path_is_followed_up_to_its_last_bend_away_from_the_goal_s_yaw():
+    bends = np.repeat([0.0, -0.5, -1.0], 5)  # rad, of each step: two to the right, then a left turn
+    steps = np.column_stack((np.cos(bends), np.sin(bends), np.zeros(15)))
+    path = np.vstack((np.zeros(3), np.cumsum(steps, axis=0)))
+    path[-1, 2] = -0.5
+    found = orient(path, 3)[:, 2]
+    assert found[[2, 7]] == pytest.approx([0.0, -0.5])
+    assert found[11:] == pytest.approx(np.linspace(-1.0, -0.5, 5), abs=0.01)
+    assert directions(path[[0, 1], :2]) == pytest.approx([0.0, 0.0])
+    assert directions(np.array([[0.0, 0.0], [0.0, 1.0]])) == pytest.approx([np.pi / 2] * 2)
+
+
+@pytest.mark.parametrize("end, yaw", [((5, 9), np.pi / 2), ((5, 1), -np.pi / 2), ((1, 5), np.pi),
+                                      ((9, 5), 0.0)])
+def test_a_corridor_one_cell_wide_is_followed_either_way(end, yaw):
+    costmap = Costmap(np.full((11, 11), LETHAL, np.uint8), 1.0, (0.0, 0.0))
+    costmap.cells[5, :] = costmap.cells[:, 5] = 0
+    goal = np.array([end[0] + 0.5, end[1] + 0.5, yaw])
+    path = navfn_plan(costmap, np.array([5.5, 5.5, 0.0]), goal)
+    assert length(path) == pytest.approx(4.0)
+    assert wrap_angle(path[1:, 2] - yaw) == pytest.approx(np.zeros(len(path) - 1), abs=1e-6)
+
+
+@pytest.mark.parametrize("turned", [slice(None), slice(None, None, -1)])
+def test_the_way_out_of_a_wall_is_the_nearest_over_what_is_not_solid(turned):
+    cells = np.full((3, 6), LETHAL, np.uint8)
+    cells[1, 1:5] = [0, INSCRIBED, UNKNOWN, INSCRIBED]
+    cells = np.ascontiguousarray(cells[turned, turned])
+    columns = np.arange(6)[turned]
+    found = way_out(cells, 1, int(columns[4]))
+    assert found.tolist() == [[1, columns[column]] for column in (4, 3, 2, 1)]
+    cells[1, columns[1]] = LETHAL
+    assert len(way_out(cells, 1, int(columns[4]))) == 0
+
+
+def test_navfn_s_costs_are_those_of_upstream():
+    # COST_NEUTRAL 50 and COST_FACTOR 0.8 of navfn.h: a cell of cost 100 counts 130
+    cells = np.zeros((3, 4), np.uint8)
+    cells[1, 2] = 100
+    costs = crossing_costs(cells, navfn.NEUTRAL, navfn.FACTOR, INSCRIBED, np.inf)
+    assert costs[1, 1:3] == pytest.approx([50.0, 130.0])
 
 
 def test_the_window_of_orientations_smooths():

@@ -7,7 +7,9 @@ from defaults import of
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import hybrid_astar
+from nav_algorithms.global_planning.drives import REVERSE, TURNING
 from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
+from nav_algorithms.global_planning.shots import free_way
 from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.poses import wrap_angle
 
@@ -71,6 +73,8 @@ def test_a_robot_that_turns_on_the_spot():
     path = plan(road(), start, goal, WAFFLE, turn_in_place=True)
     check(path, road(), start, np.array([3.0, 0, path[-1, 2]]), WAFFLE)
     assert 0 in {piece.direction for piece in cut(path)}
+    drives = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1e-6
+    assert wrap_angle(np.diff(path[:, 2]))[drives] == pytest.approx(0.0, abs=1e-6)  # no bends
     assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
 
 
@@ -129,3 +133,16 @@ def test_on_a_large_map_a_near_goal_is_sought_near_by_first(monkeypatch, wall, l
 def test_the_number_of_steps_is_bounded():
     assert plan(road(), np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi]), CAR,
                 max_expansions=10) is None
+
+
+def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
+    terms = np.ones(6)
+    terms[REVERSE], terms[TURNING] = 2.0, 0.5
+
+    def to(*goal, radius=1.0, reverse=True, turns=False):
+        return free_way(np.zeros(3), np.array(goal), radius, reverse, turns, terms)
+
+    assert to(5.0, 0.0, 0.0) == pytest.approx(5.0)
+    assert to(-5.0, 0.0, 0.0) == pytest.approx(10.0)
+    assert to(0.0, 4.0, np.pi, radius=2.0, reverse=False) == pytest.approx(2 * np.pi)
+    assert to(0.0, 0.0, 1.0, turns=True) == pytest.approx(0.5)

@@ -111,6 +111,9 @@ def test_a_map_is_copied_and_so_are_its_changes():
     static.change_map(3, 4, np.array([[LETHAL, FREE]], np.uint8))
     assert layered.update(HERE) == (slice(3, 4), slice(4, 6))
     assert layered.master.cells[3, 4] == LETHAL
+    static.change_map(0, 1, np.full((2, 3), LETHAL, np.uint8))
+    assert layered.update(HERE) == (slice(0, 2), slice(1, 4))
+    assert (layered.master.cells[:3, :4] == LETHAL).sum() == 6
     with pytest.raises(ValueError, match="outside the map"):
         static.change_map(3, 5, np.zeros((1, 2), np.uint8))
 

@@ -11,6 +11,7 @@ from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
 from nav_algorithms.local_planning.following import Following, within
+from nav_algorithms.local_planning.free_arcs import free_arc
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
 from nav_algorithms.local_planning.oscillation import Oscillation
 from nav_algorithms.local_planning.pieces import cut
@@ -222,6 +223,14 @@ def test_at_the_goal_the_robot_stops_and_turns(planner):
     assert not chosen.reached(np.array([0.5, 0.0, 1.5]), STILL)
 
 
+@pytest.mark.parametrize("planner", [dwa, rollout])
+def test_it_stops_with_its_acceleration(planner):
+    chosen = planner(acc_lim_x=0.5, controller_frequency=10.0)
+    stopping = commanded(chosen, np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 1.5]]),
+                         velocity=(0.25, 0, 0))
+    assert stopping.vx == pytest.approx(0.25 - 0.5 / 10.0)
+
+
 def test_a_goal_that_was_reached_may_stay_so():
     for latch in (False, True):
         end = StopAndTurn(Arrival(0.1, 0.1, latch, 0.1, 0.1, 0.4, 1.0, (1.0, 1.0, 3.0), 0.05))
@@ -431,3 +440,14 @@ def test_a_simple_attractor_takes_no_notice_of_the_path(simple):
     command = commanded(rollout(simple_attractor=simple), path)
     assert command.vx > 0.0 if simple else command.omega > 0.3
     assert not simple or abs(command.omega) < 0.2
+
+
+def test_beside_a_blocked_arc_the_free_one_is_driven_that_ends_nearest_to_the_carrot():
+    costmap = window_around()
+    costmap.cells[29:31, 38:46] = LETHAL  # 0.4 m ahead
+    dot = np.array([[0.02, 0.02], [-0.02, 0.02], [-0.02, -0.02], [0.02, -0.02]])
+    for side in (1.0, -1.0):
+        carrot = np.array([np.sin(0.8), side * (1.0 - np.cos(0.8)), side * 0.8])
+        curvature, arc = free_arc(costmap, dot, ORIGIN, 0.8, 0.0, 2.0, carrot)
+        assert curvature == pytest.approx(side, abs=0.2)
+        assert arc[-1] == pytest.approx(carrot, abs=0.1)

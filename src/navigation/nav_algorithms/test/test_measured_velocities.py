@@ -66,6 +66,7 @@ def test_limits():
     assert limits.clip(np.array([0.4, 0.3, -9.0])) == pytest.approx(
         [0.1 * 5 ** 0.5, 0.05 * 5 ** 0.5, -1.0])
     assert limits.fastest == (0.25, 2.0)
+    assert Limits((-0.3, -0.1, -1.0), (0.2, 0.4, 0.5)).fastest == pytest.approx((0.5, 1.0))
 
 
 @pytest.mark.parametrize("slowest", [0.0, -0.2])

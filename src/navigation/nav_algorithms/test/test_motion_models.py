@@ -56,3 +56,12 @@ def test_only_omni_drifts_aside():
     assert drawn("diff", (0, 0, 0), (1, 0, 0), aside)[:, 0].std() == 0
     assert drawn("omni-corrected", (0, 0, 0), (1, 0, 0), aside)[:, 0].std() \
         == pytest.approx(np.sqrt(0.15), rel=0.03)
+
+
+# omni takes the first alpha for it, omni-corrected the fourth, as amcl does.
+@pytest.mark.parametrize("model, number, deviation", [
+    ("omni", 0, 0.1 * 0.5**2), ("omni-corrected", 3, np.sqrt(0.05 * 0.5**2))])
+def test_a_turn_makes_the_length_of_a_drive_unsure(model, number, deviation):
+    alphas = ALPHAS * (np.arange(5) == number)
+    found = drawn(model, (0, 0, 0), (1.0, 0, 0.5), alphas)
+    assert found[:, 1].std() == pytest.approx(deviation, rel=0.03)

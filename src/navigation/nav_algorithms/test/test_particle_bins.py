@@ -34,6 +34,11 @@ def test_clusters_touch_and_close_the_circle():
     assert len(set(clusters_of(poses))) == 3
 
 
+def test_a_bin_in_between_parts_clusters():
+    poses = np.array([[0.2, 0.2, 0.05], [1.2, 0.2, 0.05], [0.2, 1.2, 0.05], [0.2, 0.2, 0.4]])
+    assert len(set(clusters_of(poses))) == 4
+
+
 def test_the_estimate_is_of_the_heaviest_cluster_and_unsure_of_all():
     poses = np.array([[1.0, 1.0, np.pi - 0.05], [1.2, 1.0, -np.pi + 0.05], [9.0, 1.0, 0.0],
                       [9.0, 1.0, 0.0], [9.0, 1.0, 0.0]])

@@ -76,9 +76,11 @@ def test_behind_a_wall_s_surface_beams_are_as_wrong_and_within_thin_walls_twice(
 
 
 def test_between_the_cells_centres_beams_count_in_between():
+    beside = np.array([[1.025, 1.0, 0.0], [1.025, 1.01, 0.0]])  # the wall is alike there
     for model, factor in ((FIELD, np.log(1 + (p_of(0.0)**3 + p_of(0.05)**3) / 2)),
                           (FIELD_PROB, (np.log(p_of(0.0)) + np.log(p_of(0.05))) / 2)):
         assert logs(model, [0.975]).logs[0] == pytest.approx(factor)
+        assert logs(model, [0.975], particles=beside).logs == pytest.approx([factor] * 2)
 
 
 @pytest.mark.parametrize("measured, probability", [

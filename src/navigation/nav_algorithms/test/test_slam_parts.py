@@ -7,8 +7,9 @@ import pytest
 
 from nav_algorithms import poses
 from nav_algorithms.beam_walls import ALONG, holds
+from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
-from nav_algorithms.map_rendering import MapRendering
+from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.scan_matching import refine, search
 from nav_algorithms.slam_motion import STILL, StepSum
@@ -94,6 +95,18 @@ def test_the_search_finds_its_way_from_far():
     assert best == pytest.approx(truth, abs=1e-9)
 
 
+@pytest.mark.parametrize("yaw", [-2.0, 0.5, 1.0])
+def test_the_search_finds_its_way_for_a_robot_that_looks_anywhere(yaw):
+    maps = corner_map()
+    truth = maps.in_cells(np.array([[0.0, 0.0, yaw]]))[0]
+    turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+    best = np.empty(3)
+    search(maps.tables[0], maps.pool, beams_of(CORNER @ turn), truth + np.array([4.0, -3.0, 0.15]),
+           LOOSE, np.array([5, 5, 4]), np.array([1.0, 1.0, 0.05]), 2, best)
+    assert best[:2] == pytest.approx(truth[:2], abs=1.1)  # walls lie on the cells' edges
+    assert best[2] == pytest.approx(truth[2], abs=0.06)
+
+
 def test_patches_are_shared_until_one_owner_writes():
     maps = HitMaps(2, 0.1, (-3.2, -3.2), (3.2, 3.2))
     maps.add(np.zeros((2, 3)), np.array([[1.05, 1.05]]))
@@ -161,6 +174,16 @@ def test_a_changed_path_leaves_no_trace_in_the_map():
             == theirs.cells[b[0]:b[0] + 40, b[1]:b[1] + 40]).all()
 
 
+def test_a_rendering_grows_by_what_is_seen_and_a_margin():
+    rendering = MapRendering(0.1, (-1, -1), (1, 1))
+    scan = (np.array([[3.0, 0.0], [0.0, 3.0]]), np.array([True, True]))
+    rendering.follow(np.array([[0.5, 0.0, 0.0]]), np.arange(1), [scan], np.zeros(2))
+    grid = rendering.grid(0.25)
+    assert grid.cells.max() == OCCUPIED
+    # 3 m about the robot, and at most MARGIN and three cells on each side
+    assert max(grid.cells.shape) * 0.1 <= 2 * (3.0 + MARGIN + 0.3) + 0.1
+
+
 def test_uncertain_steps_add_up():
     total = StepSum(0.1, 0.2, 0.0, 0.0)
     for x in range(4):
@@ -209,3 +232,4 @@ def test_cholesky_and_its_solutions():
     solve_backwards(lower, vector)
     assert matrix @ vector == pytest.approx((1, 2, 3))
     assert not cholesky(-matrix, lower)
+    assert not cholesky(np.diag([1.0, 1.0, -1e-3]), lower)

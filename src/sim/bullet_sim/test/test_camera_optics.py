@@ -15,6 +15,7 @@ from bullet_sim.description import (
     LinkDescription,
     Material,
     ModelDescription,
+    Noise,
     Plane,
     SceneDescription,
     SensorDescription,
@@ -67,6 +68,16 @@ def spot(rgb):
     """Column and row of the middle of what is bright."""
     rows, columns = np.nonzero(rgb[..., 0] > 127)
     return np.array([columns.mean(), rows.mean()])
+
+
+@pytest.mark.parametrize("noise, noisy", [(Noise("gaussian", 0.0, 0.1), True),
+                                          (Noise("none", 0.0, 0.1), False),
+                                          (Noise("gaussian", 0.2, 0.0), True)])
+def test_only_gaussian_noise_is_seen(renderer, noise, noisy):
+    small = CameraDescription(width=64, height=48)
+    clean, seen = (camera(renderer, each).sample().rgb for each in (small, replace(
+        small, noise=noise)))
+    assert (clean != seen).any() == noisy
 
 
 @pytest.mark.parametrize("across, down", [(0.0, 0.0), (0.5, 0.3), (-0.6, 0.2), (0.3, -0.45)])

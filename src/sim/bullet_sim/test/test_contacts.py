@@ -4,8 +4,11 @@ import math
 
 import pytest
 
+from bullet_sim.description import Box, Collision, Cylinder, Plane, Sphere, Surface
 from bullet_sim.formats import Resources, load_model
-from bullet_sim.pose import Pose, conjugate, rotate
+from bullet_sim.physics.contact_parameters import contact_values
+from bullet_sim.physics.contacts import signed_distance
+from bullet_sim.pose import IDENTITY, Pose, conjugate, rotate
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 
@@ -142,6 +145,24 @@ def test_fdir1_parts_mu_from_mu2(world, yaw, turned):
         slowed = 4.0 - sum(a * v for a, v in zip(along, model.twist.linear, strict=True))
         assert slowed == pytest.approx(mu * GRAVITY * 0.3, rel=0.06)
         world.delete("m")
+
+
+@pytest.mark.parametrize("mu, mu2, alike", [(0.5, 0.5, True), (0.0, 0.0, True), (0.5, 0.2, False)])
+def test_only_two_coefficients_that_differ_have_a_direction(mu, mu2, alike):
+    surface = Surface(mu, mu2, (1.0, 0.0, 0.0))
+    values = contact_values(Collision("c", Box((1.0, 1.0, 1.0)), surface=surface), False, IDENTITY,
+                            MASS)
+    assert ("anisotropicFriction" not in values) == alike
+    assert values["lateralFriction"] == mu
+
+
+@pytest.mark.parametrize("shape, point, distance", [
+    (Box((2.0, 4.0, 6.0)), (0.5, 0.0, 0.0), -0.5), (Box((2.0, 4.0, 6.0)), (4.0, 6.0, 0.0), 5.0),
+    (Box((2.0, 4.0, 6.0)), (0.0, 0.0, -5.0), 2.0), (Sphere(0.5), (0.0, 3.0, 4.0), 4.5),
+    (Cylinder(1.0, 2.0), (0.0, 0.75, 0.5), -0.25), (Cylinder(1.0, 2.0), (4.0, 0.0, -5.0), 5.0),
+    (Plane((0.0, 0.0, 2.0), (1.0, 1.0)), (9.0, 9.0, 0.3), 0.3)])
+def test_a_point_s_distance_from_a_shape(shape, point, distance):
+    assert signed_distance(shape, point) == pytest.approx(distance)
 
 
 # --- hardness and bounce

@@ -194,6 +194,16 @@ def test_ackermann_writes_the_angle_and_drives_its_circle():
     assert reading.forward / reading.yaw_rate == pytest.approx(0.335 / math.tan(0.3))
 
 
+def test_ackermann_measures_a_steering_joint_through_its_gear():
+    rear, front = handle("rear"), handle("front", "position")
+    base = AckermannSteering(rear, front, AckermannGeometry(0.335, 0.05, steering_multiplier=2.0),
+                             BaseOptions())
+    base.start(0.0)
+    drive(base, (rear, front), 1.0, (1.0, 0.2))
+    reading = base.odometry.sample()
+    assert reading.forward / reading.yaw_rate == pytest.approx(0.335 / math.tan(0.4))
+
+
 def test_ackermann_open_loop_turns_the_angle_into_a_rate_of_yaw():
     rear, front = handle("rear"), handle("front", "position")
     base = AckermannSteering(rear, front, AckermannGeometry(0.335, 0.05),

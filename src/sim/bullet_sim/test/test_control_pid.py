@@ -28,6 +28,7 @@ def test_proportional_integral_and_derivative_terms():
 
 def test_without_a_clamp_the_integral_has_no_effect():
     assert outputs(PidGains(p=1.0, i=10.0), [1.0, 1.0, 1.0]) == [1.0, 1.0, 1.0]
+    assert outputs(PidGains(p=1.0, i=10.0), [-1.0, -1.0]) == [-1.0, -1.0]
 
 
 def test_the_clamp_holds_the_term_but_the_error_winds_up():

@@ -31,6 +31,11 @@ def test_everything_that_a_camera_may_say():
         (0.4, 0.6), Lens(1.1, 1.2, 1.3, "sin", 1.4, False, 1.5, 64), "c", Pose((1.0, 2.0, 3.0)))
 
 
+def test_a_lens_of_its_own_that_says_nothing_more_has_sdf_s_defaults():
+    lens = camera("<camera><lens><type>custom</type></lens></camera>").lens
+    assert (lens.c1, lens.c2, lens.c3, lens.f, lens.function) == (1.0, 1.0, 0.0, 1.0, "tan")
+
+
 def test_a_camera_that_says_nothing():
     # conforms: sdf sensor/camera
     assert camera("<camera/>") == CameraDescription()

@@ -7,6 +7,8 @@ from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.ogre import parse_script, to_material
+from bullet_sim.formats.sdf.actor import CLOTHES, SKIN
+from bullet_sim.formats.sdf.generated_shapes import GROUNDS, SOIL
 
 NO_FILES = Resources()
 SCRIPT = """
@@ -45,6 +47,18 @@ def test_every_named_material_is_a_material(name):
     material = named_materials()[name]
     for colour in (material.ambient, material.diffuse, material.specular, material.emissive):
         assert len(colour) == 4 and all(0 <= part <= 1 for part in colour)
+
+
+@pytest.mark.parametrize("colour", [
+    *GROUNDS.values(), SOIL, *(part for material in (CLOTHES, SKIN)
+                               for part in (material.ambient, material.diffuse))])
+def test_our_own_colours_are_colours(colour):
+    assert len(colour) == 4 and colour[3] == 1 and all(0 <= part <= 1 for part in colour)
+
+
+def test_a_statement_without_a_value_sets_nothing():
+    script = parse_script("material A { technique { pass { ambient\n diffuse 1 0 0 } } }")
+    assert to_material("A", script, lambda file: file) == Material(diffuse=(1, 0, 0, 1))
 
 
 def test_some_of_gazebos_values():

@@ -137,6 +137,8 @@ def test_gazebo_root_and_light_root():
     assert (light.name, light.type, light.range) == ("lamp", "spot", 10)
     assert light.diffuse == (1, 0, 0, 1)
     assert load_light(sdf('<link name="l"/>'), NO_FILES) is None
+    for other in ('<sdf version="1.6"/>', '<robot><light name="lamp" type="spot"/></robot>'):
+        assert load_light(other, NO_FILES) is None
 
 
 def test_database_text_brings_in_the_included_model():

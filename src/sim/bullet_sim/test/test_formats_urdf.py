@@ -288,6 +288,13 @@ def test_floating_joints_leave_the_child_free():
     assert model.links[1].pose.position == (1, 2, 3)
 
 
+def test_a_link_of_sdf_s_may_lie_relative_to_one_of_urdf_s():
+    model = read(massive("a") + massive("b") + """<joint name="j" type="continuous">
+        <parent link="a"/><child link="b"/><origin xyz="1 0 0" rpy="0 0 1.5707963"/></joint>
+        <gazebo><link name="extra"><pose relative_to="b">2 0 3 0 0 0</pose></link></gazebo>""")
+    assert model.links[2].pose.position == pytest.approx((1.0, 2.0, 3.0), abs=1e-6)
+
+
 def test_robot_level_tags():
     model = read(massive("a") + """<origin xyz="1 2 3"/><gazebo><static>TRUE</static>
         <self_collide>1</self_collide></gazebo>

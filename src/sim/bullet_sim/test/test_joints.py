@@ -200,6 +200,7 @@ def test_a_ball_joint_swings_round_as_a_conical_pendulum(world):
     model = world.spawn(read(link("bob", com="0 0 -1 0 0 0", inertia=1e-6)
                              + joint("j", "ball", "world", "bob")))
     tilt, body = 0.5, model.bodies[0]
+    assert body.speeds() == (0.0, 0.0)
     rate = math.sqrt(GRAVITY / math.cos(tilt))
     turn = Pose.from_xyz_rpy((0, 0, 0), (0.0, tilt, 0.0))
     local = turn.inverse().transform((0.0, 0.0, rate))

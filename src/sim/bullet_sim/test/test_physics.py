@@ -354,3 +354,11 @@ def test_schedule_keeps_its_long_run_rate():
     tick_rate.restart(100, 0.01)  # steps ten times as long
     assert [tick for tick in range(101, 111) if is_due(tick_rate, tick)] == [104, 107, 110]
     assert all(is_due(every, tick) for tick in range(1, 10))
+
+
+def test_counted_odometry_of_half_a_turn_is_a_chord_of_its_circle():
+    counted = WheelOdometry(wheel_separation=0.5, wheel_diameter=0.2)
+    counted.update(2.0, 0.0, 2.5)  # the right wheel goes 0.5 m, the left one stands
+    pose = counted.sample().pose
+    assert pose.rpy()[2] == pytest.approx(1.0)
+    assert pose.position == pytest.approx((0.25 * math.cos(0.5), 0.25 * math.sin(0.5), 0.0))

@@ -177,6 +177,7 @@ def test_road_is_drawn_and_not_touched(load):
         <road name="path"><point>0 5 0</point><point>9 5 0</point></road>""")
     (_, street), (_, path) = description.scenery
     assert street.geometry == Strip(((0, 0, 0), (10, 0, 0)), 3)
+    assert 0.0 < street.pose.position[2] < 0.02  # above the ground, and not to be seen
     assert street.material == named_materials()["Gazebo/Red"]
     assert path.material == named_materials()["Gazebo/Road"] and path.geometry.width == 1
     world = World(description)

@@ -39,6 +39,26 @@ def test_a_sensor_without_errors_tells_the_truth(world):
     assert not model.drifts
 
 
+def test_white_noise_has_its_deviation_about_the_scaled_value_and_the_offset(world):
+    model = ErrorModel(world, "m", ErrorParameters(
+        (0.5, 0.0), (0.0, 0.0), (1.0, 1.0), (0.2, 0.1), (2.0, 1.0)))
+    readings = []
+    for _ in range(4000):
+        world.tick += 1
+        readings.append(model.apply(np.array([3.0, 0.0]), 0.01))
+    assert np.mean(readings, axis=0) == pytest.approx([6.5, 0.0], abs=0.015)
+    assert np.std(readings, axis=0) == pytest.approx([0.2, 0.1], rel=0.05)
+    assert np.corrcoef(np.transpose(readings))[0, 1] == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.parametrize("kind, steps", [("gaussian_quantized", True), ("gaussian", False)])
+def test_only_quantized_readings_come_in_steps(world, kind, steps):
+    noise = SensorNoise(world, "m", [Noise(kind, 0.0, 0.3, precision=0.25)])
+    readings = noise.apply(np.full(400, 1.0)) / 0.25
+    assert np.array_equal(readings, np.round(readings)) == steps
+    assert np.std(readings) == pytest.approx(1.2, rel=0.15)
+
+
 def test_a_drift_that_is_set_dies_away_with_its_time_constant(world):
     model = ErrorModel(world, "m", ErrorParameters((0.0,), (0.0,), (2.0,), (0.0,), (1.0,)))
     model.set_drift(np.array([1.0]))

@@ -140,6 +140,7 @@ def test_an_imu_reads_in_its_own_axes_what_a_links_motion_has_in_the_worlds():
     sensor = SensorDescription("imu", "imu", imu=ImuDescription())
     felt, moved = ImuSensor(world, link, sensor).sample(), LinkMotion(world, link).sample()
     assert felt.linear_acceleration == pytest.approx((0.0, 9.8, 0.0), abs=1e-6)
+    assert felt.orientation == pytest.approx(lying.orientation)
     assert moved.world_acceleration == (0.0, 0.0, 0.0)
     own, world_axes = ({field.name for field in dataclasses.fields(kind)}
                        for kind in (ImuReading, LinkMotionReading))

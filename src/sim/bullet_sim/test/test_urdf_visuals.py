@@ -47,6 +47,15 @@ def test_colours_are_the_visuals_own_or_the_robots_of_that_name():
     assert ball.material is None
 
 
+def test_a_texture_without_a_colour_is_seen_as_it_is(tmp_path):
+    (tmp_path / "wood.png").write_bytes(b"")
+    _, links = read(ROBOT.replace('<color rgba="0 0 1 0.5"/>',
+                                  f'<texture filename="{tmp_path / "wood.png"}"/>'))
+    (box,) = links["base"][1]
+    assert box.material.diffuse == (1, 1, 1, 1)
+    assert box.material.texture == str(tmp_path / "wood.png")
+
+
 def test_what_cannot_be_read_is_left_out_with_a_warning(caplog):
     caplog.set_level(logging.WARNING)
     _, links = read(ROBOT.replace('size="1 2 3"', 'size="1 two 3"'))
