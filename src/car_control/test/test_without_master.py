@@ -21,7 +21,9 @@ def test_ctrl_c_while_there_is_no_master_is_no_traceback(script, tmp_path):
         uri = f"http://localhost:{nobody.getsockname()[1]}"
         node = subprocess.Popen(
             [sys.executable, SCRIPTS / script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, env=os.environ | {"ROS_MASTER_URI": uri, "ROS_LOG_DIR": str(tmp_path),
+            # As in a terminal: what a script runs in the background does not hear Ctrl-C.
+            text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+            env=os.environ | {"ROS_MASTER_URI": uri, "ROS_LOG_DIR": str(tmp_path),
                               "PYTHONUNBUFFERED": "1"})
         try:
             assert "Will keep trying" in node.stdout.readline()
