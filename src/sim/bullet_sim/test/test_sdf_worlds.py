@@ -17,6 +17,7 @@ from bullet_sim.world import World
 BOX = """<link name="link"><visual name="v"><geometry><box><size>1 1 1</size></box></geometry>
     </visual><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
     </link>"""
+BOX_MODEL = f"<model name='box'>{BOX}</model>"
 WALK = """<trajectory id="1" type="walk"><waypoint><time>2</time><pose>4 2 0 0 0 0</pose></waypoint>
     </trajectory>
     <trajectory id="0" type="walk"><waypoint><time>4</time><pose>4 0 0 0 0 1.5</pose></waypoint>
@@ -44,7 +45,11 @@ def test_actor_walks_its_trajectories_one_after_the_other(load):
     actor = description.models[0]
     assert [time for time, _ in actor.trajectory.waypoints] == [0, 4, 6]
     assert actor.links[0].collisions == ()
-    assert actor.links[0].visuals[0].geometry.length == pytest.approx(2.9)  # scaled
+    body, head = actor.links[0].visuals
+    assert body.geometry.length == pytest.approx(2.9)  # scaled
+    assert body.pose.position == pytest.approx((0.0, 0.0, 1.45))  # its feet on the ground
+    assert head.pose.position == pytest.approx((0.0, 0.0, 2.9 + head.geometry.radius))
+    assert body.cast_shadows and load(BOX_MODEL).models[0].links[0].visuals[0].cast_shadows
     world = World(description)
     bob = world.model("bob")
     world.step(1000)
