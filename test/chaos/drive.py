@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,7 +22,7 @@ LAUNCH = ("chaos_course", "watched.launch")
 PACKAGE = "<package format='2'><name>chaos_course</name><version>0.0.0</version></package>\n"
 
 
-class Watched:
+class Watched(ABC):
     """A drive whose car is followed by the simulator's own log, and whose processes are known."""
 
     def __init__(self, course: Course, folder: Path, environment: dict[str, str]):
@@ -45,9 +46,9 @@ class Watched:
         """Whether the car has set off."""
         return driven(self.places()) > STARTED
 
+    @abstractmethod
     def lives(self) -> bool:
         """Whether what was started last is there."""
-        raise NotImplementedError
 
     def wait_for(self, condition: Callable[[], object], limit: float) -> bool:
         """Whether it came true within `limit` s, wall, while that lives."""
