@@ -64,6 +64,9 @@ def test_who_ends_early_says_one_line(chaos, said, code, faults):
     (f'--- Logging error ---\nkilling on exit\n{TRACEBACK}  File "/usr/lib/python3.11/logging/'
      '__init__.py", line 1114, in emit\nOSError\n', 0),
     (f'{TRACEBACK}  File "/usr/lib/python3.11/logging/handlers.py", line 73\nOSError\n', 0),
+    (f'{TRACEBACK}  File "/usr/lib/python3.11/logging/__init__.py", line 1\nValueError\n', 1),
+    (f"{TRACEBACK}  File\nxmlrpc.client.Fault: <Fault 1>\n", 1),
+    (f"{TRACEBACK}  File\npybullet.error: Not connected\n", 1),
     ("all is well\n", 0)])
 def test_a_traceback_in_a_log_is_noticed(chaos, tmp_path, said, faults):
     (tmp_path / "roslaunch.log").write_text(said)

@@ -13,7 +13,9 @@ COMPLAINT = "course_run: "
 TRACEBACK = "Traceback (most recent call last):\n"
 FAILURE = re.compile(
     r"^(?!KeyboardInterrupt|Exception ignored)[\w.]*(Error|Exception|Interrupt|Iteration)\b", re.M)
-OTHERS = re.compile(r'  File "(/usr/bin/rosversion|[^"]*/logging/\w+\.py)"')
+RAISED = re.compile(r"^ .*\n(?!KeyboardInterrupt|Exception ignored)([\w.]+)(?=:|$)", re.M)
+LOGGING = re.compile(r'  File "[^"]*/logging/\w+\.py"')
+ROSVERSION = '  File "/usr/bin/rosversion"'
 NO_ENDING = ("course_run: no film", )  # what a run says and goes on
 
 
@@ -42,7 +44,10 @@ def _has_traceback(text: str) -> bool:
 def _is_anothers(traceback: str) -> bool:
     """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
     of Debian's rosversion, whose roscore was killed. Of several at once the lines are mixed."""
-    return bool(OTHERS.match(traceback)) or not FAILURE.search(traceback)
+    raised = RAISED.search(traceback)
+    if LOGGING.match(traceback):
+        return raised is None or raised[1] == "OSError"
+    return traceback.startswith(ROSVERSION) or not (raised or FAILURE.search(traceback))
 
 
 def half_files(folder: Path) -> Iterator[str]:

@@ -1,15 +1,11 @@
 """The simulator node's command line, without a master."""
 
 import logging
-import signal
-import threading
-import time
 from pathlib import Path
 
 import pytest
 import rosgraph
 import rospy
-from rospy import core
 
 from bullet_sim_ros import log_bridge, node
 from bullet_sim_ros.node import open_world, parse
@@ -90,30 +86,11 @@ def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, l
     monkeypatch.setattr(rospy, "init_node", lambda *_, **__: None)
     monkeypatch.setattr("sys.argv", ["gzserver", "--world", WORLD])
     monkeypatch.setattr("sys.setswitchinterval", lambda _: None)
-    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(node, "end_by_signals", lambda *_: None)
     assert node.main() == 1
     told = [record for record in caplog.records if record.levelno == logging.CRITICAL]
     assert len(told) == 1 and "has ended while the simulator started" in told[0].getMessage()
     assert "Traceback" not in capsys.readouterr().err
-
-
-def test_no_topic_is_closed_while_the_loop_still_publishes(monkeypatch):
-    """Chaos: race, seed 203, ends it by rosnode kill; rospy closes topics in its preshutdown."""
-    monkeypatch.setattr(core, "_client_shutdown_hooks", [])
-    closed, asked = threading.Event(), threading.Event()
-    monkeypatch.setattr(core, "_preshutdown_hooks",
-                        [lambda _: time.sleep(0.2), lambda _: closed.set()])
-    monkeypatch.setattr(core, "_shutdown_hooks", [])
-    for flag in ("_shutdown_flag", "_in_shutdown"):
-        monkeypatch.setattr(core, flag, False)
-    ended = node.end_before_topics(asked.set)
-    master = threading.Thread(target=rospy.signal_shutdown, args=("user request",))
-    master.start()
-    assert asked.wait(10.0) and not closed.wait(0.5)
-    ended.set()
-    node.shut_down()  # the main thread's
-    assert closed.is_set() and rospy.is_shutdown()
-    master.join(10.0)
 
 
 @pytest.mark.parametrize("engine, said", [

@@ -2,9 +2,7 @@
 
 import argparse
 import gc
-import signal
 import sys
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -30,6 +28,7 @@ from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
 from bullet_sim_ros.scene_topic import SceneTopic
 from bullet_sim_ros.services import offer_services
+from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
 from bullet_sim_ros.simulation import Simulation
 from bullet_sim_ros.state_log import StateLog
 from bullet_sim_ros.state_topics import StateTopics
@@ -49,8 +48,6 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
 # s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
 SWITCH_INTERVAL = 0.0005
 FASTEST = 1000.0  # real-time factor; 0 is for more
-LOOP_END = 2.0  # s, wall, that a shutdown from outside waits at most for the loop
-SHUTDOWN_LIMIT = 2.0  # s, wall, for another thread's; a master that hangs answers nobody
 LATEST = 4e9  # s; ROS counts to 2**32
 MASTER_LOST = (ConnectionError, HTTPException)  # of a master that ends while it is asked
 ENGINES = ("ode", "bullet", "dart", "simbody")  # that Gazebo 11 knows
@@ -129,33 +126,32 @@ def check_engine(name: str) -> None:
                      "asked for", name, ", ".join(ENGINES))
 
 
-def end_before_topics(stop: Callable[[], None]) -> threading.Event:
-    """Have a shutdown from outside (`rosnode kill`, a second /gazebo) wait for the event, which is
-    the loop's end, before it closes topics: rospy says only afterwards that it shuts down, and what
-    is published meanwhile is an exception."""
-    ended = threading.Event()
-
-    def wait_for_the_end() -> None:
-        stop()
-        ended.wait(LOOP_END)
-
-    rospy.on_shutdown(wait_for_the_end)
-    return ended
-
-
-def shut_down() -> None:
-    """Returns when the master knows, even if another thread tells it."""
-    rospy.signal_shutdown("the simulation has ended")
-    until = time.monotonic() + SHUTDOWN_LIMIT
-    while not rospy.is_shutdown() and time.monotonic() < until:
-        time.sleep(0.01)
-
-
-def say_master_lost(error: Exception) -> int:
-    """One line; the exit code."""
-    rospy.logfatal("the ROS master at %s has ended while the simulator started: %s; start both "
-                   "again", rosgraph.get_master_uri(), error)
-    return 1
+def start(options: argparse.Namespace) -> Simulation | None:
+    """The simulation with all that others can ask of it; None, after a line that says why not."""
+    resources = open_resources()
+    try:
+        world = open_world(options, resources)
+    except SimulationError as error:
+        rospy.logfatal("Could not open file %s: %s", options.world, error)
+        return None
+    parameters = read_node_parameters()
+    for name, topics in ((names.LOCKSTEP, parameters.lockstep),
+                         (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
+        if not all(is_legal_name(topic) for topic in split(topics)):
+            rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
+                           rospy.resolve_name(name), topics)
+            return None
+    simulation = Simulation(world, parameters)
+    end_by_signals(simulation.stop)  # before anybody can see that it is there
+    open_network(simulation, resources, parameters)
+    if parameters.state_log:
+        try:
+            StateLog(simulation, Path(parameters.state_log))
+        except OSError as error:
+            rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(names.STATE_LOG),
+                           parameters.state_log, error.strerror)
+            return None
+    return simulation
 
 
 def main() -> int:
@@ -172,38 +168,16 @@ def main() -> int:
     forward_core_log(options.verbose)
     check_engine(options.physics)
     register_plugins()
-    resources = open_resources()
     try:
-        world = open_world(options, resources)
-    except SimulationError as error:
-        rospy.logfatal("Could not open file %s: %s", options.world, error)
+        simulation = start(options)
+    except MASTER_LOST as error:
+        rospy.logfatal("the ROS master at %s has ended while the simulator started: %s; start both "
+                       "again", rosgraph.get_master_uri(), error)
         return 1
-    try:
-        parameters = read_node_parameters()
-    except MASTER_LOST as error:
-        return say_master_lost(error)
-    for name, topics in ((names.LOCKSTEP, parameters.lockstep),
-                         (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
-        if not all(is_legal_name(topic) for topic in split(topics)):
-            rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
-                           rospy.resolve_name(name), topics)
-            return 1
-    simulation = Simulation(world, parameters)
-    for number in (signal.SIGINT, signal.SIGTERM):  # before anybody can see that it is there
-        signal.signal(number, lambda _number, _frame: simulation.stop())
-    try:
-        open_network(simulation, resources, parameters)
-    except MASTER_LOST as error:
-        simulation.close()
-        return say_master_lost(error)
-    if parameters.state_log:
-        try:
-            StateLog(simulation, Path(parameters.state_log))
-        except OSError as error:
-            rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(names.STATE_LOG),
-                           parameters.state_log, error.strerror)
-            return 1
-    rospy.loginfo("World %s (%s) is ready", world.description.name, options.world)
+    if simulation is None:
+        return 1
+    if not rospy.is_shutdown():
+        rospy.loginfo("World %s (%s) is ready", simulation.world.description.name, options.world)
     gc.freeze()  # modules and world stay: the collector need not look through them again
     ended = end_before_topics(simulation.stop)
     try:

@@ -7,9 +7,9 @@ from bullet_sim.description import Material
 from bullet_sim.errors import shortened
 from bullet_sim.files import check_file, find_beside
 
+LONGEST_FILE_NAME = 255  # characters
 LARGEST_LIBRARY = 4 * 2**20  # bytes
 _log = logging.getLogger(__name__)
-LONGEST_NAME = 255  # characters; no file has a longer one
 
 Entry = dict[str, list[str]]  # keyword in small letters -> its words
 
@@ -24,7 +24,7 @@ def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
         library = find_beside(name, path.parent)
         if library is None:
             _log.warning("mesh %s: material library %s not found (searched: %s)",
-                         path, shortened(name, LONGEST_NAME), path.parent)
+                         path, shortened(name, LONGEST_FILE_NAME), path.parent)
         else:
             values |= _entries(library)
     return {name: _material(entry, path) for name, entry in values.items()}

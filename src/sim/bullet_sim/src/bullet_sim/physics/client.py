@@ -14,7 +14,6 @@ from bullet_sim.physics.quiet import STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 
-LONGEST_NAME = 1023  # bytes of a link's or joint's; the engine keeps no more, and crashes of 1e6
 LOAD_FLAGS = (
     pybullet.URDF_USE_INERTIA_FROM_FILE
     # The default cylinder is a 32-sided prism plus a margin: wheels would roll 3 % too far.
@@ -105,7 +104,6 @@ class PhysicsClient:
 
         SimulationError where the engine refuses it.
         """
-        _check_names(tree)
         flags = LOAD_FLAGS
         if tree.self_collide:
             flags |= pybullet.URDF_USE_SELF_COLLISION
@@ -129,12 +127,3 @@ class PhysicsClient:
     def close(self) -> None:
         """Disconnect; the client is not to be used afterwards."""
         pybullet.disconnect(physicsClientId=self._id)
-
-
-def _check_names(tree: Tree) -> None:
-    for link in tree.links:
-        for name in (link.name, link.joint.name if link.joint else ""):
-            size = len(name.encode())
-            if size > LONGEST_NAME:
-                raise SimulationError(f"the engine takes names of {LONGEST_NAME} bytes, not one "
-                                      f"of {size}: {name}")

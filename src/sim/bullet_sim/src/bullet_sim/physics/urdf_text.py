@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from bullet_sim import description
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.tyres import engine_shapes
@@ -18,6 +18,7 @@ log = logging.getLogger(__name__)
 
 Triangles = description.Mesh | description.Generated
 MeshPath = Callable[[Triangles, bool], str]  # of a mesh, or of its hull, to a file
+LONGEST_NAME = 1023  # bytes that the engine has room for; longer ones overwrite what is behind
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 HULL_MARGIN = 1e-3  # m, by which the engine's hulls are larger than their corners (measured)
 
@@ -63,10 +64,11 @@ def _each_once(faces: np.ndarray) -> np.ndarray:
 
 
 def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
-    """A `<robot>` whose links keep the order given, the first being the base."""
+    """A `<robot>` whose links keep the order given, the first being the base. SimulationError of a
+    name that is too long."""
     parts = ['<robot name="body">']
     for link in links:
-        parts.append(f"<link name={quoteattr(link.name)}>{_inertial(link.inertial)}")
+        parts.append(f"<link name={_name(link.name)}>{_inertial(link.inertial)}")
         fixed = link.inertial.mass == 0.0
         parts.extend(_collision(collision, fixed, mesh_path) for collision in engine_shapes(link))
         parts.append("</link>")
@@ -74,6 +76,14 @@ def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
             parts.append(_joint(link))
     parts.append("</robot>")
     return "\n".join(parts)
+
+
+def _name(name: str) -> str:
+    size = len(name.encode())
+    if size > LONGEST_NAME:
+        raise SimulationError(f"the engine takes names of {LONGEST_NAME} bytes, not one of {size}: "
+                              f"{name}")
+    return quoteattr(name)
 
 
 def _numbers(values: Iterable[float]) -> str:
@@ -128,7 +138,7 @@ def _joint(link: PhysicsLink) -> str:
     if kind == "ball":
         kind = "spherical"
     name = f"{link.name}__weld" if joint is None else joint.name
-    text = (f'<joint name={quoteattr(name)} type="{kind}"><parent link={quoteattr(link.parent)}/>'
+    text = (f'<joint name={_name(name)} type="{kind}"><parent link={quoteattr(link.parent)}/>'
             f"<child link={quoteattr(link.name)}/>{_origin(link.pose_parent)}")
     if kind != "fixed":
         text += (f'<axis xyz="{_numbers(joint.axis)}"/>'

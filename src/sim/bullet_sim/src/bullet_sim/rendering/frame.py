@@ -1,7 +1,6 @@
 """A renderer's input and output."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,6 @@ from bullet_sim.pose import Pose
 
 LARGEST_PX = 8192  # longest side of a picture
 LARGEST_SQUARE_PX = 4096  # side of the largest square one: more takes seconds to draw and send
-_STRIP = 16  # rows of a picture whose values stay in the processor's cache
 
 
 def drawable_size(width: int, height: int, largest_px: int) -> tuple[int, int]:
@@ -18,11 +16,6 @@ def drawable_size(width: int, height: int, largest_px: int) -> tuple[int, int]:
     most = LARGEST_SQUARE_PX ** 2
     shrink = min(1.0, largest_px / max(width, height), math.sqrt(most / (width * height)))
     return max(1, int(width * shrink)), max(1, int(height * shrink))
-
-
-def strips(height: int) -> Iterator[slice]:
-    """A picture's rows, a few at a time: what several passes go over one after another."""
-    return (slice(top, top + _STRIP) for top in range(0, height, _STRIP))
 
 
 @dataclass(frozen=True)

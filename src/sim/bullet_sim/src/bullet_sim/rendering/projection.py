@@ -6,11 +6,14 @@ camera frame (x forward, y left, z up) falls at column (width - 1) / 2 - f y / x
 (height - 1) / 2 - f z / x, with f the focal length in pixels.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.frame import CameraView, strips
+from bullet_sim.rendering.frame import CameraView
 
+_STRIP = 16  # rows of a picture whose values stay in the processor's cache
 # Camera frame (x forward, y left, z up) to OpenGL's eye frame (x right, y up, z backward).
 _EYE_FROM_CAMERA = np.array([
     [0.0, -1.0, 0.0, 0.0],
@@ -52,3 +55,8 @@ def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
         np.reciprocal(part, out=part)
         part[background] = np.inf
     return result
+
+
+def strips(height: int) -> Iterator[slice]:
+    """A picture's rows, a few at a time: what several passes go over one after another."""
+    return (slice(top, top + _STRIP) for top in range(0, height, _STRIP))
