@@ -18,11 +18,13 @@ FLAGS = [
     "--disable-default-apps", "--disable-dev-shm-usage", "--remote-debugging-port=0",
     "--window-size=1280,800", "--lang=en-US",
 ]
-CODES = {  # of the keys that drive: name of the place, Windows' virtual key code
+CODES = {  # of the keys that drive or change a drag: name of the place, Windows' virtual key code
     **{key: (f"Key{key.upper()}", ord(key.upper())) for key in "wasd"},
     "ArrowLeft": ("ArrowLeft", 37), "ArrowUp": ("ArrowUp", 38),
     "ArrowRight": ("ArrowRight", 39), "ArrowDown": ("ArrowDown", 40), " ": ("Space", 32),
+    "Control": ("ControlLeft", 17), "Shift": ("ShiftLeft", 16),
 }
+MODIFIERS = {"Control": 2, "Shift": 8}  # bits of those that are held
 
 
 BUTTONS = {"left": 1, "right": 2}  # bits of those that are held
@@ -69,6 +71,7 @@ class Page(browser.Page):
         super().__init__()
         self._browser, self._session, self._target = of, session, target
         self.requests: list[str] = []
+        self._modifiers = 0
 
     def note(self, method: str, params: dict) -> None:
         """One event of the protocol."""
@@ -94,12 +97,14 @@ class Page(browser.Page):
 
     def key(self, key: str, down: bool) -> None:
         code, number = CODES[key]
+        bit = MODIFIERS.get(key, 0)
+        self._modifiers = self._modifiers | bit if down else self._modifiers & ~bit
         self.call("Input.dispatchKeyEvent", type="rawKeyDown" if down else "keyUp", key=key,
-                  code=code, windowsVirtualKeyCode=number)
+                  code=code, windowsVirtualKeyCode=number, modifiers=self._modifiers)
 
     def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
         self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, button=button,
-                  buttons=BUTTONS[button], clickCount=1)
+                  buttons=BUTTONS[button], clickCount=1, modifiers=self._modifiers)
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
         """`kind`: touchStart, touchMove, touchEnd, touchCancel; points in px of the page."""

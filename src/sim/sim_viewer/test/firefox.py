@@ -18,7 +18,8 @@ SETTINGS = {
     "network.captive-portal-service.enabled": False, "network.connectivity-service.enabled": False,
 }
 BUTTONS = {"left": 0, "right": 2}  # by number
-KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015"}
+KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015",
+        "Control": "\ue009", "Shift": "\ue008"}
 
 
 class Browser(browser.Browser):

@@ -17,6 +17,7 @@ from visualization_msgs.msg import (
 )
 
 TO_Z = Quaternion(0.0, 1.0, 0.0, 1.0)  # turns x to -z; of any length, as in the tutorials
+BALL = 0.6  # m across
 
 
 def control(mode: int, name: str = "", **fields) -> InteractiveMarkerControl:
@@ -24,9 +25,9 @@ def control(mode: int, name: str = "", **fields) -> InteractiveMarkerControl:
                                     **{"orientation": Quaternion(0.0, 0.0, 0.0, 1.0)} | fields)
 
 
-def cube(size: float = 0.4, **fields) -> Marker:
+def cube(size: float = 0.4, kind: int = Marker.CUBE, **fields) -> Marker:
     """Without a frame: it is meant in the control's."""
-    return Marker(type=Marker.CUBE, scale=Vector3(size, size, size),
+    return Marker(type=kind, scale=Vector3(size, size, size),
                   color=ColorRGBA(0.5, 0.5, 0.5, 1.0), **fields)
 
 
@@ -67,6 +68,13 @@ def scene() -> list[InteractiveMarker]:
         handle("asked", control(mode.MENU, "menu", description="Options"), pose=at(0.5, -2.8),
                menu_entries=entries),
     ]
+
+
+def ball(mode: int) -> InteractiveMarker:
+    """One that is dragged in three dimensions, in base_link."""
+    return handle("ball", control(mode, "grip", orientation=TO_Z,
+                                  markers=[cube(BALL, Marker.SPHERE)]),
+                  pose=at(-0.5, 1.0, 0.3, 1.0), frame="base_link")
 
 
 EVENTS = {getattr(InteractiveMarkerFeedback, name): name for name in (

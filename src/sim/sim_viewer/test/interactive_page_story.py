@@ -2,21 +2,35 @@
 """Interactive markers in a browser: the mouse drags and clicks them, and their server hears it."""
 
 import json
+import math
 import sys
 import unittest
 
 import chromium
 import firefox
+import orbit_view
 import rospy
 import rostest
 import rviz_messages as made_up
 from background import wait_until
 from interactive_markers.interactive_marker_server import InteractiveMarkerServer
-from interactive_messages import EVENTS, scene
+from interactive_messages import BALL, EVENTS, ball, scene
+from sim_viewer.rviz.geometry import pose_of
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import InteractiveMarkerControl as Mode
+
+from bullet_sim.pose import Pose, multiply
 
 BROWSERS = {"chromium": chromium, "firefox": firefox}
 TOLERANCE = 0.05  # m, of a click: a pixel or two
+PRECISE = 0.01  # m or rad, of a drag by so many pixels
+BASE_LINK = Pose.from_xyz_rpy((1.0, 0.5, 0.0), (0.0, 0.0, math.pi / 2))  # in map
+DISTANCE, YAW, PITCH = 4.0, -2.0, 0.5  # from where a ball is looked at, m and rad
+NEAREST = DISTANCE - BALL / 2  # of the ball
+PER_PIXEL = 2 * math.pi / 300  # rad, in rviz
+FROM_ABOVE = "window.rviz.viewport.orbit([0, 0, 0], 10, -Math.PI / 2, 1.57)"
+PIXEL = """(({ _camera, canvas }) => 2 * Math.tan(_camera.fov * Math.PI / 360)
+    / canvas.getBoundingClientRect().height)(window.rviz.viewport)"""  # m, 1 m away
 PROJECT = """((x, y, z) => {
     const { viewport } = window.rviz;
     viewport._camera.updateMatrixWorld();  // it may not have been drawn since it was moved
@@ -33,7 +47,7 @@ class InteractivePage(unittest.TestCase):
         cls.tf.publish(TFMessage(made_up.transforms()))
         cls.heard = []
         cls.server = InteractiveMarkerServer("handles")
-        for marker in scene():
+        for marker in [*scene(), ball(Mode.MOVE_3D)]:
             cls.server.insert(marker, cls.take)
         cls.server.applyChanges()
         cls.browser = BROWSERS[rospy.get_param("~browser", "chromium")].Browser()
@@ -50,8 +64,8 @@ class InteractivePage(unittest.TestCase):
         """A page that shows all markers, seen from 10 m above."""
         url = wait_until(lambda: rospy.get_param(parameter, ""), "the page's address")
         page = cls.browser.open(url + "#rviz")
-        page.wait_for("window.rviz?.session.displays[0].shown?.group.children.length === 7")
-        page.evaluate("window.rviz.viewport.orbit([0, 0, 0], 10, -Math.PI / 2, 1.57)")
+        page.wait_for("window.rviz?.session.displays[0].shown?.group.children.length === 8")
+        page.evaluate(FROM_ABOVE)
         return page
 
     def setUp(self):
@@ -94,9 +108,54 @@ class InteractivePage(unittest.TestCase):
             return [x, y];
         }})()""")
 
-    def near(self, place, expected):
+    def near(self, place, expected, tolerance=TOLERANCE):
         for one, other in zip(place, expected, strict=True):
-            self.assertAlmostEqual(one, other, delta=TOLERANCE)
+            self.assertAlmostEqual(one, other, delta=tolerance)
+
+    def grasp_ball(self, mode):
+        """It is in its place, seen and held in the middle of the picture. All is in its frame."""
+        self.server.insert(ball(mode), self.take)
+        self.server.applyChanges()
+        self.page.wait_for(f"""(({{ _held, _markers }}) => !_held.size && _markers.find(
+            (one) => one.key.endsWith("ball")).controls[0].mode === {mode})(
+            window.rviz.session.displays[0].shown)""")
+        self.start = pose_of(ball(mode).pose)
+        middle = BASE_LINK.transform(self.start.position)
+        wait_until(lambda: math.dist(self.place("ball"), middle[:2]) < PRECISE, "the ball there")
+        self.addCleanup(self.page.evaluate, FROM_ABOVE)
+        self.page.evaluate(
+            f"window.rviz.viewport.orbit({list(middle)}, {DISTANCE}, {YAW}, {PITCH})")
+        self.right, self.up, self.towards = orbit_view.axes(YAW, PITCH, BASE_LINK)
+        self.at = [round(one) for one in self.page.evaluate(f"{PROJECT}(...{list(middle)})")]
+        self.page.mouse("Pressed", *self.at)
+
+    def across(self, right, down, distance=NEAREST):
+        """What so many pixels are where the ball is held."""
+        pixel = distance * self.page.evaluate(PIXEL)
+        return pixel * (right * self.right - down * self.up)
+
+    def pull(self, right, down, *keys):
+        """By so many pixels, while keys are held."""
+        for key in keys:
+            self.page.key(key, True)
+        self.at = [self.at[0] + right, self.at[1] + down]
+        self.page.mouse("Moved", *self.at)
+        for key in keys:
+            self.page.key(key, False)
+
+    def let_go(self):
+        self.page.mouse("Released", *self.at)
+        self.wait_for("MOUSE_UP")
+        return self.last("POSE_UPDATE")
+
+    def has_ball(self, feedback, by, *turns):
+        """Moved by a vector in m, and turned about axes by pixels, the last one first."""
+        pose, turned = pose_of(feedback.pose), self.start.orientation
+        for axis, pixels in reversed(turns):
+            turned = multiply(orbit_view.turn(axis, pixels * PER_PIXEL), turned)
+        self.assertEqual(feedback.header.frame_id, "base_link")
+        self.near(pose.position, self.start.position + by, PRECISE)
+        self.assertLess(orbit_view.angle_between(pose.orientation, turned), PRECISE)
 
     def test_1_an_arrow_is_pushed_along_its_axis_only(self):
         self.near(self.place("pushed"), (0.0, 1.0))  # the frame odom is 0.5 m to the right
@@ -130,6 +189,39 @@ class InteractivePage(unittest.TestCase):
         self.near((pose.orientation.x, pose.orientation.y, pose.orientation.z,
                    pose.orientation.w), (0.0, 0.0, 0.7071, 0.7071))
 
+    def test_3_a_ball_is_moved_in_the_plane_of_the_screen(self):
+        self.grasp_ball(Mode.MOVE_3D)
+        self.pull(100, 40)
+        self.pull(50, -130)
+        last, point = self.let_go(), self.last("MOUSE_UP").mouse_point
+        by = self.across(150, -90)
+        self.has_ball(last, by)
+        self.near((point.x, point.y, point.z),
+                  self.start.position + BALL / 2 * self.towards + by, PRECISE)
+
+    def test_3_a_ball_is_moved_away_with_shift(self):
+        self.grasp_ball(Mode.MOVE_3D)
+        self.pull(10, -60, "Shift")
+        self.pull(-20, 10, "Shift")
+        self.pull(30, 0)
+        away = 40 * orbit_view.below(10, self.page.evaluate(PIXEL), NEAREST, PITCH) / 10
+        self.has_ball(self.let_go(), self.across(30, 0, NEAREST + away) - away * self.towards)
+
+    def test_3_a_ball_is_turned_across_the_drag_and_with_shift_in_the_screen(self):
+        self.grasp_ball(Mode.ROTATE_3D)
+        self.pull(60, -30)
+        self.pull(-20, 50, "Shift")
+        self.has_ball(self.let_go(), self.across(0, 0),
+                      (self.towards, -50), (self.up, 60), (self.right, -30))
+
+    def test_3_a_ball_is_moved_or_with_control_turned(self):
+        self.grasp_ball(Mode.MOVE_ROTATE_3D)
+        self.pull(60, -30, "Control")
+        self.pull(-40, 20, "Control", "Shift")
+        self.pull(-90, 60)
+        self.has_ball(self.let_go(), self.across(-90, 60),
+                      (self.towards, 40), (self.up, 60), (self.right, -30))
+
     def test_3_a_button_is_clicked(self):
         self.drag((-2.0, -1.5, 0.2), (-2.0, -1.5, 0.2))
         self.wait_for("BUTTON_CLICK")
@@ -162,7 +254,7 @@ class InteractivePage(unittest.TestCase):
         before = self.page.evaluate(look)
         self.drag((0.5, -0.5, 0.0), (1.0, -1.0, 0.0))
         self.page.wait_for(f"{look} !== {before!r}")
-        self.page.evaluate("window.rviz.viewport.orbit([0, 0, 0], 10, -Math.PI / 2, 1.57)")
+        self.page.evaluate(FROM_ABOVE)
         self.assertEqual(self.heard, [])
 
     def test_5_the_display_is_added_by_hand(self):
@@ -171,7 +263,7 @@ class InteractivePage(unittest.TestCase):
             document.querySelector('#rviz-add').click();
             (box => { box.value = '/handles/update'; box.dispatchEvent(new Event('change')); })(
                 document.querySelector('[data-name=InteractiveMarkers] .topic'))""")
-        self.page.wait_for("window.rviz.session.displays[1].shown?.group.children.length === 7")
+        self.page.wait_for("window.rviz.session.displays[1].shown?.group.children.length === 8")
         self.page.wait_for("window.rviz.session.displays[1].statuses.some("
                            "([name, level]) => name.startsWith('/') && level === 'ok')")
         self.page.evaluate("document.querySelector('[data-name=InteractiveMarkers] .remove')"
@@ -183,7 +275,7 @@ class InteractivePage(unittest.TestCase):
         self.server.erase("moved")
         self.server.applyChanges()
         wait_until(lambda: abs(self.place("turned")[1] - 2.0) < TOLERANCE, "the marker there")
-        self.page.wait_for("window.rviz.session.displays[0].shown.group.children.length === 6")
+        self.page.wait_for("window.rviz.session.displays[0].shown.group.children.length === 7")
         self.server.insert(scene()[3], self.take)
         self.server.applyChanges()
 

@@ -2,14 +2,16 @@
 //
 // A grip is in the marker's header frame: `position` and `turn` of the marker, `point` where it is
 // held, unit vectors `axis` of the control, `towards` the viewer, `right` and `up` of the view,
-// and `moved` since the last event, px. `aid` are the two ends of a line that helps.
+// `moved` since the last event, px, and the size of a `pixel`, m. `aid` are the two ends of a line
+// that helps.
 
 import * as THREE from "../vendor/three.module.min.js";
 
 const FLAT = 0.03; // of a plane or an axis that is seen from its edge or end: 2 degrees
 const FARTHEST = 1e4; // m
 const LINE = 100; // m, each way
-const PER_PIXEL = 0.01; // rad
+const PER_PIXEL = 2 * Math.PI / 300; // rad
+const PIXEL = 0.001; // m, where a control's plane does not tell
 const SHORT = 1e-6; // m
 
 /** Where a ray meets the plane through a point; null where it does so too flatly or far away. */
@@ -43,7 +45,26 @@ function movePlane(grip, ray, normal = grip.axis) {
   if (there) shift(grip, there.sub(grip.point));
 }
 
-const move3D = (grip, ray) => movePlane(grip, ray, grip.towards);
+/** A grip's `pixel`, by the ray so many pixels below the pointer, in the control's plane. */
+export function sizeOfPixel({ axis, point }, ray, pixels) {
+  const below = meet(ray, point, axis);
+  return below ? below.distanceTo(point) / pixels : PIXEL;
+}
+
+/** Away from the viewer where the pointer goes up or right. */
+function moveAway(grip, ray) {
+  const { moved: { x, y }, pixel, point } = grip;
+  const away = point.clone().sub(ray.origin);
+  const far = away.length() + pixel * (Math.abs(x) > Math.abs(y) ? x : -y);
+  if (far < SHORT || far > FARTHEST) return;
+  shift(grip, away.setLength(far).add(ray.origin).sub(point));
+}
+
+function move3D(grip, ray, { shiftKey }) {
+  if (shiftKey) moveAway(grip, ray);
+  else movePlane(grip, ray, grip.towards);
+  return shiftKey;
+}
 
 /** Turn about the axis after the pointer; where that is now, in m from the axis. */
 function turnAfter(grip, ray) {
@@ -70,17 +91,22 @@ function moveRotate(grip, ray) {
   if (found) shift(grip, found.after.sub(found.before));
 }
 
-function rotate3D({ turn, right, up, moved }) {
-  turn.premultiply(new THREE.Quaternion().setFromAxisAngle(up, PER_PIXEL * moved.x))
-    .premultiply(new THREE.Quaternion().setFromAxisAngle(right, PER_PIXEL * moved.y));
+function rotate3D({ turn, right, up, towards, moved: { x, y } }, ray, { shiftKey }) {
+  const about = (axis, pixels) => turn.premultiply(
+    new THREE.Quaternion().setFromAxisAngle(axis, PER_PIXEL * pixels));
+  if (shiftKey) {
+    about(towards, Math.abs(y) > Math.abs(x) ? -y : -x);
+  } else {
+    about(right, y);
+    about(up, x);
+  }
+  return true;
 }
 
-function moveRotate3D(grip, ray, event) {
-  if (event.ctrlKey) rotate3D(grip);
-  else move3D(grip, ray);
-}
+const moveRotate3D = (grip, ray, event) => (event.ctrlKey ? rotate3D : move3D)(grip, ray, event);
 
-/** By interaction mode: `(grip, ray, event)` changes the grip. */
+/** By interaction mode: `(grip, ray, event)` changes the grip, and says whether only how far the
+ * pointer goes counts, not where it is. */
 export const DRAGS = {
   3: moveAxis, 4: (grip, ray) => movePlane(grip, ray), 5: rotateAxis, 6: moveRotate, 7: move3D,
   8: rotate3D, 9: moveRotate3D,

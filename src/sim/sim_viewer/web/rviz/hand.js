@@ -1,13 +1,14 @@
 // The pointer on interactive markers: drags, clicks and menus become feedback for their server.
 
 import * as THREE from "../vendor/three.module.min.js";
-import { DRAGS } from "./dragging.js";
+import { DRAGS, sizeOfPixel } from "./dragging.js";
 import { LinesPart } from "./lines.js";
 import { matrixOf } from "./look.js";
 import { Menu } from "./menu.js";
 
 const NONE = 0, MENU = 1, BUTTON = 2; // modes of a control
 const GREY = [128, 128, 128, 255];
+const BELOW = 10; // px, by which the size of one is found
 const ALIVE_MS = 250; // between words that a marker is still held
 
 export class Hand {
@@ -50,8 +51,11 @@ export class Hand {
 
   _grasp(event, { marker, control, point }) {
     this._held = { key: marker.key, control, at: [event.clientX, event.clientY],
+      behind: [0, 0], // px that the pointer has gone on without what it holds
       turn: this._shown.turnOf(marker, control),
       point: this._inFrame(marker, point) }; // where the marker is held
+    this._held.pixel = sizeOfPixel(this._grip(marker, event),
+      this._ray(marker, event.clientX, event.clientY + BELOW), BELOW);
     this._tell("MOUSE_DOWN", this._held.point);
     this._alive = setInterval(() => this._queue.length || this._tell("KEEP_ALIVE"), ALIVE_MS);
   }
@@ -62,12 +66,16 @@ export class Hand {
       return;
     }
     event.stopImmediatePropagation();
-    const { key, control } = this._held;
+    const { key, control, behind } = this._held;
     const marker = this._shown.find(key);
     const drag = DRAGS[control.mode];
     if (!marker || !drag) return;
     const grip = this._grip(marker, event);
-    drag(grip, this._viewport.ray(event).applyMatrix4(matrixOf(marker.place).invert()), event);
+    const ray = this._ray(marker, event.clientX - behind[0], event.clientY - behind[1]);
+    if (drag(grip, ray, event)) {
+      behind[0] += grip.moved.x;
+      behind[1] += grip.moved.y;
+    }
     this._held.point = grip.point;
     this._held.at = [event.clientX, event.clientY];
     this._shown.hold(key, [...grip.position.toArray(), ...grip.turn.normalize().toArray()]);
@@ -112,7 +120,7 @@ export class Hand {
   /** What dragging.js works with, in the marker's header frame. */
   _grip(marker, event) {
     const back = new THREE.Quaternion().fromArray(marker.place, 3).invert();
-    const { control, turn, point, at } = this._held;
+    const { control, turn, point, at, pixel } = this._held;
     const own = new THREE.Quaternion().fromArray(control.orientation);
     const pose = this._shown.poseOf(marker);
     const seen = (x, y, z) => new THREE.Vector3(x, y, z).applyQuaternion(this._viewport.turn)
@@ -122,7 +130,12 @@ export class Hand {
       axis: new THREE.Vector3(1, 0, 0).applyQuaternion(own).applyQuaternion(turn)
         .applyQuaternion(back).normalize(),
       towards: seen(0, 0, 1), right: seen(1, 0, 0), up: seen(0, 1, 0),
-      moved: { x: event.clientX - at[0], y: event.clientY - at[1] } };
+      moved: { x: event.clientX - at[0], y: event.clientY - at[1] }, pixel };
+  }
+
+  /** Through a pixel, in the marker's header frame. */
+  _ray(marker, clientX, clientY) {
+    return this._viewport.ray({ clientX, clientY }).applyMatrix4(matrixOf(marker.place).invert());
   }
 
   _inFrame(marker, point) {
