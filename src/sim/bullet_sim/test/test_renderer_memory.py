@@ -16,6 +16,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.target import Quality
 
 SIDE = 1024  # px
 PICTURE = SIDE * SIDE * (4 + 4)  # bytes of colour and depth
@@ -60,14 +61,18 @@ def test_the_driver_lets_go_of_the_last_picture(renderer, scene):
     renderer.draw(scene.frozen(), replace(VIEW, width=8, height=8))  # what stays is there now
     before = allocated()
     first = renderer.draw(scene.frozen(), VIEW).rgb
-    framebuffer = weakref.ref(renderer._targets[SIDE, SIDE, 0].framebuffer)
+    *_, target = renderer._targets.values()
+    framebuffer = weakref.ref(target.framebuffer)
+    del target
     renderer.trim()
     assert framebuffer() is None
     assert allocated() - before < first.nbytes + PICTURE / 4
     assert (renderer.draw(scene.frozen(), VIEW).rgb == first).all()  # it goes on
 
 
-def test_what_is_drawn_in_leaves_no_holes_in_the_heap():
+def test_what_is_drawn_in_leaves_no_holes_in_the_heap(renderer):
+    if renderer._quality != Quality():
+        pytest.skip("the driver of a graphics card has memory of its own")
     script = (
         "from test_renderer_memory import *; opened = open_renderer('egl');"
         "before = blocks()[0]; opened.draw(Scene().frozen(), VIEW); after = blocks()[0];"

@@ -1,6 +1,7 @@
 """What only graphics cards do, on whatever draws here: anti-aliasing, flat angles, reading back."""
 
 import math
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -11,6 +12,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.target import Quality, card_quality
 
 WHITE = Material(diffuse=(1.0, 1.0, 1.0, 1.0), lighting=False)
 ROW = 130  # of a picture that ends at 240: 8 m away, where a pixel is 30 times as deep as wide
@@ -19,14 +21,14 @@ VIEW = CameraView(320, 240, math.pi / 3, 0.05, 50.0, Pose((-2.0, 0.0, 0.3)))
 
 @pytest.fixture(scope="module")
 def plain():
-    renderer = EglRenderer()
+    renderer = EglRenderer(quality=lambda _context: Quality())
     yield renderer
     renderer.close()
 
 
 @pytest.fixture(scope="module")
 def card():
-    renderer = EglRenderer(card=True)
+    renderer = EglRenderer(quality=card_quality)
     yield renderer
     renderer.close()
 
@@ -58,6 +60,27 @@ def test_equal_scenes_give_equal_bits(card):
     first = card.draw(leaning_box(), VIEW).rgb
     card.draw(leaning_box(), VIEW, depth=True)
     assert np.array_equal(first, card.draw(leaning_box(), VIEW).rgb)
+
+
+def test_corners_on_a_grid_do_not_hide_a_course_on_the_ground(plain, card):
+    """The grid of a card is 1/16 px or finer; the ground is lifted by less, f_px * LIFT / distance.
+
+    So by up to 0.047 px in the lowest row, 240 px below the horizon.
+    """
+    lift, height = 2e-5, 0.1
+    view = replace(VIEW, width=640, height=480, near=0.02, pose=Pose((0.0, 0.0, height)))
+    black = replace(WHITE, ambient=(0.0, 0.0, 0.0, 1.0), diffuse=(0.0, 0.0, 0.0, 1.0))
+    course, scene = Scene(), Scene()
+    white = Visual("v", Plane((0.0, 0.0, 1.0), (4.0, 4.0)), material=WHITE)
+    for one in (course, scene):
+        one.add_link(("course", "link"), (white,), Pose())
+    ground = Visual("v", Plane((0.0, 0.0, 1.0), (100.0, 100.0)), material=black)
+    scene.add_link(("ground", "link"), (ground,), Pose((0.0, 0.0, lift)))
+    for depth in (False, True):
+        wanted = card.draw(course.frozen(), view, depth).rgb[240:] == 255
+        assert wanted.sum() > 300_000
+        assert np.array_equal(card.draw(scene.frozen(), view, depth).rgb[240:] == 255, wanted)
+    assert not np.array_equal(plain.draw(scene.frozen(), view).rgb[240:] == 255, wanted)
 
 
 def test_stripes_on_a_floor_are_seen_farther_away(tmp_path, plain, card):

@@ -42,7 +42,7 @@ from bullet_sim.rendering.rectangles import Scissor, tiles
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
-from bullet_sim.rendering.target import Quality, Target, card_quality, quality_of
+from bullet_sim.rendering.target import Quality, Target, quality_of
 from bullet_sim.rendering.visibility import Outlines, Visibility
 
 # OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
@@ -54,6 +54,7 @@ _MOST_DEVICES = 8
 _VERSIONS_KEPT = 2  # of scenes: the one being drawn, and the one before
 # In `polygon_offset`'s units. llvmpipe's depth of one plane is off by up to 6/2**24 (measured), and
 # a unit is 2/2**24 there: enough to decide between two planes, and 0.6 mm at 3 m for `near` 0.02.
+# On a card what vertices are moved by is added (`target`).
 _RECESS = 10.0
 
 
@@ -78,7 +79,7 @@ class _Prepared:
     lights: moderngl.Buffer
     items: list[list[_Item]]  # of each node's parts, in the nodes' order
     outlines: Outlines
-    recess: dict[float, float]  # by size of plane, how far back in the depth buffer it is drawn
+    ranks: dict[float, int]  # by size of plane: the larger is drawn farther back
     shadows: Shadows | None
     kinds: set[Kind]
 
@@ -86,8 +87,9 @@ class _Prepared:
 class EglRenderer:
     """See `renderer.Renderer`."""
 
-    def __init__(self, profiler: Profiler | None = None, card: bool = False) -> None:
-        """`card`: pictures as a graphics card makes them, whatever draws."""
+    def __init__(self, profiler: Profiler | None = None,
+                 quality: Callable[[moderngl.Context], Quality] = quality_of) -> None:
+        """`quality`: of what pictures are made like; without it, as fits what draws."""
         self._profiler = profiler or Profiler()
         self._context = _open_context()
         with self._context:  # leaving it releases the context, so that any thread may draw
@@ -96,8 +98,7 @@ class EglRenderer:
             self.name = f"EGL, {info['GL_RENDERER']}"
             self.largest_px = min(LARGEST_PX, info["GL_MAX_RENDERBUFFER_SIZE"],
                                   *info["GL_MAX_VIEWPORT_DIMS"])
-            choose = card_quality if card else quality_of
-            self._quality: Quality = choose(self._context)
+            self._quality = quality(self._context)
             self._store = SurfaceStore(self._context, self._quality.anisotropy)
             self._sky = Sky(self._context)
             self._shadow_pass = ShadowPass(self._context)
@@ -179,10 +180,9 @@ class EglRenderer:
 
         outlines = Outlines([node.shape for node in scene.nodes.values()])
         block = self._context.buffer(lights.lights_block(scene), dynamic=True)
-        recess = {size: rank * _RECESS for size, rank in scene.plane_ranks().items()}
         items = [[item(surface, next(numbers)) for surface in own] for own in surfaces]
         used = {kind for own in items for one in own for kind in one.kinds if kind}
-        return _Prepared(block, items, outlines, recess, shadows, used)
+        return _Prepared(block, items, outlines, scene.plane_ranks(), shadows, used)
 
     def _item(self, number: int, surface: Surface, triangles: Triangles, plain: Kind,
               shaded: Kind | None) -> _Item:
@@ -223,7 +223,8 @@ class EglRenderer:
                 if visible for piece in _pieces(
                     self._within(item, unseen * depth / view.focal_length_px),
                     places.get(item.number), view)]
-            self._context.polygon_offset = (0.0, prepared.recess.get(node.shape.plane_size, 0.0))
+            rank = prepared.ranks.get(node.shape.plane_size, 0)
+            self._context.polygon_offset = rank * self._quality.snap_px, rank * _RECESS
             _render(target, node, [p for p in pieces if p[0].surface.opaque], clip_node)
             see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))
         if scene.description.sky:

@@ -14,15 +14,19 @@ from bullet_sim.rendering.own_memory import own_array, own_blocks
 _SOFTWARE = ("llvm", "softpipe", "swr", "swiftshader", "basic render")
 _MOST_SAMPLES = 1 << 26  # in a picture; 512 MB of colour and depth
 _SAMPLES, _ANISOTROPY = 4, 8.0  # OGRE's usual FSAA in Gazebo; enough for a floor at a flat angle
+# px; the coarsest grid that OpenGL allows (SUBPIXEL_BITS of 4). An H200 has one of 1/256: without
+# this its ground hid half of the course far away, with 1/256 and more no pixel of 343 million.
+_SNAP = 1 / 16
 
 
 @dataclass(frozen=True)
 class Quality:
-    """What of a picture costs nothing on a graphics card, and ten times a frame in software."""
+    """What is another on a graphics card than in software, where samples take ten times as long."""
 
     samples: int = 0  # a pixel, at edges; 0: no anti-aliasing
     anisotropy: float = 1.0  # of textures
     pixel_buffers: bool = False  # read back while nobody waits with Python's lock
+    snap_px: float = 0.0  # that corners of triangles are off, and with them the depth of a plane
 
     def samples_of(self, size: tuple[int, int], depth: bool) -> int:
         """For a picture of that size, px; a mean of two depths is the depth of none."""
@@ -41,7 +45,7 @@ def quality_of(context: moderngl.Context) -> Quality:
 def card_quality(context: moderngl.Context) -> Quality:
     """As a graphics card has it."""
     return Quality(min(_SAMPLES, context.max_samples), min(_ANISOTROPY, context.max_anisotropy),
-                   pixel_buffers=True)
+                   pixel_buffers=True, snap_px=_SNAP)
 
 
 class Target:
