@@ -27,9 +27,17 @@ def wait_until(condition, what, limit=LIMIT):
 
 
 class FakeControllers:
-    """`told` holds (monotonic s, controller, command) in the order of arrival."""
+    """`told` holds (monotonic s, controller, command) in the order of arrival.
 
-    def __init__(self, namespace="/racecar"):
+    Waits for motor_control where it `runs` already: rospy may never connect a subscriber and a
+    publisher that come at the same moment.
+    """
+
+    def __init__(self, namespace="/racecar", runs=True):
+        topics = {f"{namespace}/{name}/command" for name in WHEELS + HINGES}
+        if runs:
+            wait_until(lambda: topics <= {topic for topic, _ in rospy.get_published_topics()},
+                       f"motor_control for {namespace}")
         self.told, self.now = [], {}
         self.lock = threading.Lock()
         self.subscribers = [

@@ -155,7 +155,7 @@ class MotorControlStory(unittest.TestCase):
         self.assertEqual(self.settings.get_configuration()["max_speed"], 1.5)
 
     def test_ctrl_c_leaves_the_car_standing(self):
-        other = FakeControllers("/other")
+        other = FakeControllers("/other", runs=False)
         command = [*NODE, "__name:=other", "_namespace:=/other", "_ackermann:=true",
                    "_rate_hz:=0", "_timeout:=10"]
         node = subprocess.Popen(command)

@@ -78,8 +78,8 @@ def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, l
     def lose(*_):
         raise ConnectionRefusedError(111, "Connection refused")
 
-    for name in ("wait_for_master", "send_promptly", "check_engine", "forward_core_log",
-                 "register_plugins"):
+    for name in ("wait_for_master", "send_promptly", "keep_every_publisher", "check_engine",
+                 "forward_core_log", "register_plugins"):
         monkeypatch.setattr(node, name, lambda *_: None)
     monkeypatch.setattr(node, "read_node_parameters", NodeParameters)
     monkeypatch.setattr(node, lost, lose)
@@ -135,6 +135,7 @@ def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch
     monkeypatch.setattr(rospy, "init_node", lambda *_words, **_options: None)
     monkeypatch.setattr(rospy.rostime, "set_rostime_initialized", lambda _yes: None)
     monkeypatch.setattr(node, "send_promptly", lambda: None)
+    monkeypatch.setattr(node, "keep_every_publisher", lambda: None)
     monkeypatch.setattr(node, "forward_core_log", verbose.append)
     monkeypatch.setattr("sys.setswitchinterval", lambda _seconds: None)
     assert node.main() == 1

@@ -26,6 +26,7 @@ from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.prompt_connection import send_promptly
+from bullet_sim_ros.publisher_lists import keep_every_publisher
 from bullet_sim_ros.scene_topic import SceneTopic
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
@@ -161,6 +162,7 @@ def main() -> int:
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
     wait_for_master()
     send_promptly()
+    keep_every_publisher()
     # This node publishes /clock: rospy must not wait for a /clock that this very node publishes.
     # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
     rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
