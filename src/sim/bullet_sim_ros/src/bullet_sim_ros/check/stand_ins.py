@@ -91,10 +91,11 @@ class Subscriber:
     """In place of rospy.Subscriber."""
 
     graph: Graph  # of a subclass
+    impl = None  # no connections of rospy's own
 
     def __init__(self, name: str, data_class: type, callback=None, callback_args=None,
                  **_options):
-        self.resolved_name = rospy.resolve_name(name)
+        self.resolved_name, self.data_class = rospy.resolve_name(name), data_class
         self.callback, self.args = callback, callback_args
         self._topic = self.graph.topics[self.resolved_name]
         self._topic.kind = self._topic.kind or data_class
