@@ -8,18 +8,21 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from run_session.failure import RunError
 from run_session.launch import describe_exit, is_up
 from run_session.processes import Child, Family
+from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings
 
 POLL = 0.02  # s, wall
 MASTER_LIMIT, START_LIMIT, END_LIMIT = 20.0, 60.0, 10.0  # s, wall
 PROBES = "sim_bench.probes"
+PERCENT = "% of a core"
+LEAST_CPU = 0.5  # % of a core; who uses less is left out
 
 
 class RosRun:
@@ -122,3 +125,11 @@ def _free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("", 0))
         return probe.getsockname()[1]
+
+
+def cpu_figures(name: str, cpu: list[dict[str, float]], always: Sequence[str] = ()) -> list[Figure]:
+    """`NAME.cpu.PROCESS`; `cpu` has each process's share in each window, %."""
+    found = {process: [window.get(process, 0.0) for window in cpu]
+             for process in sorted({process for window in cpu for process in window})}
+    return [figure(f"{name}.cpu.{process}", PERCENT, shares) for process, shares in found.items()
+            if max(shares) >= LEAST_CPU or process in always]

@@ -28,7 +28,7 @@ from sim_bench.course_drive import (
 from sim_bench.figures import Figure, figure, percentile
 from sim_bench.frame_age import frame_ages, real_time_factor
 from sim_bench.marked_lap import marked_lap
-from sim_bench.ros_run import RosRun, ros_run
+from sim_bench.ros_run import PERCENT, RosRun, cpu_figures, ros_run
 from sim_bench.settings import Settings
 from sim_bench.stages import PROFILE, stage_figures, stages
 
@@ -36,7 +36,6 @@ SIZES = {"1080p": (1920, 1080), "720p": (1280, 720)}
 WINDOWS, WINDOW = {"1080p": 7, "720p": 4}, 10.0  # s, wall
 WARM_UP = 3.0  # s, wall, after the first frame
 REST_WINDOWS, REST_WINDOW, REST_WARM_UP = 3, 5.0, 3.0  # s, wall
-PERCENT = "% of a core"
 
 
 def measure(settings: Settings) -> list[Figure]:
@@ -90,13 +89,10 @@ def drive_figures(
         figure(f"{name}.frame_age_p95", "ms", [percentile(window, 0.95) for window in ages]),
         figure(f"{name}.callback", "ms", took),
     ]
-    for process in sorted({process for window in cpu for process in window}):
-        shares = [window.get(process, 0.0) for window in cpu]
-        if max(shares) >= 0.5 or process in (SIMULATOR, FOLLOWER):
-            figures.append(figure(f"{name}.cpu.{process}", PERCENT, shares))
     cores = len(os.sched_getaffinity(0))
     spare = [cores - sum(window.values()) / 100 for window in cpu]
-    return [*figures, figure(f"{name}.spare", "cores", spare)]
+    return [*figures, *cpu_figures(name, cpu, always=(SIMULATOR, FOLLOWER)),
+            figure(f"{name}.spare", "cores", spare)]
 
 
 def _ages_ms(window: Seen, whole: Seen) -> list[float]:

@@ -13,10 +13,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from run_session import simulator
+from run_session.cpu import CpuMeter
 from sim_bench import made_worlds
 from sim_bench.figures import Figure, figure
 from sim_bench.made_worlds import MadeWorld
-from sim_bench.ros_run import START_LIMIT, RosRun, read_lines, ros_run
+from sim_bench.ros_run import START_LIMIT, RosRun, cpu_figures, read_lines, ros_run
 from sim_bench.settings import Settings
 from sim_bench.stages import PROFILE, stage_figures, stages
 
@@ -42,9 +43,10 @@ def measure(settings: Settings) -> list[Figure]:
     for name, make in WORLDS.items():
         settings.say(name)
         with ros_run(settings, f"worlds/{name}", roscore=False) as run:
-            factors, log = _at_work(run, make(run.folder), settings)
+            factors, cpu, log = _at_work(run, make(run.folder), settings)
         work = stages(log, turn="draw")
-        found += [figure(f"real_time_factor.{name}", "x", factors), *stage_figures(name, work)]
+        found += [figure(f"real_time_factor.{name}", "x", factors), *stage_figures(name, work),
+                  *cpu_figures(name, cpu)]
         if work:
             drawing = sum(work.get(stage, 0.0) for stage in DRAWING)
             found.append(figure(f"frame_at_work.{name}", "ms", [drawing]))
@@ -54,8 +56,8 @@ def measure(settings: Settings) -> list[Figure]:
 
 
 def _at_work(run: RosRun, world: MadeWorld,
-             settings: Settings) -> tuple[list[float], Path]:
-    """Real-time factors, and what was logged meanwhile."""
+             settings: Settings) -> tuple[list[float], list[dict[str, float]], Path]:
+    """Real-time factors, each process's share of a core (%), and what was logged meanwhile."""
     launched = run.launch("gazebo_ros", "empty_world.launch", "gui:=false", PROFILE,
                           f"world_name:={world.file}")
     run.wait(simulator.models, START_LIMIT, "the simulator")
@@ -64,13 +66,14 @@ def _at_work(run: RosRun, world: MadeWorld,
         run.probe("listener", str(heard), *world.topics)
         run.wait(lambda: _all_heard(heard, len(world.topics)), START_LIMIT, "all sensors")
     run.pause(settings.seconds(SETTLING))
-    factors = []
+    factors, cpu, meter = [], [], CpuMeter()
     for _ in range(settings.runs(RUNS)):
         began, start = time.monotonic(), simulator.simulated_time()
         run.pause(settings.seconds(WINDOW))
         factors.append((simulator.simulated_time() - start) / (time.monotonic() - began))
+        cpu.append(meter.look())
     run.end(launched)
-    return factors, launched.log
+    return factors, cpu, launched.log
 
 
 def _all_heard(file: Path, topics: int) -> bool:
