@@ -19,7 +19,8 @@ MIDDLE = {"course": (0.0, 0.0), "lane": (0.0, 3.75)}  # m, of the painted plane
 BROKEN = {
     "missing_key": "key 'lane_width' is missing",
     "unknown_key": "unknown key 'sizes'; there are: name, size",
-    "corner_not_a_number": "corners[4].radius: must be a number, is 'wide'",
+    "corner_not_a_number": "corners[4].radius: must be a number up to 10000, is 'wide'",
+    "corner_far_away": "corners[4].radius: must be a number up to 10000, is 42949672955.9",
     "corner_key_missing": "corners[4]: key 'radius' is missing",
     "bends_overlap": "corners[0] and [1]: the bends overlap by",
     "start_beside_line": "start: 0.500 m beside the line",

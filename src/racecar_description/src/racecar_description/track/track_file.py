@@ -12,7 +12,7 @@ import yaml
 from racecar_description.track.centre_line import CentreLine, Corner
 from racecar_description.track.errors import TrackError
 
-MOST = 1e12  # m, of any number
+MOST = 1e4  # m, of any number; on a line of millions of km the nearest place takes minutes
 
 
 @dataclass(frozen=True)
@@ -127,8 +127,8 @@ def _check_keys(place: str, values: object, schema: type) -> None:
 
 
 def _number(place: str, value: object, positive: bool = False) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < MOST:
-        raise TrackError(f"{place}: must be a number, is {_shown(value)}")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MOST:
+        raise TrackError(f"{place}: must be a number up to {MOST:g}, is {_shown(value)}")
     if positive and value <= 0:
         raise TrackError(f"{place}: must be more than 0, is {_shown(value)}")
     return float(value)
