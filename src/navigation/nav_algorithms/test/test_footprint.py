@@ -57,7 +57,10 @@ def test_the_dearest_cell_counts_and_the_unknown_after_the_lethal():
 
 def test_outside_the_costmap():
     poses = np.array([[1.8, 0, 0], [50, 0, 0], [0, -1.95, 0]])
-    assert footprint.costs(empty(), SQUARE, poses).tolist() == [footprint.OUTSIDE] * 3
+    assert footprint.costs(empty(), SQUARE, poses).tolist() == [-3] * 3  # as upstream's world model
+    assert footprint.OUTSIDE == -3
+    inside = np.array([[1.65, 0, 0], [-1.75, 0, 0], [0, 1.85, 0], [0, -1.85, 0]])
+    assert footprint.costs(empty(), SQUARE, inside).tolist() == [0] * 4  # 5 cm to the edge
 
 
 def test_random_turns_against_points_in_the_polygon():

@@ -146,15 +146,17 @@ def test_the_law_of_inflation():
     assert table[25] == int(252 * np.exp(-3.0)) and table[26] == FREE
 
 
-def test_costs_about_a_wall_are_those_of_the_exact_distance():
+@pytest.mark.parametrize("outline, inscribed", [(SQUARE, 0.2), (SQUARE[:2], 0.0), (None, 0.0)])
+def test_costs_about_a_wall_are_those_of_the_exact_distance(outline, inscribed):
     inflation = InflationLayer("inflation", inflation_radius=0.5, cost_scaling_factor=3.0)
     walls = [(5, 5), (30, 12), (31, 12), (20, 39)]
     layered, _ = with_map(grid((40, 40), wall=walls), inflation)
-    layered.set_footprint(SQUARE)
+    if outline is not None:
+        layered.set_footprint(outline)
     layered.update(HERE)
     rows, columns = np.indices((40, 40))
     squares = np.min([(rows - r) ** 2 + (columns - c) ** 2 for r, c in walls], axis=0)
-    expected = cost_table(0.1, 0.2, 0.5, 3.0)[np.minimum(squares, 26)]
+    expected = cost_table(0.1, inscribed, 0.5, 3.0)[np.minimum(squares, 26)]
     assert (layered.master.cells == expected).all()
 
 
@@ -185,15 +187,16 @@ def test_what_was_written_counts_until_a_new_size_is_written():
 
 
 @pytest.mark.parametrize("inflate_unknown", [False, True])
-def test_inflation_of_unknown_cells(inflate_unknown):
-    inflation = InflationLayer("inflation", 0.5, 3.0, inflate_unknown)
+@pytest.mark.parametrize("scaling, cost", [(3.0, int(252 * np.exp(-0.3))), (51.0, 1)])
+def test_inflation_of_unknown_cells(inflate_unknown, scaling, cost):
+    inflation = InflationLayer("inflation", 0.5, scaling, inflate_unknown)
     unknown = [(5, 2), (5, 4)]  # at 0.3 m and at 0.1 m
     layered, _ = with_map(grid((10, 10), wall=[(5, 5)], unknown=unknown), inflation,
                           track_unknown=True)
     layered.set_footprint(SQUARE)
     layered.update(HERE)
     assert layered.master.cells[5, 4] == INSCRIBED
-    assert layered.master.cells[5, 2] == (int(252 * np.exp(-0.3)) if inflate_unknown else UNKNOWN)
+    assert layered.master.cells[5, 2] == (cost if inflate_unknown else UNKNOWN)
 
 
 def test_inflated_costs_go_when_their_obstacle_goes():

@@ -36,12 +36,13 @@ def test_noise_along_a_straight_drive(model, deviation):
     assert found[:, 0] == pytest.approx(np.ones(len(found)))
 
 
-# diff turns twice, before and after the drive, each with this deviation.
-@pytest.mark.parametrize("model, deviation", [("diff", np.sqrt(2) * 0.2 * 0.5**2),
-                                              ("omni-corrected", np.sqrt(0.2 * 0.5**2))])
-def test_turning_noise_of_a_drive(model, deviation):
-    only_turn = ALPHAS * [0, 1, 0, 0, 0]
-    turns = drawn(model, (0, 0, 0), (0.5, 0, 0), only_turn)[:, 2] - np.pi / 2
+# diff turns twice, before and after the drive, each with this deviation; on the spot once.
+@pytest.mark.parametrize("model, number, step, deviation", [
+    ("diff", 1, (0.5, 0, 0), np.sqrt(2) * 0.2 * 0.5**2), ("diff", 0, (0, 0, 0.5), 0.1 * 0.5**2),
+    ("omni-corrected", 1, (0.5, 0, 0), np.sqrt(0.2 * 0.5**2)),
+    ("omni-corrected", 0, (0, 0, 0.5), np.sqrt(0.1 * 0.5**2))])
+def test_turning_noise_of_a_drive_or_a_turn(model, number, step, deviation):
+    turns = drawn(model, (0, 0, 0), step, ALPHAS * (np.arange(5) == number))[:, 2] - np.pi / 2
     assert turns.std() == pytest.approx(deviation, rel=0.03)
 
 

@@ -138,13 +138,12 @@ def test_obstacles_stay_in_the_world_when_the_window_rolls():
 @pytest.mark.parametrize("layer", [ObstacleLayer("o"), VoxelLayer("v", of(VoxelSettings))])
 def test_forgetting(layer):
     layered = costmap_of(layer)
-    obstacles = seen((2.55, 2.05, 0.2), (3.55, 2.05, 0.2))
-    update(layered, [obstacles])
-    layer.clear_area(HERE[:2] - 1, HERE[:2] + 1)
-    assert np.argwhere(update(layered)).tolist() == [[20, 25]]
-    update(layered, [obstacles])
-    layer.clear_area(HERE[:2] - 1, HERE[:2] + 1, invert=True)
-    assert np.argwhere(update(layered)).tolist() == [[20, 35]]
+    sides = np.array([[0, -1, 0], [-1, 0, 0], [1, 0, 0], [0, 1, 0]])
+    near, far = HERE + 0.9 * sides, HERE + 1.1 * sides
+    for invert, left in ((False, near), (True, far)):
+        update(layered, [seen(*near, *far)])
+        layer.clear_area(HERE[:2] - 1, HERE[:2] + 1, invert)
+        assert np.argwhere(update(layered)).tolist() == layer.own.cells_of(left[:, :2]).tolist()
     layered.reset()
     assert not update(layered).any()
 

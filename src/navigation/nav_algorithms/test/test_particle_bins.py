@@ -34,6 +34,12 @@ def test_clusters_touch_and_close_the_circle():
     assert len(set(clusters_of(poses))) == 3
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_clusters_touch_at_corners(side):
+    poses = np.array([[0.2, 0.2 * side, 0.05], [0.7, 0.7 * side, 0.05], [1.2, 1.2 * side, -0.05]])
+    assert len(set(clusters_of(poses))) == 1
+
+
 def test_a_bin_in_between_parts_clusters():
     poses = np.array([[0.2, 0.2, 0.05], [1.2, 0.2, 0.05], [0.2, 1.2, 0.05], [0.2, 0.2, 0.4]])
     assert len(set(clusters_of(poses))) == 4

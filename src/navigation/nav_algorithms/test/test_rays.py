@@ -40,11 +40,12 @@ def test_every_cell_on_the_way_is_seen():
     assert (abs(ranges[inside] - across[inside]) < 1.5).all()
 
 
-def test_cells_between_two_are_counted_once_without_the_last():
+@pytest.mark.parametrize("begin, end", [((1, 1), (3, 5)), ((3, 5), (1, 1))])
+def test_cells_between_two_are_counted_once_without_the_last(begin, end):
     counts = np.zeros((5, 7), np.int32)
-    rays.count_between(counts, 1, 1, 3, 5, 1)
+    rays.count_between(counts, *begin, *end, 1)
     assert counts.sum() == 6 and counts.max() == 1
-    assert counts[1, 1] == 1 and counts[3, 5] == 0
+    assert counts[begin] == 1 and counts[end] == 0
 
 
 def test_counting_passes_over_what_lies_outside():

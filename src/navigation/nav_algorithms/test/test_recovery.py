@@ -26,7 +26,7 @@ def free():
 
 
 def test_a_turn_goes_once_round_and_slows_down():
-    assert rotation(free(), WAFFLE, ORIGIN, 0.0).omega == 1.0
+    assert rotation(free(), WAFFLE, ORIGIN, 0.0).velocity.tolist() == [0, 0, 1.0]
     near = rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.11, acc_lim_theta=1.0)
     assert near.omega == pytest.approx(np.sqrt(0.22))
     assert rotation(free(), WAFFLE, ORIGIN, 2 * np.pi - 0.101,
@@ -56,6 +56,12 @@ def test_the_way_out_is_forwards_where_a_wall_is_behind():
     costmap = free()
     costmap.cells[:, :25] = LETHAL
     assert escape(costmap, WAFFLE, ORIGIN).vx == 0.1
+
+
+def test_with_as_much_room_at_either_end_the_way_is_back():
+    costmap = free()
+    costmap.cells[:, :18] = costmap.cells[:, 43:] = LETHAL  # 5 cells from either end
+    assert escape(costmap, WAFFLE, np.array([0.02, 0, 0])).vx == -0.1
 
 
 def test_a_car_leaves_in_a_curve():
