@@ -34,15 +34,12 @@ def contact_values(collision: Collision, fixed: bool, com: Pose, mass: float
     Two restitutions are multiplied too, hence the roots: two equal values give that value.
     """
     surface = collision.surface
-    values: dict[str, object] = {
+    return {
         **_friction(surface, collision.pose, com, fixed),
         "restitution": math.sqrt(surface.restitution),
         "rollingFriction": 0.0, "spinningFriction": 0.0,
+        **hardness(surface, fixed, mass),
     }
-    if surface.restitution:
-        # Else the engine slows down what is about to touch, and it would bounce half as high.
-        values["contactProcessingThreshold"] = 0.0
-    return values | hardness(surface, fixed, mass)
 
 
 def hardness(surface: Surface, fixed: bool, mass: float) -> dict[str, float]:
