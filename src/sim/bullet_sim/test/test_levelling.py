@@ -1,6 +1,7 @@
 """Which casters are put up to the wheels' ground, and how wheels are shaped for the engine."""
 
 import math
+from dataclasses import replace
 
 import pytest
 import trimesh
@@ -37,7 +38,7 @@ def caster(name: str, x: float, low: float, shape=BALL, mu: float = 1.0, turn: f
 
 
 def tree_of(*casters: LinkDescription, wheel_type="continuous", axis=AXLE, caster_type="fixed",
-            caster_axis=AXLE, more=()):
+            caster_axis=AXLE, more=(), yaw=0.0):
     """A base of some height, two wheels, and the casters on joints of that type, or of `more`."""
     tyre = Collision("c", Cylinder(0.05, 0.03), Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, 0)),
                      Surface(mu=1.0, mu2=1.0))
@@ -47,9 +48,10 @@ def tree_of(*casters: LinkDescription, wheel_type="continuous", axis=AXLE, caste
     joints += [JointDescription(c.name, caster_type, "base", c.name, axis=caster_axis)
                for c in casters if c.name not in [joint.child for joint in more]]
     joints += more
-    (tree,) = assemble(ModelDescription(
-        "m", links=(LinkDescription("base", inertial=LIGHT), *wheels, *casters),
-        joints=tuple(joints)))
+    turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, yaw))
+    links = (replace(link, pose=turn * link.pose)
+             for link in (LinkDescription("base", inertial=LIGHT), *wheels, *casters))
+    (tree,) = assemble(ModelDescription("m", links=tuple(links), joints=tuple(joints)))
     return tree
 
 
@@ -67,6 +69,13 @@ def test_casters_before_and_behind_come_up_to_the_wheels():
     tree = tree_of(caster("front", 0.1, 1e-3), caster("back", -0.1, 3e-4, turn=1.0))
     assert raised(tree) == {"front": pytest.approx(1e-3 + CLEARANCE),
                             "back": pytest.approx(3e-4 + CLEARANCE)}
+
+
+@pytest.mark.parametrize("yaw", [0.5, 2.0])
+def test_they_are_before_and_behind_whichever_way_the_wheels_face(yaw):
+    post = caster("front", 0.1, 0.0, Cylinder(0.01, 0.04))
+    assert set(raised(tree_of(post, caster("back", -0.1, 0.0), yaw=yaw))) == {"front", "back"}
+    assert raised(tree_of(post, caster("other", 0.15, 0.0), yaw=yaw)) == {}
 
 
 def test_the_bottom_of_each_shape_is_known():
@@ -100,6 +109,7 @@ def test_the_layer_decides_and_is_no_thicker_than_a_millimetre():
 def test_without_wheels_on_level_axles_nothing_is_levelled():
     pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
     assert raised(tree_of(*pair, axis=SWIVEL)) == {}
+    assert raised(tree_of(*pair, axis=(0.0, 1.0, 0.5))) == {}
     assert raised(tree_of(*pair, wheel_type="prismatic", axis=TRAVEL)) == {}
     assert raised(tree_of(*pair, wheel_type="fixed")) == {}
 
@@ -172,6 +182,11 @@ def plate(tmp_path, *feet: float):
 def test_a_mesh_stands_on_its_lowest_corners(tmp_path, feet, up):
     tree = tree_of(caster("plate", 0.0, 3e-4, plate(tmp_path, *feet)))
     assert raised(tree) == ({"plate": pytest.approx(3e-4 + CLEARANCE, abs=1e-6)} if up else {})
+
+
+def test_a_mesh_that_cannot_be_read_carries_nothing():
+    pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4, Mesh("/none.stl"))]
+    assert raised(tree_of(*pair)) == {}
 
 
 def test_a_box_from_front_to_back_comes_up():

@@ -39,7 +39,7 @@ class BodyJoints(EngineHandle):
             self.change(pybullet.setJointMotorControlMultiDof, index, pybullet.POSITION_CONTROL,
                         targetPosition=(0.0, 0.0, 0.0, 1.0), positionGain=0.0, velocityGain=0.0,
                         force=(0.0, 0.0, 0.0))  # the engine's default is a brake
-        for link in self.tree.links[1:]:
+        for link in self.tree.links:
             if link.carrier is not None and link.carrier.provide_feedback:
                 self.enable_feedback(self.index[link.name])
 
