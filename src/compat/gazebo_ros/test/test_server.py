@@ -55,7 +55,7 @@ def start(tmp_path):
     package = tmp_path / "bullet_sim_ros"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "node.py").write_text(FAKE_NODE)
+    (package / "__main__.py").write_text(FAKE_NODE)
     running = []
 
     def start_script(name, *words, **variables):

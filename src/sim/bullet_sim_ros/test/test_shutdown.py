@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -10,6 +12,15 @@ import rospy
 from rospy import core
 
 from bullet_sim_ros import shutdown
+
+SLOW_MODULE = """
+import time
+print("loads", flush=True)
+try:
+    time.sleep(60)
+except KeyboardInterrupt:
+    raise ImportError("as NumPy says it")
+"""
 
 
 @pytest.fixture(autouse=True)
@@ -56,3 +67,44 @@ def test_a_signal_ends_what_waits_for_a_master_that_is_gone(monkeypatch):
         for number, handler in before.items():
             signal.signal(number, handler)
     assert asked.is_set() and rospy.is_shutdown()
+
+
+def test_a_service_that_registers_with_a_master_that_is_gone_ends(monkeypatch):
+    """rospy holds the services' lock until ROS shuts down, and asks for it before."""
+    monkeypatch.setattr(shutdown, "SHUTDOWN_LIMIT", 0.1)
+    services, registers, over = threading.Lock(), threading.Event(), threading.Event()
+
+    def register():
+        with services:
+            registers.set()
+            while not (rospy.is_shutdown() or over.wait(0.01)):
+                pass
+
+    registering = threading.Thread(target=register)
+    registering.start()
+    assert registers.wait(10.0)
+    core._preshutdown_hooks.append(lambda _: services.acquire())
+    ends = threading.Thread(target=shutdown.shut_down)
+    ends.start()
+    try:
+        ends.join(5.0)
+        registering.join(5.0)
+        assert not (ends.is_alive() or registering.is_alive())
+    finally:
+        over.set()
+
+
+def test_ctrl_c_while_modules_load_is_no_traceback(tmp_path):
+    (tmp_path / "rospy.py").write_text(SLOW_MODULE)
+    node = subprocess.Popen(
+        [sys.executable, "-P", "-m", "bullet_sim_ros"], stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"})
+    try:
+        assert node.stdout.readline() == "loads\n"
+        node.send_signal(signal.SIGINT)
+        said, _ = node.communicate(timeout=30)
+    finally:
+        node.kill()
+    assert (said, node.returncode) == ("", -signal.SIGINT)

@@ -258,7 +258,7 @@ def test_a_chart_is_drawn_of_what_there_is(tmp_path, names):
 @pytest.mark.parametrize(
     ("line", "name"),
     [
-        ("python3 -P -m bullet_sim_ros.node --world w __name:=gazebo __log:=x", "gazebo"),
+        ("python3 -P -m bullet_sim_ros --world w __name:=gazebo __log:=x", "gazebo"),
         ("/usr/bin/python3 /usr/bin/rosmaster --core -p 4000", "rosmaster"),
         ("python3 -P -m sim_bench.probes.follower out 05follower.py", "follower"),
         ("python3 /usr/bin/roslaunch -p 4000 learning_topic 0course.launch", "roslaunch"),

@@ -55,5 +55,5 @@ def main(python_options: tuple[str, ...] = (), hint: str = "") -> None:
     if hint:
         print(f"[{program}] {hint}", flush=True)
     # -P: a learner's file in the current folder must not hide a module
-    python = [sys.executable, "-P", *python_options, "-m", "bullet_sim_ros.node"]
+    python = [sys.executable, "-P", *python_options, "-m", "bullet_sim_ros"]
     os.execv(sys.executable, [*python, *arguments])

@@ -189,10 +189,3 @@ def main() -> int:
         shut_down()
         simulation.close()
     return 0
-
-
-if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit(130)

@@ -6,9 +6,10 @@ import time
 from collections.abc import Callable
 
 import rospy
+from rospy import core
 
 LOOP_END = 2.0  # s, wall, that a shutdown from outside waits at most for the loop
-SHUTDOWN_LIMIT = 2.0  # s, wall, for another thread's; a master that hangs answers nobody
+SHUTDOWN_LIMIT = 2.0  # s, wall; a master that hangs answers nobody
 
 
 def end_by_signals(stop: Callable[[], None]) -> None:
@@ -16,7 +17,7 @@ def end_by_signals(stop: Callable[[], None]) -> None:
     gone, and hears of nothing but a shutdown."""
     def end(_number: int, _frame: object) -> None:
         stop()
-        last = threading.Timer(LOOP_END, rospy.signal_shutdown, ("it was told to end",))
+        last = threading.Timer(LOOP_END, shut_down)
         last.daemon = True
         last.start()
 
@@ -40,8 +41,16 @@ def end_before_topics(stop: Callable[[], None]) -> threading.Event:
 
 
 def shut_down() -> None:
-    """Returns when the master knows, even if another thread tells it."""
-    rospy.signal_shutdown("the simulation has ended")
+    """Returns when the master knows, whichever thread tells it, or has not answered for a while.
+
+    rospy tells it before it says that it shuts down, and for a list of services asks for a lock;
+    that is held while one is registered, again and again until rospy says so.
+    """
+    own = threading.Thread(
+        target=rospy.signal_shutdown, args=("the simulation has ended",), daemon=True)
     until = time.monotonic() + SHUTDOWN_LIMIT
+    own.start()
+    own.join(SHUTDOWN_LIMIT)
     while not rospy.is_shutdown() and time.monotonic() < until:
         time.sleep(0.01)
+    core._shutdown_flag = True
