@@ -192,9 +192,10 @@ def test_obj_with_two_materials(tmp_path):
     assert sorted(second.uv.tolist()) == [[0, 0], [0, 1], [1, 1]]
 
 
-def test_a_material_library_with_an_endless_name_is_warned_of_in_one_line(tmp_path, caplog):
+@pytest.mark.parametrize("start", ["9/" * 1800, "9/" * 3000, "9" * 256])
+def test_a_material_library_with_an_endless_name_is_warned_of_in_one_line(tmp_path, caplog, start):
     (tmp_path / "one.obj").write_text(
-        f"mtllib {'9/' * 1800}gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+        f"mtllib {start}gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
     load_mesh(Mesh(str(tmp_path / "one.obj")))
     (record,) = caplog.records
     assert "gone.mtl not found" in record.getMessage() and len(record.getMessage()) < 1000

@@ -31,6 +31,6 @@ def find_beside(name: str, folder: Path) -> Path | None:
     """A file that one in `folder` names: there, or beside it, as names are of other machines."""
     name = unquote(name.replace("\\", "/"))
     for path in (folder / name, folder / Path(name).name):
-        if path.is_file():
+        if os.path.isfile(path):  # Path.is_file raises of a name that is too long
             return path
     return None
