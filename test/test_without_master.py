@@ -1,4 +1,4 @@
-"""Nodes in a terminal, before there is a master."""
+"""Nodes in a terminal, before there is a master, or with one that does not answer."""
 
 import os
 import signal
@@ -37,3 +37,22 @@ def test_ctrl_c_ends_a_node_without_a_traceback(script, words, code, tmp_path):
         finally:
             node.kill()
     assert "Traceback" not in said and node.returncode == code
+
+
+def test_ctrl_c_ends_a_node_whose_master_hangs(tmp_path):
+    """rospy waits for it in the main thread, for ever. About 4 s."""
+    with socket.create_server(("localhost", 0)) as master:  # nobody ever answers
+        node = subprocess.Popen(
+            [sys.executable, "-c", "from car_control.node import Ending; import rospy; Ending();"
+             "print('begins', flush=True); rospy.get_param('/any')"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+            env=os.environ | {"ROS_MASTER_URI": f"http://localhost:{master.getsockname()[1]}",
+                              "ROS_LOG_DIR": str(tmp_path)})
+        try:
+            assert node.stdout.readline() == "begins\n"
+            node.send_signal(signal.SIGINT)
+            said, _ = node.communicate(timeout=30)
+        finally:
+            node.kill()
+    assert (said, node.returncode) == ("", 130)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
@@ -12,6 +13,8 @@ import rospy
 from rospy.client import load_command_line_node_params
 
 from car_control.settings import Settings, SettingsError, load_settings
+
+PATIENCE = 3.0  # s, wall, for the last message and for the master's answer that all is closed
 
 
 def start_node(name: str, anonymous: bool = False) -> None:
@@ -47,15 +50,22 @@ class Ending:
     """Ctrl-C, a closed terminal, `rosnode kill`: in each case there is time for a last message.
 
     Make this right after `start_node`. A signal only sets
-    `asked`; the main thread sees it, sends what is to be sent, and calls `done`.
+    `asked`; the main thread sees it, sends what is to be sent, and calls `done`. rospy waits for
+    a master that is gone or hangs for ever, in that thread: then the program just ends.
     """
 
     def __init__(self) -> None:
         self.asked = threading.Event()
         self._done = threading.Event()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, lambda *_: self.asked.set())
+            signal.signal(number, self._ask)
         rospy.on_shutdown(self._shut_down)
+
+    def _ask(self, number: int, _frame: object) -> None:
+        self.asked.set()
+        last = threading.Timer(PATIENCE, os._exit, (128 + number,))
+        last.daemon = True
+        last.start()
 
     def done(self) -> None:
         """The last message is out: ROS may close the connections."""
