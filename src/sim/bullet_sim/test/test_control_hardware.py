@@ -179,6 +179,18 @@ def test_servos_hold_what_is_there_until_told_otherwise():
     assert bench.hardware.joints["b"].velocity == pytest.approx(2.0, abs=1e-3)
 
 
+def test_after_a_time_out_a_velocity_is_0_and_a_position_held():
+    bench = Bench(a="effort", b="effort")
+    for servo, after in ((PositionServo(bench.handle("a"), Pid(PidGains())), 0.5),
+                         (VelocityServo(bench.handle("b"), Pid(PidGains())), 0.0)):
+        law = Servos([servo], timeout=0.1)
+        law.start()
+        law.commands.take((0.5,))
+        for time, target in ((1.0, 0.5), (1.2, after)):
+            law.update(time, DT)
+            assert servo.target == target
+
+
 def test_a_servo_that_starts_again_has_forgotten_its_integral():
     bench = Bench(a="effort")
     gains = PidGains(i=1.0, i_clamp_max=1.0, i_clamp_min=-1.0)

@@ -88,6 +88,10 @@ def test_the_noise_has_its_mean_and_deviation():
     assert difference.std() ** 2 == pytest.approx((0.03 * 255) ** 2 + rounding, rel=0.01)
 
 
+def test_a_mean_of_1_is_full_brightness():
+    assert (noisy(0, mean=1.0, stddev=0.0) == 255).all()
+
+
 def test_it_is_gaussian():
     difference = (noisy(128)[0].astype(float) - 128) / (0.03 * 255)
     for deviations, share in ((1.0, 0.6827), (2.0, 0.9545), (3.0, 0.9973)):

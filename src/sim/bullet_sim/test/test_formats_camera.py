@@ -4,7 +4,7 @@ import pytest
 
 from bullet_sim.description import CameraDescription, Fog, Lens, Noise, SceneDescription
 from bullet_sim.formats.sdf.scene import read_scene
-from bullet_sim.formats.sdf.sensor import read_camera
+from bullet_sim.formats.sdf.sensor import read_camera, read_sensor
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim.pose import Pose
 
@@ -34,6 +34,11 @@ def test_everything_that_a_camera_may_say():
 def test_a_lens_of_its_own_that_says_nothing_more_has_sdf_s_defaults():
     lens = camera("<camera><lens><type>custom</type></lens></camera>").lens
     assert (lens.c1, lens.c2, lens.c3, lens.f, lens.function) == (1.0, 1.0, 0.0, 1.0, "tan")
+
+
+@pytest.mark.parametrize("said, always", [("", False), ("<always_on>1</always_on>", True)])
+def test_a_sensor_that_does_not_say_so_is_not_always_on(said, always):
+    assert read_sensor(parse_xml(f"<sensor>{said}</sensor>"), "link 'l'").always_on == always
 
 
 def test_a_camera_that_says_nothing():

@@ -1,5 +1,6 @@
 """Small readers against known numbers: noise, scaled shapes, bounds of xacro's expansion."""
 
+import resource
 from xml.etree import ElementTree
 
 import pytest
@@ -19,7 +20,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.formats.sdf.noise import read_imu
 from bullet_sim.formats.sdf.scale import scaled
 from bullet_sim.formats.xacro import bounds, opening
-from bullet_sim.formats.xacro.bounds import TooLarge, run_bounded
+from bullet_sim.formats.xacro.bounds import TooLarge, limit_memory, noted_eval, run_bounded
 from bullet_sim.formats.xacro.files import expand
 
 GYRO = Noise("gaussian", 0.1, 0.2, 0.3, 0.4)
@@ -165,6 +166,38 @@ def test_an_expansion_that_does_not_end_is_ended(write):
     path = write("<link name='${10 ** 10 ** 10}'/>")
     with pytest.raises(TooLarge, match=r"\$\{10 \*\* 10 \*\* 10\} takes longer than 0.3 s"):
         run_bounded(lambda: len(expand(path)), str(path), 0.3)
+
+
+def test_what_took_the_time_is_no_expression_that_ended_before():
+    def work():
+        noted_eval(lambda *_: 1)("1", {})
+        while True:
+            pass
+
+    with pytest.raises(TooLarge, match=r"^a: expanding it takes longer than 0.2 s"):
+        run_bounded(work, "a", 0.2)
+
+
+@pytest.mark.parametrize("error, said", [(ValueError("why"), True), (BrokenPipeError(), False)])
+def test_an_expansion_that_fails_says_why_unless_nobody_reads_on(capfd, error, said):
+    def fail():
+        raise error
+
+    assert run_bounded(fail, "a") == 1
+    assert ("ValueError: why" in capfd.readouterr().err) == said
+
+
+@pytest.mark.parametrize("given", [resource.RLIM_INFINITY, 10**6])
+def test_an_expansion_gets_half_a_gigabyte_or_what_its_parent_may_have(monkeypatch, given):
+    limits = []
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (0, given))
+    monkeypatch.setattr(resource, "setrlimit", lambda _, both: limits.extend(both))
+    limit_memory()
+    assert limits[0] == limits[1]
+    if given == resource.RLIM_INFINITY:
+        assert 2**29 < limits[0] < 2**36
+    else:
+        assert limits[0] == given
 
 
 def test_an_expansion_without_memory_is_said():

@@ -8,8 +8,9 @@ from prop_models import RESOURCES, bounds, load
 from bullet_sim.description import Cylinder
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import load_model, load_world
-from bullet_sim.formats.prop_shapes import FILE, read_prop_meshes
+from bullet_sim.formats.prop_shapes import FILE, PropMesh, read_prop_meshes
 from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
 NATIVE = {  # <scale> of the mesh in the model's own file, and pose of its link there
@@ -124,6 +125,12 @@ def test_a_wrong_line_of_the_table_is_an_error_that_names_it(tmp_path, written, 
     file.write_text(f"[cone]\n{written}\n")
     with pytest.raises(FormatError, match=rf"meshes.toml: \[cone\] .*{said}"):
         read_prop_meshes(file)
+
+
+def test_a_mesh_that_only_lies_elsewhere_is_as_large_as_our_shapes(tmp_path):
+    file = tmp_path / "meshes.toml"
+    file.write_text("[cone]\nat = [0, 0, 1]\n")
+    assert read_prop_meshes(file) == {"cone": PropMesh((1.0, 1.0, 1.0), Pose((0.0, 0.0, 1.0)))}
 
 
 def test_what_loses_its_collisions_is_told_link_by_link(caplog):

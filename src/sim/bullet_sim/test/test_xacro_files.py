@@ -147,6 +147,8 @@ def unknown_package(name):
     ("<xacro:wheel/>", "unknown macro name: xacro:wheel"),
     ('<xacro:if value="${1 +}"/>', "invalid syntax"),
     ('<link name="$(eval 1 +)"/>', "SyntaxError: "),
+    ('<link name="${later}$(arg colour)"/><xacro:property name="colour" default="a"/>'
+     '<xacro:property name="later" value="1"/>', "property 'later' is not defined"),
     ("<link", "XML error: "),
     ('<xacro:macro name="m" params="a"/><xacro:m/>', "Undefined parameters [a]"),
     ('<macro name="wheel" params="side"><link name="${sid}"/></macro><wheel side="left"/>',

@@ -9,8 +9,6 @@ from bullet_sim.pose import Vector3
 def scaled_model(model: description.ModelDescription,
                  factors: Vector3) -> description.ModelDescription:
     """Shapes grow about their own middles; no pose, no mass changes (Gazebo's Link::SetScale)."""
-    if factors == (1.0, 1.0, 1.0):
-        return model
     return replace(model, links=tuple(
         replace(
             link,
