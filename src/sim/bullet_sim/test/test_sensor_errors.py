@@ -60,11 +60,14 @@ def test_only_quantized_readings_come_in_steps(world):
     assert not np.array_equal(quantized, plain)
 
 
-def test_a_drift_that_is_set_dies_away_with_its_time_constant(world):
-    model = ErrorModel(world, "m", ErrorParameters((0.0,), (0.0,), (2.0,), (0.0,), (1.0,)))
+@pytest.mark.parametrize("parameters, constant", [
+    (ErrorParameters((0.0,), (0.0,), (2.0,), (0.0,), (1.0,)), 0.5),
+    (ErrorParameters.none(1), 3600.0)])  # sensor_model.h: an hour
+def test_a_drift_that_is_set_dies_away_with_its_time_constant(world, parameters, constant):
+    model = ErrorModel(world, "m", parameters)
     model.set_drift(np.array([1.0]))
     assert model.drifts
-    assert model.update(0.5)[0] == pytest.approx(math.exp(-1.0))
+    assert model.update(constant)[0] == pytest.approx(math.exp(-1.0))
 
 
 def test_an_accelerometers_bias_tilts_by_its_share_of_gravity():
