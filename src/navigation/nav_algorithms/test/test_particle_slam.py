@@ -78,6 +78,14 @@ def test_scans_are_used_after_way_turn_or_time(short, changed, used):
     assert len(short.run(slam)) == pytest.approx(used, abs=1)
 
 
+def test_the_search_goes_to_two_and_a_half_deviations_in_five_steps_at_most():
+    slam = ParticleSlam(replace(SETTINGS, particles=1, delta=0.1, lstep=0.05, astep=0.02))
+    slam._step.covariance = np.diag([0.054, 0.022, 9.0])**2  # 2.7 steps, 1.1 and many
+    halves, sizes = slam._search_grid()
+    assert halves.tolist() == [3, 1, 5]
+    assert sizes == pytest.approx([0.5, 0.5, 0.02])
+
+
 def test_turning_alone_is_reason_enough():
     slam = ParticleSlam(replace(SETTINGS, particles=2))
     angles, ranges = np.linspace(-3, 3, 90), np.full(90, 2.0)

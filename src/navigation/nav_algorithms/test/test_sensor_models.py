@@ -8,7 +8,15 @@ from defaults import of
 from house import robust
 
 from nav_algorithms.grid import OccupancyGrid
-from nav_algorithms.sensor_models import BEAM, FIELD, FIELD_PROB, LaserModel, Scan, SensorSettings
+from nav_algorithms.sensor_models import (
+    BEAM,
+    FIELD,
+    FIELD_PROB,
+    LaserModel,
+    Scan,
+    SensorSettings,
+    _value_at,
+)
 
 # A wall 1 cell thick at x = 2.0 to 2.05 m in a free room; columns beyond it are unknown.
 CELLS = np.zeros((40, 60), np.int8)
@@ -75,6 +83,12 @@ def test_behind_a_wall_s_surface_beams_are_as_wrong_and_within_thin_walls_twice(
     assert by_default == pytest.approx(np.log(1 + p_of(expected)**3))
 
 
+def test_beyond_the_border_nothing_is_read():
+    table = np.vstack((np.arange(12.0).reshape(3, 4), np.full(4, np.nan)))[:3]
+    assert _value_at(table, 1.0, 9.0) == 9.5
+    assert _value_at(table, 9.0, 9.0) == 11.0
+
+
 def test_between_the_cells_centres_beams_count_in_between():
     beside = np.array([[1.025, 1.0, 0.0], [1.025, 1.01, 0.0]])  # the wall is alike there
     for model, factor in ((FIELD, np.log(1 + (p_of(0.0)**3 + p_of(0.05)**3) / 2)),
@@ -107,8 +121,8 @@ def test_the_laser_s_place_on_the_robot_counts(model):
 
 
 @pytest.mark.parametrize("model, beams, used", [
-    (FIELD, 4, [0, 3, 6, 9]), (FIELD, 5, [0, 2, 4, 6, 8]), (FIELD_PROB, 5, [0, 2, 4, 6, 8]),
-    (FIELD_PROB, 4, [0, 3, 6, 9])])
+    (FIELD, 1, [0, 9]), (FIELD, 4, [0, 3, 6, 9]), (FIELD, 5, [0, 2, 4, 6, 8]),
+    (FIELD_PROB, 5, [0, 2, 4, 6, 8]), (FIELD_PROB, 4, [0, 3, 6, 9])])
 def test_beams_are_left_out_evenly_as_upstream_does(model, beams, used):
     ranges = np.linspace(0.5, 1.4, 10)
     assert logs(model, ranges, laser_max_beams=beams).logs == pytest.approx(

@@ -7,11 +7,12 @@ import pytest
 
 from nav_algorithms import poses
 from nav_algorithms.beam_walls import ALONG, holds
-from nav_algorithms.grid import OCCUPIED
+from nav_algorithms.grid import FREE, OCCUPIED
 from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
 from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
-from nav_algorithms.scan_matching import refine, search
+from nav_algorithms.proposals import propose
+from nav_algorithms.scan_matching import prior_cost, refine, search
 from nav_algorithms.slam_motion import STILL, StepSum
 from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
 
@@ -107,15 +108,34 @@ def test_the_search_finds_its_way_for_a_robot_that_looks_anywhere(yaw):
     assert best[2] == pytest.approx(truth[2], abs=0.06)
 
 
+def test_a_match_worse_than_the_odometry_is_not_believed():
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    points = CORNER + 0.03  # within the cells, of which the search takes the first
+    maps.add(np.zeros((1, 3)), points)
+    prior, matched = maps.in_cells(np.zeros((1, 3))), np.empty((1, 3))
+    drawn, factors = prior.copy(), np.empty((1, 3, 3))
+    propose(maps.tables, maps.pool, beams_of(points), prior, drawn, 0.0 * LOOSE[None],
+            np.zeros((1, 3)), np.array([1, 1, 0]), np.array([0.5, 0.5, 1.0]), 1, 0, 1, WIDTHS, 1.0,
+            1, np.empty(1), matched, factors)
+    assert matched[0].tolist() == prior[0].tolist() == drawn[0].tolist()
+
+
+def test_two_deviations_off_the_odometry_cost_2():
+    assert prior_cost(np.array([1.0, 0.2, 0.0]), np.array([1.0, 0.0, 0.0]),
+                      np.diag([1.0, 1 / 0.1**2, 1.0])) == pytest.approx(2.0)
+
+
 def test_patches_are_shared_until_one_owner_writes():
     maps = HitMaps(2, 0.1, (-3.2, -3.2), (3.2, 3.2))
     maps.add(np.zeros((2, 3)), np.array([[1.05, 1.05]]))
     maps.choose(np.array([1, 1]))
     assert (maps.tables[0] == maps.tables[1]).all()
+    shared = maps.tables.max()
     apart = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]])
     maps.add(apart, np.array([[1.05, 1.05]]))
     hits = [[value_at(maps.tables[i], maps.pool, 42, c, HITS) for c in (42, 47)] for i in (0, 1)]
     assert hits == [[2.0, 0.0], [1.0, 1.0]]
+    assert shared in maps.tables[1] and shared not in maps.tables[0]  # the last owner's own
 
 
 def test_unowned_patches_are_used_again():
@@ -131,7 +151,8 @@ def test_unowned_patches_are_used_again():
 
 
 def test_maps_keep_their_hits_when_they_grow():
-    maps = HitMaps(1, 0.1, (0, 0), (1, 1))
+    maps = HitMaps(1, 0.1, (0, 0), (1, 1.7))
+    assert maps.tables.shape == (1, 2, 1)  # a patch is 1.6 m wide
     maps.add(np.zeros((1, 3)), np.array([[0.55, 0.55]]))
     maps.add(np.zeros((1, 3)), np.array([[-7.0, 9.0]]))
     column, row = np.floor(maps.in_cells(np.array([[0.55, 0.55, 0]]))[0, :2]).astype(int)
@@ -176,12 +197,22 @@ def test_a_changed_path_leaves_no_trace_in_the_map():
 
 def test_a_rendering_grows_by_what_is_seen_and_a_margin():
     rendering = MapRendering(0.1, (-1, -1), (1, 1))
-    scan = (np.array([[3.0, 0.0], [0.0, 3.0]]), np.array([True, True]))
+    scan = (np.array([[3.05, 0.05], [0.05, 3.05]]), np.array([True, True]))
     rendering.follow(np.array([[0.5, 0.0, 0.0]]), np.arange(1), [scan], np.zeros(2))
     grid = rendering.grid(0.25)
-    assert grid.cells.max() == OCCUPIED
+    assert (grid.cells[tuple(grid.cells_of([[3.55, 0.05], [0.55, 3.05]]).T)] == OCCUPIED).all()
     # 3 m about the robot, and at most MARGIN and three cells on each side
     assert max(grid.cells.shape) * 0.1 <= 2 * (3.0 + MARGIN + 0.3) + 0.1
+
+
+def test_a_cell_is_occupied_where_more_than_the_threshold_of_the_beams_end():
+    rendering = MapRendering(0.1, (0, 0), (1.05, 0.3))
+    assert rendering.grid(0.25).cells.shape == (3, 11)
+    scan = np.array([[0.55, 0.15]] + 3 * [[0.95, 0.15]]), np.array([True] + 3 * [False])
+    rendering.follow(np.zeros((1, 3)), np.zeros(1, int), [scan], np.array([0.05, 0.15]))
+    for threshold, expected in ((0.25, FREE), (0.2, OCCUPIED)):
+        grid = rendering.grid(threshold)
+        assert grid.cells[tuple(grid.cells_of((0.55, 0.15)))] == expected
 
 
 def test_uncertain_steps_add_up():
@@ -195,6 +226,15 @@ def test_uncertain_steps_add_up():
     # A turn after the first metre carries the next three aside: 0.2 rad * (3, 2, 1, 0) m.
     aside = 4 * (0.3 * 0.1)**2 + 0.2**2 * (9 + 4 + 1) + STILL[1] + 16 * STILL[2]
     assert total.covariance[1, 1] == pytest.approx(aside)
+
+
+def test_after_a_quarter_turn_a_step_is_uncertain_across():
+    total = StepSum(0.1, 0.0, 0.0, 0.0)
+    total.add(np.zeros(3), np.array([0, 0, np.pi / 2]))
+    total.add(np.zeros(3), np.array([1.0, 0, 0]))
+    wanted = np.diag(STILL) + np.diag([0.03**2 + STILL[2], 0.1**2, 0.0])
+    wanted[0, 2] = wanted[2, 0] = -STILL[2]  # 1 m ahead, which is y
+    assert total.covariance == pytest.approx(wanted)
 
 
 def test_what_walls_show_of_the_odometry_is_learnt():
