@@ -42,6 +42,18 @@ def test_every_word_ends_at_the_goal(family):
             assert wrap_angle(end[2] - goal[2]) == pytest.approx(0.0, abs=1e-6)
 
 
+def test_words_are_of_the_nine_families_of_reeds_and_shepp():
+    """C is an arc, S a straight, | a cusp; of these the shortest drive is one."""
+    found = set()
+    for goal in np.random.default_rng(3).uniform([-5, -5, -np.pi], [5, 5, np.pi], (500, 3)):
+        for word in words_to(curves.reeds_shepp, goal):
+            pieces = word[np.abs(word[:, 0]) > 1e-9]
+            cusps = np.diff(np.sign(pieces[:, 0]), prepend=np.sign(pieces[0, 0])) != 0
+            found.add("".join(("|" if cusp else "") + ("C" if curvature else "S")
+                              for cusp, (_, curvature) in zip(cusps, pieces, strict=True)))
+    assert found == {"CSC", "C|C|C", "C|CC", "CC|C", "CC|CC", "C|CC|C", "C|CSC", "CSC|C", "C|CSC|C"}
+
+
 @pytest.mark.parametrize("goal, length", [
     ((5, 0, 0), 5), ((-5, 0, 0), 5), ((2, 0, np.pi), np.pi), ((0, 2, np.pi), np.pi)])
 def test_known_shortest_drives(goal, length):

@@ -9,7 +9,12 @@ from defaults import of
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import astar, navfn
 from nav_algorithms.global_planning.orientation import directions, orient
-from nav_algorithms.global_planning.potential import crossing_costs, spread, way_out
+from nav_algorithms.global_planning.potential import (
+    crossing_costs,
+    spread,
+    spread_everywhere,
+    way_out,
+)
 from nav_algorithms.poses import wrap_angle
 
 START, GOAL = np.array([-4.0, -3.0, 0.3]), np.array([4.0, 3.0, 1.0])
@@ -68,18 +73,21 @@ def test_no_way_is_none(plan):
 
 
 def test_a_free_path_is_straight():
-    assert length(navfn_plan(empty(), START, GOAL)) == pytest.approx(10.0, rel=0.003)
+    for x, y in ((4, 3), (-4, 3), (4, -3), (-4, -3)):
+        way, middle = np.array([x, y, 0.0]), np.array([0.025, 0.025, 0.0])  # of a cell
+        path = navfn_plan(empty(), middle - way, middle + way)
+        assert length(path) == pytest.approx(10.0, rel=0.0003)
     streets = astar_plan(empty(), START, GOAL, use_grid_path=True, use_quadratic=False)
     assert 10.0 < length(streets) < 11.5
 
 
 def test_the_potential_is_the_distance():
-    middle = (np.ones((101, 101)), np.array([[50, 50]]), np.zeros(1), -1, -1)
-    potential = spread(*middle, True, 0.0, 0.0)
+    middle = np.ones((101, 101)), np.array([[50, 50]]), np.zeros(1)
+    potential = spread_everywhere(*middle)
     rows, columns = np.mgrid[-50:51, -50:51]
     distance = np.hypot(rows, columns)
     assert np.abs(potential - distance).max() < 1.5
-    streets = spread(*middle, False, 0.0, 0.0)
+    streets = spread(*middle, -1, -1, False, 0.0, 0.0)
     assert streets == pytest.approx(np.abs(rows) + np.abs(columns))
 
 
@@ -171,8 +179,8 @@ def test_a_path_is_followed_up_to_its_last_bend_away_from_the_goal_s_yaw():
     found = orient(path, 3)[:, 2]
     assert found[[2, 7]] == pytest.approx([0.0, -0.5])
     assert found[11:] == pytest.approx(np.linspace(-1.0, -0.5, 5), abs=0.01)
-    assert directions(path[[0, 1], :2]) == pytest.approx([0.0, 0.0])
-    assert directions(np.array([[0.0, 0.0], [0.0, 1.0]])) == pytest.approx([np.pi / 2] * 2)
+    assert directions(path[[0, 1], :2], 1) == pytest.approx([0.0, 0.0])
+    assert directions(np.array([[0.0, 0.0], [0.0, 1.0]]), 1) == pytest.approx([np.pi / 2] * 2)
 
 
 @pytest.mark.parametrize("end, yaw", [((5, 9), np.pi / 2), ((5, 1), -np.pi / 2), ((1, 5), np.pi),

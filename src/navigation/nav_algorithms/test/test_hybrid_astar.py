@@ -37,6 +37,8 @@ def check(path, costmap, start, goal, outline=CAR, radius=0.6):
     assert steps.max() <= 0.05 + 1e-9
     driven = steps > 1e-3
     turns = np.abs(wrap_angle(np.diff(path[:, 2])))
+    assert turns.max() * footprint.reach(outline) < 0.05  # no corner passes over a cell unseen
+    assert (steps + turns > 1e-6).all()
     assert (turns[driven] <= 1.05 * steps[driven] / radius + 1e-6).all()
 
 
@@ -84,6 +86,9 @@ def test_the_unknown_is_crossed_if_allowed():
     start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
     assert plan(costmap, start, goal, CAR) is not None
     assert plan(costmap, start, goal, CAR, allow_unknown=False) is None
+    settings = of(HybridAstarSettings)
+    estimates = [hybrid_astar._estimate(one, goal, settings) for one in (costmap, road())]
+    assert estimates[0][40] == pytest.approx(estimates[1][40])  # as long as if it were free
 
 
 def test_round_obstacles_and_twice_the_same():
@@ -140,7 +145,8 @@ def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
     terms[REVERSE], terms[TURNING] = 2.0, 0.5
 
     def to(*goal, radius=1.0, reverse=True, turns=False):
-        return free_way(np.zeros(3), np.array(goal), radius, reverse, turns, terms)
+        goal = np.array([*goal, 9.0])[:3]  # what lies behind is not read
+        return free_way(np.zeros(3), goal, radius, reverse, turns, terms)
 
     assert to(5.0, 0.0, 0.0) == pytest.approx(5.0)
     assert to(-5.0, 0.0, 0.0) == pytest.approx(10.0)

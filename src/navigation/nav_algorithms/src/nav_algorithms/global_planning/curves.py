@@ -118,11 +118,10 @@ def _three_arcs_or_a_quarter(words, count, x, y, phi, flip, mirror, backward):
                          1., -1., 0., 1., 0.)
     xi, eta = x + np.sin(phi), y - 1.0 - np.cos(phi)
     rho, t = np.hypot(xi, eta), np.arctan2(xi, -eta)
-    if rho >= 2.0:
-        u, v = 2.0 - rho, _wrap(t + HALF - phi)
-        if t >= 0.0 and u <= 0.0 and v <= 0.0:
-            count = _put(words, count, 4, flip, mirror, backward, t, -HALF, u, v, 0.,
-                         1., -1., 0., -1., 0.)
+    u, v = 2.0 - rho, _wrap(t + HALF - phi)
+    if t >= 0.0 and u <= 0.0 and v <= 0.0:
+        count = _put(words, count, 4, flip, mirror, backward, t, -HALF, u, v, 0.,
+                     1., -1., 0., -1., 0.)
     return count
 
 

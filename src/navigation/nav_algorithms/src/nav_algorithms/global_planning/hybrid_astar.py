@@ -15,7 +15,7 @@ import numpy as np
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning.drives import move, steps_of
-from nav_algorithms.global_planning.potential import spread
+from nav_algorithms.global_planning.potential import spread_everywhere
 from nav_algorithms.global_planning.search import search
 
 TIGHT = 20.0  # as many cells does one count, in the estimate, that is within the inscribed radius
@@ -116,7 +116,7 @@ def _estimate(costmap: Costmap, goal: np.ndarray, settings: HybridAstarSettings)
     crossing[costmap.cells == LETHAL] = np.inf
     crossing[costmap.cells == UNKNOWN] = 1.0 if settings.allow_unknown else np.inf
     source = np.array([costmap.cells_of(goal[:2])])
-    return spread(costmap.resolution * crossing, source, np.zeros(1), -1, -1, True, 0.0, 0.0)
+    return spread_everywhere(costmap.resolution * crossing, source, np.zeros(1))
 
 
 def _driven(start: np.ndarray, goal: np.ndarray, pieces: np.ndarray, step: float) -> np.ndarray:

@@ -10,7 +10,7 @@ NONE, FORWARD, INTERPOLATE, FORWARD_THEN_INTERPOLATE, BACKWARD, LEFTWARD, RIGHTW
 _TURN = {FORWARD: 0.0, BACKWARD: np.pi, LEFTWARD: np.pi / 2, RIGHTWARD: -np.pi / 2}
 
 
-def directions(points: np.ndarray, window: int = 1) -> np.ndarray:
+def directions(points: np.ndarray, window: int) -> np.ndarray:
     """Direction of travel at each of the points (N, 2), rad (N,): from `window` before to after."""
     last = len(points) - 1
     if last < 1:

@@ -76,6 +76,11 @@ def spread(cost, sources, seeds, target_row, target_column, quadratic, heuristic
     return found
 
 
+def spread_everywhere(cost: np.ndarray, sources: np.ndarray, seeds: np.ndarray) -> np.ndarray:
+    """As `spread`, evenly in all directions to all that can be reached."""
+    return spread(cost, sources, seeds, -1, -1, True, 0.0, 0.0)
+
+
 def crossing_costs(cells: np.ndarray, neutral: float, factor: float, lethal: int, unknown: float
                    ) -> np.ndarray:
     """Cost of crossing each cell, float64: neutral + factor * cell, below `lethal`; else inf.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
-from nav_algorithms.global_planning.potential import spread
+from nav_algorithms.global_planning.potential import spread_everywhere
 
 TIGHT = 20.0  # as many cells does one count that the centre of the robot should not be in
 
@@ -23,8 +23,7 @@ def distances_to(costmap: Costmap, points: np.ndarray, passable: np.ndarray) -> 
     crossing[tuple(cells[costmap.contains(cells)].T)] = 1.0
     sources, seeds = _around(costmap, points)
     passable = np.isfinite(crossing[tuple(sources.T)])
-    return spread(crossing, np.ascontiguousarray(sources[passable]), seeds[passable], -1, -1,
-                  True, 0.0, 0.0)
+    return spread_everywhere(crossing, np.ascontiguousarray(sources[passable]), seeds[passable])
 
 
 def _around(costmap: Costmap, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
