@@ -85,7 +85,7 @@ def test_a_fast_drive_is_repeated_to_the_bit(tmp_path):
     "victim, said",
     [
         (r"05follower_proporation\.py", "follower"),
-        (r"bullet_sim_ros\.node", "gazebo"),
+        (r"-m\0bullet_sim_ros", "gazebo"),
     ],
 )
 def test_killing_a_part_ends_the_run_with_a_clear_line(tmp_path, victim, said):
