@@ -69,6 +69,7 @@ def test_paths_begin_and_end_where_asked_and_lead_through_the_gap(plan):
 def test_no_way_is_none(plan):
     assert plan(walled(), START, GOAL) is None
     assert plan(empty(), np.array([-7.0, 0.0, 0.0]), GOAL) is None
+    assert plan(empty(), np.array([7.0, 0.0, 0.0]), GOAL) is None
     assert plan(empty(), START, np.array([7.0, 0.0, 0.0])) is None
 
 
@@ -179,6 +180,7 @@ def test_a_path_is_followed_up_to_its_last_bend_away_from_the_goal_s_yaw():
     found = orient(path, 3)[:, 2]
     assert found[[2, 7]] == pytest.approx([0.0, -0.5])
     assert found[11:] == pytest.approx(np.linspace(-1.0, -0.5, 5), abs=0.01)
+    assert directions(path[:1, :2], 1).tolist() == [0.0]
     assert directions(path[[0, 1], :2], 1) == pytest.approx([0.0, 0.0])
     assert directions(np.array([[0.0, 0.0], [0.0, 1.0]]), 1) == pytest.approx([np.pi / 2] * 2)
 
@@ -202,6 +204,7 @@ def test_the_way_out_of_a_wall_is_the_nearest_over_what_is_not_solid(turned):
     columns = np.arange(6)[turned]
     found = way_out(cells, 1, int(columns[4]))
     assert found.tolist() == [[1, columns[column]] for column in (4, 3, 2, 1)]
+    assert way_out(cells.T.copy(), int(columns[4]), 1).tolist() == found[:, ::-1].tolist()
     cells[1, columns[1]] = LETHAL
     assert len(way_out(cells, 1, int(columns[4]))) == 0
 

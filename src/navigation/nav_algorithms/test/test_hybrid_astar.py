@@ -7,7 +7,7 @@ from defaults import of
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import hybrid_astar
-from nav_algorithms.global_planning.drives import REVERSE, TURNING
+from nav_algorithms.global_planning.drives import DRIVE, REVERSE, TURN, TURNING, cost_of
 from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
 from nav_algorithms.global_planning.shots import free_way
 from nav_algorithms.local_planning.pieces import cut
@@ -80,12 +80,23 @@ def test_a_robot_that_turns_on_the_spot():
     assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
 
 
+def test_a_robot_that_turns_on_the_spot_goes_round_a_wall_without_bends():
+    costmap = road(2.4)
+    costmap.cells[30:, 78:82] = LETHAL
+    start, goal = np.array([5.0, 0.3, 0]), np.array([3.0, 0.3, 0])
+    path = plan(costmap, start, goal, WAFFLE, turn_in_place=True)
+    check(path, costmap, start, goal, WAFFLE)
+    drives = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1e-6
+    assert wrap_angle(np.diff(path[:, 2]))[drives] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_the_unknown_is_crossed_if_allowed():
     costmap = road()
     costmap.cells[:, 100:110] = UNKNOWN
     start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
     assert plan(costmap, start, goal, CAR) is not None
     assert plan(costmap, start, goal, CAR, allow_unknown=False) is None
+    assert plan(costmap, np.array([5.2, 0, 0]), goal, CAR) is not None
     settings = of(HybridAstarSettings)
     estimates = [hybrid_astar._estimate(one, goal, settings) for one in (costmap, road())]
     assert estimates[0][40] == pytest.approx(estimates[1][40])  # as long as if it were free
@@ -152,3 +163,21 @@ def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
     assert to(-5.0, 0.0, 0.0) == pytest.approx(10.0)
     assert to(0.0, 4.0, np.pi, radius=2.0, reverse=False) == pytest.approx(2 * np.pi)
     assert to(0.0, 0.0, 1.0, turns=True) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("kind, amount, curvature, cost", [
+    (DRIVE, 0.5, 0.0, 0.5), (DRIVE, -0.5, 0.0, 0.5 * 2), (DRIVE, 0.5, -0.4, 0.5 * (1 + 5 * 0.4)),
+    (TURN, -1.0, 0.0, 7.0)])
+@pytest.mark.parametrize("cell, factor", [(0, 1.0), (126, 1 + 3 * 0.5)])
+def test_the_cost_of_a_piece_is_its_length_by_what_it_weighs(kind, amount, curvature, cost, cell,
+                                                             factor):
+    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `drives`; cells count by 252
+    cells, radii = np.full((99, 40), cell, np.uint8)[:60], np.full((99, 40), 99.0)[:60]
+
+    def of_piece(x, y):
+        return cost_of(cells, 0.05, -1.0, -1.5, radii, 0.2, WAFFLE, True, terms,
+                       np.array([x, y, np.pi / 2]), kind, amount, curvature, np.empty(3))
+
+    assert of_piece(0.0, 0.0) == pytest.approx(cost * factor)
+    for x, y in ((-1.1, 0.0), (1.1, 0.0), (0.0, -2.1), (0.0, 2.1)):
+        assert of_piece(x, y) == np.inf  # outside

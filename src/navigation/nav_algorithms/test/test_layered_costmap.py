@@ -5,7 +5,7 @@ import pytest
 
 from nav_algorithms.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.costmap.inflation import InflationLayer, cost_table
-from nav_algorithms.costmap.layer import MAXIMUM, OVERWRITE, Bounds, Layer, combine, shifted
+from nav_algorithms.costmap.layer import Bounds, Layer, combine, shifted
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer, costs_of
 from nav_algorithms.grid import OccupancyGrid
@@ -60,7 +60,7 @@ def test_bounds_become_the_cells_that_they_touch():
 
 
 @pytest.mark.parametrize("method, expected", [
-    (MAXIMUM, [[LETHAL, 20, 30, 5]]), (OVERWRITE, [[10, 20, 30, 5]]),
+    (1, [[LETHAL, 20, 30, 5]]), (0, [[10, 20, 30, 5]]),  # maximum and overwrite, as upstream
     (99, [[LETHAL, 20, UNKNOWN, 0]])])
 def test_ways_to_combine(method, expected):
     master = np.array([[LETHAL, 20, UNKNOWN, 0]], np.uint8)
@@ -78,6 +78,7 @@ def test_shifting(rows, columns, expected):
 @pytest.mark.parametrize("settings, expected", [
     ({}, [UNKNOWN, FREE, FREE, LETHAL]),
     ({"track_unknown": False}, [FREE, FREE, FREE, LETHAL]),
+    ({"lethal_threshold": 150}, [UNKNOWN, FREE, FREE, LETHAL]),
     ({"lethal_threshold": 50}, [UNKNOWN, FREE, LETHAL, LETHAL]),
     ({"trinary": False}, [UNKNOWN, FREE, 127, LETHAL]),
     ({"unknown_value": 50}, [LETHAL, FREE, UNKNOWN, LETHAL])])
@@ -178,6 +179,7 @@ def test_what_was_written_counts_until_a_new_size_is_written():
     """Else a plan that is made just then would lead through the walls of a map that has grown."""
     layered, static = with_map(grid((3, 3), wall=[(1, 1)]))
     layered.update(HERE)
+    assert layered.fits((3, 3), 0.1, np.zeros(2)) and not layered.fits((3, 3), 0.1, (0.0, 0.1))
     layered.resize((5, 5), 0.1, (0.0, 0.0))
     assert layered.newest.cells.tolist() == [[0, 0, 0], [0, LETHAL, 0], [0, 0, 0]]
     larger = grid((5, 5), wall=[(2, 2)])
@@ -186,17 +188,17 @@ def test_what_was_written_counts_until_a_new_size_is_written():
     assert layered.newest is layered.master and layered.newest.cells[2, 2] == LETHAL
 
 
-@pytest.mark.parametrize("inflate_unknown", [False, True])
+@pytest.mark.parametrize("inflate_unknown", [(), (False,), (True,)])
 @pytest.mark.parametrize("scaling, cost", [(3.0, int(252 * np.exp(-0.3))), (51.0, 1)])
 def test_inflation_of_unknown_cells(inflate_unknown, scaling, cost):
-    inflation = InflationLayer("inflation", 0.5, scaling, inflate_unknown)
+    inflation = InflationLayer("inflation", 0.5, scaling, *inflate_unknown)
     unknown = [(5, 2), (5, 4)]  # at 0.3 m and at 0.1 m
     layered, _ = with_map(grid((10, 10), wall=[(5, 5)], unknown=unknown), inflation,
                           track_unknown=True)
     layered.set_footprint(SQUARE)
     layered.update(HERE)
     assert layered.master.cells[5, 4] == INSCRIBED
-    assert layered.master.cells[5, 2] == (cost if inflate_unknown else UNKNOWN)
+    assert layered.master.cells[5, 2] == (cost if any(inflate_unknown) else UNKNOWN)
 
 
 def test_inflated_costs_go_when_their_obstacle_goes():

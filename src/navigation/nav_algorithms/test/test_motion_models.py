@@ -30,7 +30,7 @@ def test_without_noise_the_odometry_is_followed(model, step, end):
                                               ("omni-corrected", np.sqrt(0.3 * 2**2))])
 def test_noise_along_a_straight_drive(model, deviation):
     only_drive = ALPHAS * [0, 0, 1, 0, 0]
-    found = drawn(model, (5, 5, 0), (7, 5, 0), only_drive)
+    found = drawn(model, (5, 3, 0), (7, 3, 0), only_drive)
     assert found[:, 1].std() == pytest.approx(deviation, rel=0.03)
     assert found[:, 1].mean() == pytest.approx(4.0, abs=0.03)
     assert found[:, 0] == pytest.approx(np.ones(len(found)))

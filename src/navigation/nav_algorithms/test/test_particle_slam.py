@@ -84,6 +84,8 @@ def test_the_search_goes_to_two_and_a_half_deviations_in_five_steps_at_most():
     halves, sizes = slam._search_grid()
     assert halves.tolist() == [3, 1, 5]
     assert sizes == pytest.approx([0.5, 0.5, 0.02])
+    wanted = np.array([0.54, 0.22, 9.0])**-2  # in cells and rad
+    assert slam._informations()[0] == pytest.approx(np.diag(wanted), abs=1e-9)
 
 
 def test_turning_alone_is_reason_enough():

@@ -110,3 +110,17 @@ def turn_about(x, width):
 def test_it_turns_about_in_a_narrow_road(x):
     plans, changes, seconds = turn_about(x, 1.1)
     assert plans <= 2 and 2 <= changes <= 6 and seconds < 20.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("speed", [0.4, 0.8])
+def test_a_robot_on_an_arc_stays_on_it_however_far_ahead_it_looks(side, speed):
+    """The carrot is on the circle, so the arc to it is that circle's."""
+    radius, angles = 2.0, np.linspace(0.0, 1.5, 600)
+    path = np.column_stack((radius * np.sin(angles), side * radius * (1 - np.cos(angles)),
+                            side * angles))
+    planner = PurePursuit(SETTINGS)
+    planner.set_path(path)
+    costmap = Costmap(np.zeros((160, 160), np.uint8), 0.05, (-4.0, -4.0))
+    command = planner.command(costmap, CAR, np.zeros(3), np.array([speed, 0, side * speed / 2]))
+    assert command.omega / command.vx == pytest.approx(side / radius, rel=0.01)

@@ -29,6 +29,12 @@ def test_rays_enter_the_grid_from_outside_and_leave_it():
     assert ranges.tolist() == [3.0, np.inf, np.inf]
 
 
+@pytest.mark.parametrize("x, y, angle", [(-3, 0.5, 0.0), (0.5, -3, np.pi / 2), (23, 9.5, np.pi),
+                                         (19.5, 13, -np.pi / 2)])
+def test_rays_enter_along_the_grid_s_edges_from_all_sides(x, y, angle):
+    assert rays.cast(ROOM, 1.0, 0.0, 0.0, x, y, np.array([angle]), 50.0) == pytest.approx([3.0])
+
+
 def test_every_cell_on_the_way_is_seen():
     thin = np.zeros((40, 40), np.uint8)
     thin[np.arange(40), np.arange(40)] = 1  # a wall of corners that touch

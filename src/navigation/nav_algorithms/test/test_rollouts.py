@@ -7,7 +7,8 @@ from defaults import of
 from nav_algorithms.costmap.costs import LETHAL, Costmap
 from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
-from nav_algorithms.local_planning.free_arcs import arc_of, free_arc
+from nav_algorithms.local_planning.following import Following
+from nav_algorithms.local_planning.free_arcs import arc_of, free_arc, space
 from nav_algorithms.local_planning.grids import distances_to
 from nav_algorithms.local_planning.trajectory_rollout import TrajectoryRolloutSettings, _Scorer
 
@@ -54,6 +55,24 @@ def test_ways_over_free_cells_are_as_the_crow_flies():
     away = distances_to(floor(), place, place)
     assert away[30, 30] == pytest.approx(np.hypot(30, 30), rel=0.03)
     assert away[0, 30] == pytest.approx(30.0)
+    beside = distances_to(floor(), place + 20 * 0.1 - 0.03, place)[19:22, 19:22]
+    rows, columns = np.indices((3, 3)) - 1
+    assert beside == pytest.approx(np.hypot(rows + 0.3, columns + 0.3))
+
+
+@pytest.mark.parametrize("path", [np.zeros(3), np.zeros((2, 2)), np.zeros((0, 3))])
+def test_what_is_no_path_is_refused(path):
+    with pytest.raises(ValueError, match="path"):
+        Following(path)
+
+
+def test_the_room_of_a_robot_is_from_its_corners_and_the_middles_of_its_sides():
+    costmap = floor()
+    costmap.cells[20, 32] = LETHAL
+    wide = np.array([[0.65, 0.95], [-0.65, 0.95], [-0.65, -0.95], [0.65, -0.95]])
+    assert space(costmap, wide, np.array([0.0, 0.05, 0.0])) == pytest.approx(0.6)
+    assert space(costmap, SQUARE, np.array([9.0, 0.0, 0.0])) == 0.0
+    assert space(costmap, SQUARE[:2], STILL) == np.inf
 
 
 @pytest.mark.parametrize("limit, speed", [(0.3, 0.3), (0.0, 0.0), (-1.0, np.inf)])
@@ -69,11 +88,11 @@ def test_headings_are_to_the_farthest_point_in_sight(hidden, seen):
         costmap.cells[21:33, 26:36] = LETHAL
     path = np.array([(x, 0.05, 0) for x in np.arange(0.45, 1.7, 0.1)]
                     + [(1.65, y, 0) for y in np.arange(0.15, 1.1, 0.1)])
-    pose = np.array([0.25, 0.05, 0.3])
-    scorer = _Scorer(of(TrajectoryRolloutSettings), costmap, SQUARE, pose, STILL, path)
-    off = scorer._off_heading(np.zeros((1, 3)))
+    pose = np.array([0.25, -0.15, 0.3])
     bearing = np.arctan2(seen[1] - pose[1], seen[0] - pose[0])
-    assert off == pytest.approx([abs(bearing - 0.3)])
+    costs = [_Scorer(of(TrajectoryRolloutSettings, heading_scoring=scoring), costmap, SQUARE, pose,
+                     STILL, path).costs(np.zeros((1, 3)))[1] for scoring in (False, True)]
+    assert costs[1] - costs[0] == pytest.approx(0.3 * abs(bearing - 0.3))  # upstream's 0.3
 
 
 def test_inflated_ground_is_free_to_back_out_over():

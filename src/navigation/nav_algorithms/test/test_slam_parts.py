@@ -12,7 +12,7 @@ from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
 from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.proposals import propose
-from nav_algorithms.scan_matching import prior_cost, refine, search
+from nav_algorithms.scan_matching import _wall_near, prior_cost, refine, search
 from nav_algorithms.slam_motion import STILL, StepSum
 from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
 
@@ -86,10 +86,11 @@ def test_beams_hold_across_a_wall_and_both_ways_at_a_corner_or_a_post():
         assert held[both_ways] == pytest.approx((1, 0, 1), abs=1e-6)
 
 
-def test_the_search_finds_its_way_from_far():
+@pytest.mark.parametrize("off", [(5.0, -3.0, 0.2), (-5.0, 5.0, -0.2), (0.0, -5.0, 0.0)])
+def test_the_search_finds_its_way_from_far(off):
     maps = corner_map()
     truth = maps.in_cells(np.zeros((1, 3)))[0]
-    prior = truth + np.array([4.0, -3.0, 0.15])
+    prior = truth + off
     best = np.empty(3)
     search(maps.tables[0], maps.pool, beams_of(CORNER), prior, LOOSE,
            np.array([5, 5, 4]), np.array([1.0, 1.0, 0.05]), 2, best)
@@ -154,9 +155,19 @@ def test_maps_keep_their_hits_when_they_grow():
     maps = HitMaps(1, 0.1, (0, 0), (1, 1.7))
     assert maps.tables.shape == (1, 2, 1)  # a patch is 1.6 m wide
     maps.add(np.zeros((1, 3)), np.array([[0.55, 0.55]]))
-    maps.add(np.zeros((1, 3)), np.array([[-7.0, 9.0]]))
+    maps.add(np.zeros((1, 3)), np.array([[-1.0, 9.0]]))
     column, row = np.floor(maps.in_cells(np.array([[0.55, 0.55, 0]]))[0, :2]).astype(int)
     assert value_at(maps.tables[0], maps.pool, row, column, HITS) == 1.0
+    assert (maps.pool[..., HITS] > 0).sum() == 2
+
+
+def test_a_wall_counts_in_full_from_three_hits_on():
+    maps = HitMaps(1, 1.0, (0, 0), (8, 8))
+    for hits in range(1, 7):
+        maps.add(np.zeros((1, 3)), np.array([[4.3, 5.6]]))
+        x, y = maps.in_cells(np.array([[4.3, 5.6, 0.0]]))[0, :2]
+        found = _wall_near(maps.tables[0], maps.pool, x - 0.2, y + 0.1, 1)
+        assert found == pytest.approx((min(1.0, hits / 3), x, y))
 
 
 def test_paths_survive_choosing_and_forgetting():
@@ -208,11 +219,11 @@ def test_a_rendering_grows_by_what_is_seen_and_a_margin():
 def test_a_cell_is_occupied_where_more_than_the_threshold_of_the_beams_end():
     rendering = MapRendering(0.1, (0, 0), (1.05, 0.3))
     assert rendering.grid(0.25).cells.shape == (3, 11)
-    scan = np.array([[0.55, 0.15]] + 3 * [[0.95, 0.15]]), np.array([True] + 3 * [False])
-    rendering.follow(np.zeros((1, 3)), np.zeros(1, int), [scan], np.array([0.05, 0.15]))
+    scan = np.array([[0.55, 0.25]] + 3 * [[0.95, 0.25]]), np.array([True] + 3 * [False])
+    rendering.follow(np.zeros((1, 3)), np.zeros(1, int), [scan], np.array([0.05, 0.25]))
     for threshold, expected in ((0.25, FREE), (0.2, OCCUPIED)):
         grid = rendering.grid(threshold)
-        assert grid.cells[tuple(grid.cells_of((0.55, 0.15)))] == expected
+        assert grid.cells[tuple(grid.cells_of((0.55, 0.25)))] == expected
 
 
 def test_uncertain_steps_add_up():

@@ -40,7 +40,7 @@ class InflationLayer(Layer):
         self._inscribed_radius = 0.0
         self._table = np.zeros(1, np.uint8)
         self._resolution = 0.0
-        self._all_is_new = True
+        self._begin_anew()
 
     def change(self, inflation_radius: float, cost_scaling_factor: float,
                inflate_unknown: bool, enabled: bool) -> None:

@@ -12,10 +12,7 @@ _TURN = {FORWARD: 0.0, BACKWARD: np.pi, LEFTWARD: np.pi / 2, RIGHTWARD: -np.pi /
 
 def directions(points: np.ndarray, window: int) -> np.ndarray:
     """Direction of travel at each of the points (N, 2), rad (N,): from `window` before to after."""
-    last = len(points) - 1
-    if last < 1:
-        return np.zeros(len(points))
-    at = np.arange(len(points))
+    at, last = np.arange(len(points)), len(points) - 1
     along = points[np.minimum(at + window, last)] - points[np.maximum(at - window, 0)]
     return np.arctan2(along[:, 1], along[:, 0])
 
