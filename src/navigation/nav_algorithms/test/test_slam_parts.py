@@ -155,10 +155,9 @@ def test_maps_keep_their_hits_when_they_grow():
     maps = HitMaps(1, 0.1, (0, 0), (1, 1.7))
     assert maps.tables.shape == (1, 2, 1)  # a patch is 1.6 m wide
     maps.add(np.zeros((1, 3)), np.array([[0.55, 0.55]]))
-    maps.add(np.zeros((1, 3)), np.array([[-1.0, 9.0]]))
-    column, row = np.floor(maps.in_cells(np.array([[0.55, 0.55, 0]]))[0, :2]).astype(int)
-    assert value_at(maps.tables[0], maps.pool, row, column, HITS) == 1.0
-    assert (maps.pool[..., HITS] > 0).sum() == 2
+    maps.add(np.zeros((1, 3)), np.array([[-0.95, 9.05]]))
+    for column, row in maps.in_cells(np.array([[0.55, 0.55, 0], [-0.95, 9.05, 0]]))[:, :2]:
+        assert value_at(maps.tables[0], maps.pool, int(row), int(column), HITS) == 1.0
 
 
 def test_a_wall_counts_in_full_from_three_hits_on():
