@@ -29,7 +29,7 @@ RECORDED = {(IMAGES, Image): FRAMES, ("/scan", LaserScan): FRAMES // 2,
             ("/imu", Imu): FRAMES * 5 // 2, ("/tf", TFMessage): FRAMES}
 COUNTS = {topic: count for (topic, _), count in RECORDED.items()}
 # Of the profile, and how often each is done for eight frames; some pictures are drawn on trial.
-STAGES = {"physics": 400, "scene": 9, "serialise": 8, "send": 8}
+STAGES = {"physics": 400, "scene": 9, "send": 8}
 STAGES_OF_TRIAL = ("draw", "convert", "noise")
 DELAY = 0.1  # s, wall, of a slow follower's answer
 END_LIMIT = 3.0  # s, wall; what a person waits after Ctrl-C

@@ -65,6 +65,13 @@ def test_a_small_message_waits_behind_a_large_one(pair):
     assert pair.read(20_000_001).endswith(b"Ls")
 
 
+def test_a_message_in_pieces_is_one(pair):
+    pieces = [b"head", b"L" * 20_000_000, b"tail"]  # the second is more than any socket takes
+    pair.connection.write_data([memoryview(piece) for piece in pieces])
+    pair.connection.write_data(b"next")
+    assert pair.read(20_000_012) == b"".join(pieces) + b"next"
+
+
 def test_a_closed_subscriber_is_told_to_rospy(pair):
     pair.subscriber.close()
     with pytest.raises(TransportTerminated):

@@ -1,7 +1,8 @@
-"""Messages of sensor_msgs whose data stay in their array until they are written to the wire.
+"""Messages of sensor_msgs whose data stay in their array until the socket takes them.
 
-The generated classes want `bytes` and pack them once more: two copies, of 6 MB for each picture of
-1920x1080 and of 33 MB for its points, with Python's lock held. On the wire both are the same.
+The generated classes want `bytes` and pack them once more, and rospy copies those: 6 MB for each
+picture of 1920x1080 and 33 MB for its points, with Python's lock held. On the wire all are the
+same.
 """
 
 import struct
@@ -11,16 +12,15 @@ from io import BytesIO
 import numpy as np
 from sensor_msgs.msg import Image, PointCloud2, PointField
 
-from bullet_sim.profiler import Profiler
+from bullet_sim_ros.message_buffer import write_array
 
 
 class ArrayImage(Image):
     """An Image of an array's pixels."""
 
-    def __init__(self, pixels: np.ndarray, profiler: Profiler | None = None, **fields):
+    def __init__(self, pixels: np.ndarray, **fields):
         """`pixels`: (h, w) or (h, w, channels), C-contiguous; `fields` are those of Image."""
         self._pixels = np.empty(0)  # the generated constructor reads every field
-        self._profiler = profiler or Profiler()
         super().__init__(height=pixels.shape[0], width=pixels.shape[1],
                          step=pixels.nbytes // pixels.shape[0], is_bigendian=0, **fields)
         self._pixels = pixels
@@ -36,13 +36,12 @@ class ArrayImage(Image):
 
     def serialize(self, buff: BytesIO) -> None:
         """Write the message as ROS sends it."""
-        with self._profiler.measure("serialise"):
-            self.header.serialize(buff)
-            encoding = self.encoding.encode()
-            buff.write(struct.pack(
-                f"<III{len(encoding)}sBII", self.height, self.width, len(encoding), encoding,
-                self.is_bigendian, self.step, self._pixels.nbytes))
-            buff.write(self._pixels.data)
+        self.header.serialize(buff)
+        encoding = self.encoding.encode()
+        buff.write(struct.pack(
+            f"<III{len(encoding)}sBII", self.height, self.width, len(encoding), encoding,
+            self.is_bigendian, self.step, self._pixels.nbytes))
+        write_array(buff, self._pixels)
 
 
 class ArrayPointCloud2(PointCloud2):
@@ -76,5 +75,5 @@ class ArrayPointCloud2(PointCloud2):
             field.serialize(buff)
         buff.write(struct.pack("<?III", self.is_bigendian, self.point_step, self.row_step,
                                self._points.nbytes))
-        buff.write(self._points.data)
+        write_array(buff, self._points)
         buff.write(struct.pack("<?", self.is_dense))

@@ -17,7 +17,6 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
-from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.projection import strips
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
@@ -150,10 +149,9 @@ def imu_to_msg(orientation: Sequence[float], angular_velocity: Sequence[float],
                linear_acceleration_covariance=covariance)
 
 
-def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8",
-                 profiler: Profiler | None = None) -> ArrayImage:
+def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8") -> ArrayImage:
     """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture in any encoding of cameras."""
-    return _image(encode(rgb, encoding), time, frame, encoding, profiler)
+    return _image(encode(rgb, encoding), time, frame, encoding)
 
 
 def remove_outside(depth: np.ndarray, near: float, far: float) -> None:
@@ -171,10 +169,8 @@ def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) 
     return _image(np.clip(np.rint(scaled), 0, 65535).astype(np.uint16), time, frame, "16UC1")
 
 
-def _image(array: np.ndarray, time: float, frame: str, encoding: str,
-           profiler: Profiler | None = None) -> ArrayImage:
-    return stamped(ArrayImage(np.ascontiguousarray(array), profiler, encoding=encoding), time,
-                   frame)
+def _image(array: np.ndarray, time: float, frame: str, encoding: str) -> ArrayImage:
+    return stamped(ArrayImage(np.ascontiguousarray(array), encoding=encoding), time, frame)
 
 
 def points_to_msg(depth: np.ndarray, rgb: np.ndarray, focal_px: float, time: float,

@@ -13,10 +13,14 @@ import rospy.topics
 from rospy.exceptions import TransportTerminated
 from rospy.impl.transport import Transport
 
+from bullet_sim_ros.message_buffer import MessageBuffer
+
 
 def send_promptly() -> None:
-    """Have every publisher of this process that has a queue send this way. Before the first one."""
+    """Have every publisher of this process send this way; all have a queue. Before the first one.
+    """
     rospy.topics.QueuedConnection = PromptConnection
+    rospy.topics.BytesIO = MessageBuffer
 
 
 class PromptConnection:
@@ -27,8 +31,8 @@ class PromptConnection:
         self._connection = connection
         self._queue_size = queue_size
         self._changed = threading.Condition()
-        self._queue: deque[memoryview] = deque()
-        self._sending: memoryview | None = None  # begun, so it has to be sent to its end
+        self._queue: deque[list[memoryview]] = deque()  # of messages, in pieces
+        self._sending: list[memoryview] | None = None  # begun, so it has to be sent to its end
         self._error: Exception | None = None
         self._thread: threading.Thread | None = None
         connection.set_cleanup_callback(self._closed)
@@ -39,11 +43,11 @@ class PromptConnection:
             raise AttributeError(name)
         return getattr(self._connection, name)
 
-    def write_data(self, data: bytes) -> bool:
+    def write_data(self, data: bytes | list[memoryview]) -> bool:
         """Send a message, or queue it; TransportTerminated if the connection has failed before."""
         try:
             with self._changed:
-                self._take(memoryview(data))
+                self._take(data if isinstance(data, list) else [memoryview(data)])
         except OSError as error:
             # Not under our lock: closing takes rospy's lock of the topic, and who holds that one
             # to close a connection comes here for ours.
@@ -51,7 +55,7 @@ class PromptConnection:
             raise TransportTerminated(str(error)) from error
         return True
 
-    def _take(self, data: memoryview) -> None:
+    def _take(self, data: list[memoryview]) -> None:
         if self._error is not None:
             error, self._error = self._error, None
             raise error
@@ -67,18 +71,19 @@ class PromptConnection:
         self._start_thread()
         self._changed.notify()
 
-    def _send(self, data: memoryview) -> memoryview:
+    def _send(self, data: list[memoryview]) -> list[memoryview]:
         """Give the socket what it takes without waiting; returns the rest."""
         connection = self._connection
         if connection.done or not connection.socket:
             raise TransportTerminated("connection closed")
         try:
-            sent = connection.socket.send(data, socket.MSG_DONTWAIT)
+            sent = connection.socket.sendmsg(data, [], socket.MSG_DONTWAIT)
         except BlockingIOError:
             sent = 0
         connection.stat_bytes += sent
-        connection.stat_num_msg += sent == len(data)
-        return data[sent:]
+        rest = _without(data, sent)
+        connection.stat_num_msg += not rest
+        return rest
 
     def _start_thread(self) -> None:
         if self._thread is None:
@@ -97,7 +102,9 @@ class PromptConnection:
             if data is None:
                 return
             try:
-                self._connection.write_data(data)
+                for piece in data:
+                    self._connection.write_data(piece)
+                self._connection.stat_num_msg -= len(data) - 1  # it was one message
                 error = None
             except Exception as failure:  # raised where the next message is published
                 error = failure
@@ -107,3 +114,13 @@ class PromptConnection:
     def _closed(self, _connection: Transport) -> None:
         with self._changed:
             self._changed.notify()
+
+
+def _without(pieces: list[memoryview], size: int) -> list[memoryview]:
+    """What is left after so many bytes."""
+    rest = []
+    for piece in pieces:
+        if size < piece.nbytes:
+            rest.append(piece[size:])
+        size = max(size - piece.nbytes, 0)
+    return rest

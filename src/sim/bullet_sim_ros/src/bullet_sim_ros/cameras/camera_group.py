@@ -84,6 +84,7 @@ class CameraGroup:
         if services.lockstep.topics:
             services.drawing.settle()  # the renderer does one thing at a time
             job()
+            services.drawing.settle()
             return
         if self._drawn is not None and not self._drawn.done():
             with services.world.profiler.measure("wait"):
@@ -94,8 +95,7 @@ class CameraGroup:
 
     def _close(self) -> None:
         """Before the topics are closed, which the last picture still needs."""
-        if self._drawn is not None:
-            self._drawn.exception()
+        self._context.services.drawing.settle()
         self._drawn = None
 
 

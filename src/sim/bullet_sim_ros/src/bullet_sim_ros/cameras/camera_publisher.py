@@ -64,7 +64,7 @@ class CameraPublisher:
         settings = self.settings
         with self._profiler.measure("send"):
             self._images.publish(convert.image_to_msg(
-                reading.rgb, reading.time, settings.frame, settings.encoding, self._profiler))
+                reading.rgb, reading.time, settings.frame, settings.encoding))
         if self._compressed.wanted():
             with self._profiler.measure("compress"):
                 self._compressed.publish(reading.rgb, settings.encoding, reading.time,

@@ -48,15 +48,17 @@ class DepthCameraPublisher(CameraPublisher):
             publisher.get_num_connections() for publisher in (self._depths, self._points))
 
     def publish(self, state: CaptureState, picture: bool) -> None:
-        """Pictures if asked for, and both CameraInfo; in the drawing thread."""
+        """Pictures if asked for, and both CameraInfo; in the drawing thread, depth and points in
+        the one behind it.
+        """
         if picture:
             depth = bool(self._depths.get_num_connections())
             points = bool(self._points.get_num_connections())
             reading = self.camera.render(state, depth or points)
             self.publish_picture(reading)
             if reading.depth is not None:
-                with self._context.world.profiler.measure("depth and points"):
-                    self._publish_depth(reading, state.view.focal_length_px, depth, points)
+                self._context.services.drawing.hand_on(lambda: self._publish_depth(
+                    reading, state.view.focal_length_px, depth, points))
         self._publish_infos(state.time)
 
     def _publish_infos(self, time: float) -> None:
@@ -72,10 +74,11 @@ class DepthCameraPublisher(CameraPublisher):
     def _publish_depth(self, reading: CameraReading, focal_px: float, depth: bool,
                        points: bool) -> None:
         metres, frame = reading.depth, self.settings.frame
-        convert.remove_outside(metres, self._near, self._far)
-        if depth:
-            self._depths.publish(
-                convert.depth_to_msg(metres, reading.time, frame, self._millimetres))
-        if points:
-            self._points.publish(
-                convert.points_to_msg(metres, reading.rgb, focal_px, reading.time, frame))
+        with self._context.world.profiler.measure("depth and points"):
+            convert.remove_outside(metres, self._near, self._far)
+            if depth:
+                self._depths.publish(
+                    convert.depth_to_msg(metres, reading.time, frame, self._millimetres))
+            if points:
+                self._points.publish(
+                    convert.points_to_msg(metres, reading.rgb, focal_px, reading.time, frame))

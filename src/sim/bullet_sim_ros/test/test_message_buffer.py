@@ -1,0 +1,43 @@
+"""Messages of arrays are the same on the wire, and their arrays are not copied."""
+
+import io
+
+import numpy as np
+import pytest
+from rospy.msg import serialize_message
+from std_msgs.msg import String
+
+from bullet_sim_ros.array_messages import ArrayImage, ArrayPointCloud2
+from bullet_sim_ros.message_buffer import MessageBuffer
+
+PIXELS = np.arange(45, dtype=np.uint8).reshape(3, 5, 3)
+POINTS = np.arange(60, dtype=np.float32).reshape(3, 5, 4)
+MESSAGES = {
+    "image": lambda: ArrayImage(PIXELS, encoding="rgb8"),
+    "points": lambda: ArrayPointCloud2(POINTS, "xyz_"),
+    "no points": lambda: ArrayPointCloud2(POINTS[:, :0], "xyz_"),
+    "text": lambda: String("hello")}
+
+
+def written(buff, message):
+    """As rospy's Publisher does it; the buffer is used again."""
+    serialize_message(buff, 7, message)
+    value, size = buff.getvalue(), buff.tell()
+    buff.seek(0)
+    buff.truncate(0)
+    return value, size
+
+
+@pytest.mark.parametrize("names", [list(MESSAGES), list(MESSAGES)[::-1]])
+def test_the_same_bytes_as_rospys_own_buffer_writes(names):
+    ours, rospys = MessageBuffer(), io.BytesIO()
+    for name in names:
+        value, size = written(ours, MESSAGES[name]())
+        assert (b"".join(value) if isinstance(value, list) else value, size) == written(
+            rospys, MESSAGES[name]())
+
+
+@pytest.mark.parametrize("name, array", [("image", PIXELS), ("points", POINTS)])
+def test_the_array_itself_is_sent(name, array):
+    pieces, _ = written(MessageBuffer(), MESSAGES[name]())
+    assert any(np.shares_memory(np.frombuffer(piece, np.uint8), array) for piece in pieces)
