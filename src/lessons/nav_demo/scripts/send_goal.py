@@ -65,6 +65,8 @@ def main():
     except rospy.ROSInitException:
         sys.exit("stopped while waiting for a master: start the simulator first")
     wait_for_clock()
+    if rospy.is_shutdown():  # Ctrl-C: perhaps there is no master any more  此时可能已没有 master
+        sys.exit("stopped")
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
     if not client.wait_for_server(rospy.Duration(WAIT)):
         sys.exit("stopped" if rospy.is_shutdown() else

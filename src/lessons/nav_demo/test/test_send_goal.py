@@ -27,3 +27,14 @@ def test_a_place(script, words, place):
 def test_no_place(script, words):
     with pytest.raises(SystemExit, match=r"which place\? e\.g\. rosrun nav_demo send_goal\.py"):
         script.place_of(words)
+
+
+def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch):
+    """The master may have ended: whatever asks it then ends with a traceback."""
+    monkeypatch.setattr(script.sys, "argv", ["send_goal.py", "1", "1"])
+    monkeypatch.setattr(script.rospy, "init_node", lambda _name: None)
+    monkeypatch.setattr(script.rospy, "is_shutdown", lambda: True)
+    monkeypatch.setattr(script.rospy, "get_time", lambda: 0)
+    monkeypatch.setattr(script.actionlib, "SimpleActionClient", None)
+    with pytest.raises(SystemExit, match=r"^stopped$"):
+        script.main()
