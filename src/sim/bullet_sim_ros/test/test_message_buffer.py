@@ -4,11 +4,13 @@ import io
 
 import numpy as np
 import pytest
+import rospy.topics
 from rospy.msg import serialize_message
 from std_msgs.msg import String
 
 from bullet_sim_ros.array_messages import ArrayImage, ArrayPointCloud2
 from bullet_sim_ros.message_buffer import MessageBuffer
+from bullet_sim_ros.prompt_connection import PromptConnection, send_promptly
 
 PIXELS = np.arange(45, dtype=np.uint8).reshape(3, 5, 3)
 POINTS = np.arange(60, dtype=np.float32).reshape(3, 5, 4)
@@ -41,3 +43,12 @@ def test_the_same_bytes_as_rospys_own_buffer_writes(names):
 def test_the_array_itself_is_sent(name, array):
     pieces, _ = written(MessageBuffer(), MESSAGES[name]())
     assert any(np.shares_memory(np.frombuffer(piece, np.uint8), array) for piece in pieces)
+
+
+def test_rospys_publishers_have_our_connections_and_buffers(monkeypatch):
+    for name in ("QueuedConnection", "BytesIO"):
+        monkeypatch.setattr(rospy.topics, name, getattr(rospy.topics, name))  # back afterwards
+    send_promptly()
+    publisher = rospy.topics._PublisherImpl("/x", String)
+    assert isinstance(publisher.buff, MessageBuffer)
+    assert rospy.topics.QueuedConnection is PromptConnection
