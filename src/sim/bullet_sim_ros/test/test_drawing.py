@@ -60,10 +60,11 @@ def test_no_more_than_one_rest_waits(thread):
     assert handed_on.wait(LIMIT)
 
 
-def test_what_a_rest_failed_with_is_raised_in_the_next_job(thread):
+def test_who_hands_on_learns_what_that_failed_with_and_nobody_else(thread):
     def fail():
         raise ValueError("no points")
 
-    thread.submit(lambda: thread.hand_on(fail))
-    with pytest.raises(ValueError, match="no points"):
-        thread.submit(lambda: thread.hand_on(lambda: None)).result(LIMIT)
+    thread.settle()
+    failed, other = thread.hand_on(fail), thread.hand_on(lambda: None)
+    thread.settle()
+    assert isinstance(failed.exception(), ValueError) and other.exception() is None

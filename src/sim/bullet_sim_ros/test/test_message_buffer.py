@@ -1,10 +1,12 @@
 """Messages of arrays are the same on the wire, and their arrays are not copied."""
 
 import io
+import struct
 
 import numpy as np
 import pytest
 import rospy.topics
+from rospy.exceptions import ROSSerializationException
 from rospy.msg import serialize_message
 from std_msgs.msg import String
 
@@ -37,6 +39,23 @@ def test_the_same_bytes_as_rospys_own_buffer_writes(names):
         value, size = written(ours, MESSAGES[name]())
         assert (b"".join(value) if isinstance(value, list) else value, size) == written(
             rospys, MESSAGES[name]())
+
+
+def test_after_a_message_that_failed_it_goes_on_as_rospys_does():
+    """An array was in it already; rospy does not take back what was written."""
+    class Broken(ArrayImage):
+        def serialize(self, buff):
+            super().serialize(buff)
+            raise struct.error("no number")
+
+    values = []
+    for buff in (MessageBuffer(), io.BytesIO()):
+        with pytest.raises(ROSSerializationException):
+            serialize_message(buff, 7, Broken(PIXELS, encoding="rgb8"))
+        value, size = written(buff, MESSAGES["image"]())
+        values.append((b"".join(value), size) if isinstance(value, list) else (value, size))
+        assert written(buff, MESSAGES["text"]())[0] == b"\x09\0\0\0\x05\0\0\0hello"
+    assert values[0] == values[1]
 
 
 @pytest.mark.parametrize("name, array", [("image", PIXELS), ("points", POINTS)])

@@ -1,7 +1,7 @@
-"""Pictures are drawn, made into messages and sent beside the physics, by one thread of their own.
+"""Pictures are drawn, made into messages and sent beside the physics, by threads of their own.
 
-What a depth camera's picture becomes takes longer than drawing it (33 MB of points at 1920x1080):
-another thread does that while the next one is drawn. Threads are enough, they need not be
+One draws. What a depth camera's picture becomes takes longer than that (33 MB of points at
+1920x1080): the other one does it while the next is drawn. Threads are enough, they need not be
 processes: llvmpipe, OpenCV and the network work without Python's lock, and what a picture is made
 from never changes while it is drawn.
 """
@@ -45,14 +45,13 @@ class DrawingThread:
         self._last = self._executor.submit(job)
         return self._last
 
-    def hand_on(self, job: Callable[[], None]) -> None:
-        """From a job: have its rest done while the next one draws; first waits for the rest before.
-
-        What that one failed with is raised here.
+    def hand_on(self, job: Callable[[], None]) -> Future:
+        """From a job: have its rest done while the next one draws, after the rest before it, for
+        which this waits.
         """
-        if self._handed_on is not None:
-            self._handed_on.result()
+        self.settle_rest()
         self._handed_on = self._after.submit(job)
+        return self._handed_on
 
     def trim(self) -> None:
         """Give back the memory of pictures, now; only a renderer that is very slow does so later.
@@ -65,7 +64,11 @@ class DrawingThread:
         """Wait until nothing is being drawn, nor made of what was drawn."""
         if self._last is not None:
             self._last.exception()
-        if self._handed_on is not None:  # by the last one, perhaps
+        self.settle_rest()
+
+    def settle_rest(self) -> None:
+        """Wait for what was handed on."""
+        if self._handed_on is not None:
             self._handed_on.exception()
 
     def close(self) -> None:

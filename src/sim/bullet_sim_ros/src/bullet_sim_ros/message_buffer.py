@@ -10,21 +10,22 @@ class MessageBuffer(BytesIO):
 
     def __init__(self):
         super().__init__()
-        self._arrays: list[tuple[int, memoryview]] = []  # and how many other bytes come before
+        self._arrays: list[tuple[int, int, memoryview]] = []  # after so many bytes, of them own
 
     def append(self, array: np.ndarray) -> None:
         """At the end, a C-contiguous array, which must not change any more."""
-        self._arrays.append((super().tell(), array.reshape(-1).view(np.uint8).data))
+        own = super().tell()
+        self._arrays.append((self.tell(), own, array.reshape(-1).view(np.uint8).data))
 
     def tell(self) -> int:
         """Bytes before the position."""
         place = super().tell()
-        return place + sum(array.nbytes for before, array in self._arrays if before <= place)
+        return place + sum(array.nbytes for _, own, array in self._arrays if own <= place)
 
     def seek(self, position: int) -> int:
-        """To that many bytes from the start, none of them an array's."""
-        arrays = sum(array.nbytes for before, array in self._arrays if before < position)
-        super().seek(position - arrays)
+        """To that many bytes from the start, none of them inside an array."""
+        super().seek(position - sum(
+            array.nbytes for start, _, array in self._arrays if start < position))
         return position
 
     def truncate(self, size: int) -> int:
@@ -36,11 +37,11 @@ class MessageBuffer(BytesIO):
         """The message, in pieces if it has arrays."""
         if not self._arrays:
             return super().getvalue()
-        own, pieces, start = memoryview(super().getvalue()), [], 0
-        for before, array in self._arrays:
-            pieces += [own[start:before], array]
-            start = before
-        return [piece for piece in [*pieces, own[start:]] if piece]
+        written, pieces, begin = memoryview(super().getvalue()), [], 0
+        for _, own, array in self._arrays:
+            pieces += [written[begin:own], array]
+            begin = own
+        return [piece for piece in [*pieces, written[begin:]] if piece]
 
 
 def write_array(buff: BytesIO, array: np.ndarray) -> None:

@@ -95,8 +95,10 @@ class CameraGroup:
 
     def _close(self) -> None:
         """Before the topics are closed, which the last picture still needs."""
-        self._context.services.drawing.settle()
+        if self._drawn is not None:
+            self._drawn.exception()
         self._drawn = None
+        self._context.services.drawing.settle_rest()
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:

@@ -1,6 +1,7 @@
 """A depth camera's topics: what a camera has, depth image, its CameraInfo, and points."""
 
 import math
+from concurrent.futures import Future
 
 import numpy as np
 import rospy
@@ -36,6 +37,7 @@ class DepthCameraPublisher(CameraPublisher):
         self._depth_infos = advertise("depthImageCameraInfoTopicName", "depth/camera_info",
                                       CameraInfo)
         self._points = advertise("pointCloudTopicName", "points", PointCloud2)
+        self._rest: Future | None = None  # of the last picture
         self._restart()
         context.on_reset(self._restart)
 
@@ -49,7 +51,7 @@ class DepthCameraPublisher(CameraPublisher):
 
     def publish(self, state: CaptureState, picture: bool) -> None:
         """Pictures if asked for, and both CameraInfo; in the drawing thread, depth and points in
-        the one behind it.
+        the one behind it. What those failed with is raised at the next ones.
         """
         if picture:
             depth = bool(self._depths.get_num_connections())
@@ -57,8 +59,10 @@ class DepthCameraPublisher(CameraPublisher):
             reading = self.camera.render(state, depth or points)
             self.publish_picture(reading)
             if reading.depth is not None:
-                self._context.services.drawing.hand_on(lambda: self._publish_depth(
-                    reading, state.view.focal_length_px, depth, points))
+                before, self._rest = self._rest, self._context.services.drawing.hand_on(
+                    lambda: self._publish_depth(reading, state.view.focal_length_px, depth, points))
+                if before is not None:
+                    before.result()  # is there: hand_on has waited for it
         self._publish_infos(state.time)
 
     def _publish_infos(self, time: float) -> None:
