@@ -21,6 +21,7 @@ from nav_algorithms.local_planning.trajectory_rollout import (
     TrajectoryRolloutSettings,
 )
 from nav_algorithms.local_planning.velocities import samples, slowed, turning, window
+from nav_algorithms.poses import relative
 
 WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
 WAFFLE_DWA = dict(max_vel_x=0.26, min_vel_x=-0.26, max_vel_trans=0.26, min_vel_trans=0.13,
@@ -86,6 +87,7 @@ def test_who_stands_can_have_the_least_velocity():
 
 def test_samples_have_zero_between_them():
     assert samples(-0.1, 0.2, 3) == pytest.approx([-0.1, 0.0, 0.05, 0.2])
+    assert samples(-0.1, 0.2, 4) == pytest.approx([-0.1, 0.0, 0.1, 0.2])  # there already
     assert samples(0.3, 0.3, 5) == pytest.approx([0.3])
     assert slowed(np.array([0.5, 0, -1.0]), (1.0, 1.0, 2.0), 0.1) == pytest.approx([0.4, 0, -0.8])
 
@@ -317,6 +319,12 @@ def test_an_escape_goes_on_until_the_robot_has_moved():
     assert planner.command(window_around(), WAFFLE, np.array([-0.12, 0, 0]), STILL).vx > 0.0
 
 
+def test_a_robot_that_cannot_strafe_is_not_asked_to_though_it_slides():
+    command = commanded(rollout(), straight(), velocity=(0.15, -0.02, 0.0))
+    assert command.vx > 0.1 and command.vy == 0.0
+    assert relative(*command.trajectory[-2:])[1] == pytest.approx(0.0)  # where it leads, too
+
+
 @pytest.mark.parametrize("changed", [dict(heading_scoring=True), dict(meter_scoring=True),
                                      dict(dwa=False)])
 def test_trajectory_rollout_in_its_other_ways(changed):
@@ -332,6 +340,9 @@ def test_a_path_is_cut_where_the_motion_changes():
     assert [piece.direction for piece in pieces] == [1, -1, 0]
     assert [piece.lengths[-1] for piece in pieces] == pytest.approx([1.0, 1.0, 1.0])
     assert cut(np.zeros((3, 3))) == []
+    steps = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]])
+    assert [piece.direction for piece in cut(steps)] == [1, -1]
+    assert [piece.lengths.tolist() for piece in cut(steps[:2])] == [[0.0, 1.0]]
 
 
 @pytest.mark.parametrize("make", [dwa, rollout])
@@ -377,6 +388,9 @@ def test_pursuit_keeps_to_the_turning_radius():
 def test_pursuit_says_when_it_has_left_its_path_and_when_it_is_there():
     planner = pursuit()
     assert commanded(planner, np.array([0.0, 0.9, 0.0]) + straight()) is None
+    for aside, left in ((0.5, False), (0.51, True)):
+        command = commanded(pursuit(max_deviation=0.5), straight(), pose=np.array([0, aside, 0.0]))
+        assert (command is None) == left
     planner.set_path(straight())
     assert planner.reached(np.array([1.2, 0, 0]), STILL)
     assert not planner.reached(np.array([1.2, 0, 0]), np.array([0.4, 0, 0]))

@@ -21,11 +21,11 @@ def floor():
     return Costmap(np.zeros((40, 40), np.uint8), 0.1, (-2.0, -2.0))
 
 
-def rolled(costmap, path_grid, sample, goal_range=9.0):
+def rolled(costmap, path_grid, sample, goal_range=9.0, outline=SQUARE):
     """Of one drive of a second from the origin, in 10 steps."""
     grids = np.stack([path_grid, np.zeros((40, 40)), np.zeros((40, 40))])
     return rollout.rollouts(
-        costmap.cells, costmap.resolution, *costmap.origin, np.full((40, 40), 99.0), 0.2, SQUARE,
+        costmap.cells, costmap.resolution, *costmap.origin, np.full((40, 40), 99.0), 0.2, outline,
         grids, np.array([1.0, 0.0, 0.0, 0.0]), np.array([sample], float), STILL, STILL,
         np.full(3, 9.0), True, 1.0, 0.1, 0.1, 0.0, goal_range, 0.0, np.inf, 0.0, 0.0)[0]
 
@@ -50,6 +50,31 @@ def test_a_drive_is_legal_or_not_and_ends_at_the_goal_where_that_is_on_the_way()
     assert rolled(blocked, along, (1.0, 0.0, 0.0))[rollout.LEGAL] == 0.0
 
 
+@pytest.mark.parametrize("sample", [(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, -1.0, 0.0),
+                                    (0.0, 1.0, 0.0)])
+def test_between_the_outermost_cells_values_are_in_between(sample):
+    """Off the grid's edge by 1.2 cells a drive ends 0.7 cells from the outermost centres."""
+    cells = np.arange(40.0)
+    along = np.tile(cells, (40, 1)) if sample[0] else np.tile(cells[:, None], (1, 40))
+    way = sum(sample)
+    low = np.where(np.array(sample[:2]) == 0.0, -2.0, -1.12 if way < 0.0 else 1.12 - 4.0)
+    costmap = Costmap(floor().cells, 0.1, tuple(low.tolist()))
+    found = rolled(costmap, along, sample)
+    assert found[rollout.LEGAL] == 1.0
+    assert found[rollout.PATH] == pytest.approx((0.7 if way < 0.0 else 38.3) - rollout.ON_PATH)
+
+
+@pytest.mark.parametrize("angle, legal", [(0.5, 1.0), (0.03, 0.0)])
+def test_a_turn_must_be_free_only_as_long_as_it_takes_to_stop(angle, legal):
+    """From 1 rad/s by 9 rad/s^2 that is a ninth of a second, or as many rad."""
+    costmap, corner = floor(), np.arctan2(0.05, 1.0)
+    row, column = costmap.cells_of((np.cos(angle + corner), np.sin(angle + corner)))
+    costmap.cells[row, column] = LETHAL
+    bar = np.array([[1.0, 0.05], [-0.1, 0.05], [-0.1, -0.05], [1.0, -0.05]])
+    found = rolled(costmap, np.zeros((40, 40)), (0.0, 0.0, 1.0), outline=bar)
+    assert found[rollout.LEGAL] == legal
+
+
 def test_ways_over_free_cells_are_as_the_crow_flies():
     place = np.array([[-1.95, -1.95]])
     away = distances_to(floor(), place, place)
@@ -71,6 +96,9 @@ def test_the_room_of_a_robot_is_from_its_corners_and_the_middles_of_its_sides():
     costmap.cells[20, 32] = LETHAL
     wide = np.array([[0.65, 0.95], [-0.65, 0.95], [-0.65, -0.95], [0.65, -0.95]])
     assert space(costmap, wide, np.array([0.0, 0.05, 0.0])) == pytest.approx(0.6)
+    for ahead in (0.4, -0.4):  # wherever on the robot its frame is
+        place = np.array([-ahead, 0.05, 0.0])
+        assert space(costmap, wide + np.array([ahead, 0.0]), place) == pytest.approx(0.6)
     assert space(costmap, SQUARE, np.array([9.0, 0.0, 0.0])) == 0.0
     assert space(costmap, SQUARE[:2], STILL) == np.inf
 
@@ -95,11 +123,37 @@ def test_headings_are_to_the_farthest_point_in_sight(hidden, seen):
     assert costs[1] - costs[0] == pytest.approx(0.3 * abs(bearing - 0.3))  # upstream's 0.3
 
 
+def test_headings_are_those_after_the_drive_on_its_arc():
+    """1 rad/s for 0.8 s from 0.3 rad: a chord along 0.7 rad, and 1.1 rad at its end."""
+    pose = np.array([0.05, 0.05, 0.3])
+    end = pose[:2] + 0.4 * np.array([np.cos(0.7), np.sin(0.7)])
+    path = np.array([[*(end + way * np.array([np.cos(1.1), np.sin(1.1)])), 1.1]
+                     for way in (0.2, 0.7)])
+    for speed, off in ((0.5, 0.0), (0.0, 1.1 - np.arctan2(*(path[-1, :2] - pose[:2])[::-1]))):
+        costs = [_Scorer(of(TrajectoryRolloutSettings, heading_scoring=scoring,
+                            heading_scoring_timestep=0.8), floor(), SQUARE, pose, STILL, path
+                         ).costs(np.array([[speed, 0.0, 1.0]]))[1] for scoring in (False, True)]
+        assert costs[1] - costs[0] == pytest.approx(0.3 * abs(off))
+
+
+def test_the_goal_is_the_path_s_last_point_alone():
+    path = np.array([[0.05, 0.05, 0.0], [1.05, 0.05, 0.0]])
+    settings = of(TrajectoryRolloutSettings, pdist_scale=0.6, gdist_scale=0.8, occdist_scale=0.0)
+    scorer = _Scorer(settings, floor(), SQUARE, path[0], STILL, path)
+    assert scorer.costs(np.zeros((1, 3)))[1] == pytest.approx(0.8 * 10)  # cells
+
+
 def test_inflated_ground_is_free_to_back_out_over():
     costmap = floor()
     costmap.cells[:] = 100
     scorer = _Scorer(of(TrajectoryRolloutSettings), costmap, SQUARE, STILL, STILL, STILL[None])
     assert scorer.first_free([[-0.1, 0.0, 0.0]]).tolist() == [-0.1, 0.0, 0.0]
+
+
+def test_an_arc_s_poses_are_evenly_apart_and_no_more_than_a_step():
+    for length in (1.0, -1.0):
+        assert arc_of(STILL, length, 0.0, 0.3) == pytest.approx(
+            np.linspace(STILL, (length, 0.0, 0.0), 5))
 
 
 def test_the_free_arc_with_the_carrot_straight_ahead_of_its_end_is_taken():
