@@ -58,6 +58,16 @@ def test_the_dearest_cell_counts_and_the_unknown_after_the_lethal():
 def test_outside_the_costmap():
     poses = np.array([[1.8, 0, 0], [50, 0, 0], [0, -1.95, 0]])
     assert footprint.costs(empty(), SQUARE, poses).tolist() == [-3] * 3  # as upstream's world model
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi / 2, np.pi, -np.pi / 2])
+@pytest.mark.parametrize("left", [0.05, -0.05, -0.25])
+def test_a_robot_is_on_the_costmap_as_long_as_its_nose_is(yaw, left):
+    """The nose is 0.3 m ahead, and each edge of the costmap 2 m from its middle."""
+    way = 2.0 - 0.3 - left
+    pose = (way * np.cos(yaw), way * np.sin(yaw), yaw)
+    assert footprint.costs(empty(), SQUARE, pose).tolist() == [
+        0 if left > 0.0 else footprint.OUTSIDE]
     assert footprint.OUTSIDE == -3
     inside = np.array([[1.65, 0, 0], [-1.75, 0, 0], [0, 1.85, 0], [0, -1.85, 0]])
     assert footprint.costs(empty(), SQUARE, inside).tolist() == [0] * 4  # 5 cm to the edge

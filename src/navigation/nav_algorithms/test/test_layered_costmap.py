@@ -180,6 +180,7 @@ def test_what_was_written_counts_until_a_new_size_is_written():
     layered, static = with_map(grid((3, 3), wall=[(1, 1)]))
     layered.update(HERE)
     assert layered.fits((3, 3), 0.1, np.zeros(2)) and not layered.fits((3, 3), 0.1, (0.0, 0.1))
+    assert not layered.fits((3, 3), 0.2, np.zeros(2)) and not layered.fits((3, 4), 0.1, np.zeros(2))
     layered.resize((5, 5), 0.1, (0.0, 0.0))
     assert layered.newest.cells.tolist() == [[0, 0, 0], [0, LETHAL, 0], [0, 0, 0]]
     larger = grid((5, 5), wall=[(2, 2)])

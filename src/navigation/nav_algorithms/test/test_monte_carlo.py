@@ -109,6 +109,27 @@ def test_by_default_a_lost_robot_is_looked_for_as_upstream_does():
     assert max(lost) > 0.0
 
 
+def test_the_first_scan_counts_though_there_is_one_particle_alone():
+    robot = Robot(1)
+    found = localisation(min_particles=1, max_particles=1, recovery_alpha_slow=0.001,
+                         recovery_alpha_fast=1.0, lost_threshold=0.0, lost_share_max=1.0,
+                         lost_forgets=False)
+    found.start_at(robot.pose, np.zeros((3, 3)))
+    found.add(robot.odometry, robot.scan())
+    assert found.lost == 0.0
+    found.add(robot.odometry + np.array([0.3, 0.0, 0.0]), replace(SEEN, ranges=SEEN.ranges - 1.9))
+    assert found.lost > 0.5
+
+
+def test_weights_are_as_the_scan_fits_and_add_up_to_1():
+    robot, found = Robot(1), localisation(resample_interval=9)
+    found.start_at(robot.pose, CLOSE)
+    found.particles[:1000] = robot.pose
+    found.add(robot.odometry, robot.scan())
+    assert np.ptp(found.weights[:1000]) == 0.0 and found.weights[0] > 1.2 / 2000
+    assert found.weights.sum() == pytest.approx(1.0)
+
+
 def test_the_same_seed_gives_the_same_bits_and_another_gives_others():
     ends = []
     for seed in (0, 0, 1):

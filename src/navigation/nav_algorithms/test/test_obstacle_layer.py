@@ -104,6 +104,29 @@ def test_rays_end_outside_the_costmap_and_begin_there():
     update(layered, [nothing], [nothing])
 
 
+def test_a_layer_that_is_switched_on_writes_what_it_sees_alone():
+    layered = costmap_of(layer := ObstacleLayer("obstacles"))
+    layer.enabled = False
+    layered.update(HERE)
+    layer.enabled = True
+    layer.observe([seen((3.05, 2.55, 0.2))], [])
+    assert layered.update(HERE) == (slice(25, 26), slice(30, 31))
+
+
+@pytest.mark.parametrize("layer", [ObstacleLayer("o"), VoxelLayer("v", of(VoxelSettings))])
+@pytest.mark.parametrize("edge", [0.05, 4.05])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_obstacles_along_the_edges_are_cleared_too(layer, edge, axis):
+    def at(way):
+        return (edge, way, 0.1) if axis == 0 else (way, edge, 0.1)
+
+    layered = costmap_of(layer)
+    wall, behind = seen(at(3.05), origin=at(2.05)), seen(at(3.85), origin=at(2.05))
+    cell = tuple(layered.master.cells_of(at(3.05)[:2]))
+    assert update(layered, [wall])[cell] == LETHAL
+    assert update(layered, [], [behind])[cell] == FREE
+
+
 def test_what_is_too_high_is_no_obstacle():
     layered = costmap_of(ObstacleLayer("obstacles", max_obstacle_height=0.5))
     assert not update(layered, [seen((3.0, 2.0, 0.6))]).any()

@@ -1,6 +1,7 @@
 """SLAM on made-up drives whose truth is known."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -86,6 +87,27 @@ def test_the_search_goes_to_two_and_a_half_deviations_in_five_steps_at_most():
     assert sizes == pytest.approx([0.5, 0.5, 0.02])
     wanted = np.array([0.54, 0.22, 9.0])**-2  # in cells and rad
     assert slam._informations()[0] == pytest.approx(np.diag(wanted), abs=1e-9)
+
+
+def test_what_the_odometry_was_off_is_learnt_in_the_robot_s_frame_in_m():
+    slam = ParticleSlam(replace(SETTINGS, particles=2, delta=0.1))
+    slam._poses[:, 2] = np.pi / 2
+    told = []
+    slam._step.learn = lambda *what: told.extend(what)
+    errors = np.array([[1.0, 2.0, 0.03], [3.0, 2.0, 0.01]])  # on the map, cells
+    slam._learn_odometry(errors, np.tile(np.diag([2.0, 4.0, 5.0]), (2, 1, 1)))
+    assert told[0] == pytest.approx([0.2, -0.2, 0.02])
+    assert told[1] == pytest.approx(np.diag([0.1 / 4, 0.1 / 2, 1 / 5])**2)
+
+
+def test_weights_that_add_up_to_a_hair_less_than_1_choose_the_last_particle_last():
+    slam = ParticleSlam(replace(SETTINGS, particles=5, resampleThreshold=1.0))
+    slam._log_weights = np.log(np.array([0.1] * 4 + [0.9]))
+    slam._poses[:, 0] = np.arange(5)
+    assert np.cumsum(slam._weights())[-1] < 1.0
+    slam._random = SimpleNamespace(random=lambda: 1.0 - 2.0**-53)
+    slam._resample()
+    assert slam._poses[-1, 0] == 4.0
 
 
 def test_turning_alone_is_reason_enough():

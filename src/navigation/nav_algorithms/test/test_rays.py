@@ -5,7 +5,9 @@ import pytest
 
 from nav_algorithms import rays
 
-ROOM = np.pad(np.zeros((8, 18), np.uint8), 1, constant_values=1)  # 10 rows, 20 columns
+# 10 rows, 20 columns, of an array in which all is occupied before and after it.
+ROOM = np.ones((30, 20), np.uint8)[10:20]
+ROOM[1:-1, 1:-1] = 0
 
 
 def test_ranges_end_at_the_near_border_of_the_wall():

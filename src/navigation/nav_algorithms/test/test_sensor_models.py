@@ -69,6 +69,7 @@ def test_off_the_map_and_far_from_all_is_the_largest_distance(model, expected):
 
 @pytest.mark.parametrize("thickness, measured, distance", [
     (1.0, 1.0, 0.0), (1.0, 1.05, 0.05), (1.0, 1.2, 0.2),
+    (0.35, 1.05, 0.05), (0.25, 1.05, 0.1),
     (0.15, 1.0, 0.0), (0.15, 1.05, 0.1), (0.15, 1.1, 0.0), (0.15, 1.15, 0.05)])
 def test_behind_a_wall_s_surface_beams_are_as_wrong_and_within_thin_walls_twice(
         thickness, measured, distance):

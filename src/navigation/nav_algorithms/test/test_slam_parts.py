@@ -12,7 +12,7 @@ from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
 from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.proposals import propose
-from nav_algorithms.scan_matching import _wall_near, prior_cost, refine, search
+from nav_algorithms.scan_matching import MISS, _wall_near, evaluate, prior_cost, refine, search
 from nav_algorithms.slam_motion import STILL, StepSum
 from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
 
@@ -86,6 +86,23 @@ def test_beams_hold_across_a_wall_and_both_ways_at_a_corner_or_a_post():
         assert held[both_ways] == pytest.approx((1, 0, 1), abs=1e-6)
 
 
+def test_at_the_end_of_a_wall_that_stands_aslant_beams_hold_across_it():
+    along = np.linspace(0.0, 2.0, 41)
+    ends = np.column_stack((2.0 - along, along))
+    held = holds(ends, np.hypot(*ends.T), 0.02)
+    half = 0.5 * (1.0 - ALONG)
+    assert held[[0, 20, 40]] == pytest.approx(np.tile((1.0 - half, half, 1.0 - half), (3, 1)))
+
+
+def test_of_sparse_beams_three_to_either_side_say_which_way_the_wall_goes():
+    angles = np.radians(np.arange(0, 360, 5))  # 17 cm and more apart
+    square = 2.0 / np.maximum(abs(np.cos(angles)), abs(np.sin(angles)))
+    ends = square[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+    held = holds(ends, square, angles[1])
+    assert held[:6] == pytest.approx(np.tile((1, 0, ALONG), (6, 1)), abs=1e-6)
+    assert held[8] != pytest.approx((1, 0, ALONG), abs=0.1)  # the corner is the ninth
+
+
 @pytest.mark.parametrize("off", [(5.0, -3.0, 0.2), (-5.0, 5.0, -0.2), (0.0, -5.0, 0.0)])
 def test_the_search_finds_its_way_from_far(off):
     maps = corner_map()
@@ -119,6 +136,36 @@ def test_a_match_worse_than_the_odometry_is_not_believed():
             np.zeros((1, 3)), np.array([1, 1, 0]), np.array([0.5, 0.5, 1.0]), 1, 0, 1, WIDTHS, 1.0,
             1, np.empty(1), matched, factors)
     assert matched[0].tolist() == prior[0].tolist() == drawn[0].tolist()
+
+
+def test_a_scan_that_fits_too_little_leaves_the_odometry_s_draw():
+    maps, off = corner_map(), np.array([[0.04, 0.0, 0.0]])
+    prior, matched = maps.in_cells(off), np.empty((1, 3))
+    for fewest, stays in ((100.0, False), (1000.0, True)):
+        drawn, factors = prior + 0.3, np.empty((1, 3, 3))
+        propose(maps.tables, maps.pool, beams_of(CORNER), prior, drawn, LOOSE[None],
+                np.zeros((1, 3)), np.array([0, 0, 0]), np.array([0.5, 0.5, 1.0]), 1, 15, 1, WIDTHS,
+                fewest, 1, np.empty(1), matched, factors)
+        assert (drawn == (prior + 0.3 if stays else matched)).all()
+        assert (matched == drawn).all() and (not factors.any()) == stays
+
+
+def test_where_nothing_is_known_the_odometry_s_pose_is_the_best():
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    prior = maps.in_cells(np.array([[0.2, 0.1, 0.3]]))[0]
+    pose = prior + np.array([1.0, -1.0, 0.1])
+    refine(maps.tables[0], maps.pool, beams_of(CORNER), prior, np.diag([1.0, 2.0, 300.0]), pose, 1,
+           1, WIDTHS, np.empty((3, 3)))
+    assert pose == pytest.approx(prior)
+
+
+@pytest.mark.parametrize("place", [(0.2, 0.3), (50.5, 60.5), (-9.0, -9.0)])
+def test_a_beam_that_ends_at_no_wall_is_a_miss_wherever_that_is(place):
+    maps = corner_map()
+    beams = np.array([[0.0, 0.0, 1.0, 0.0, 1.0]])
+    found = evaluate(maps.tables[0], maps.pool, beams, np.array([*place, 0.0]), 1, 1, WIDTHS,
+                     np.empty((3, 3)), np.empty(3))
+    assert found == (-MISS, 0.0)
 
 
 def test_two_deviations_off_the_odometry_cost_2():
@@ -256,6 +303,17 @@ def test_what_walls_show_of_the_odometry_is_learnt():
             total.add(np.zeros(3), np.array([1.0, 0, 0]))
             total.learn(np.array([error, 0.3 * error, turning]), posterior)
         assert total.scale == pytest.approx((wanted,) * 3, rel=0.1)
+
+
+def test_what_is_learnt_at_first_is_the_mean_of_the_parameters_and_what_was_shown():
+    total = StepSum(0.1, 0.2, 0.0, 0.0)
+    shown = [1.0, 2.0, 0.6, 3.0]  # shares of the variance that the parameters give
+    for count, share in enumerate(shown[1:], 2):
+        total.clear()
+        total.add(np.zeros(3), np.array([1.0, 0, 0]))
+        error = np.sqrt(share * np.diag(total.covariance) / total.scale)
+        total.learn(error, np.zeros((3, 3)))
+        assert total.scale == pytest.approx([np.mean(shown[:count])] * 3)
 
 
 def test_where_walls_show_nothing_nothing_is_learnt():
