@@ -43,15 +43,20 @@ def test_every_word_ends_at_the_goal(family):
 
 
 def test_words_are_of_the_nine_families_of_reeds_and_shepp():
-    """C is an arc, S a straight, | a cusp; of these the shortest drive is one."""
+    """Of these the shortest drive is one.
+
+    L is an arc to the side of the first one, R one to the other, S a straight, | a cusp.
+    """
     found = set()
     for goal in np.random.default_rng(3).uniform([-5, -5, -np.pi], [5, 5, np.pi], (500, 3)):
         for word in words_to(curves.reeds_shepp, goal):
             pieces = word[np.abs(word[:, 0]) > 1e-9]
             cusps = np.diff(np.sign(pieces[:, 0]), prepend=np.sign(pieces[0, 0])) != 0
-            found.add("".join(("|" if cusp else "") + ("C" if curvature else "S")
+            sides = {0.0: "S", pieces[0, 1]: "L", -pieces[0, 1]: "R"}
+            found.add("".join(("|" if cusp else "") + sides[curvature]
                               for cusp, (_, curvature) in zip(cusps, pieces, strict=True)))
-    assert found == {"CSC", "C|C|C", "C|CC", "CC|C", "CC|CC", "C|CC|C", "C|CSC", "CSC|C", "C|CSC|C"}
+    assert found == {"LSL", "LSR", "L|R|L", "L|RL", "LR|L", "LR|LR", "L|RL|R", "L|RSL", "L|RSR",
+                     "LSL|R", "LSR|L", "L|RSL|R"}
 
 
 @pytest.mark.parametrize("goal, length", [

@@ -52,6 +52,15 @@ def test_from_cell_to_cell_the_edge_of_the_map_is_followed(source, start):
     assert points.tolist() == [*expected.tolist(), list(source)]
 
 
+@pytest.mark.parametrize("row", [0, 6])
+@pytest.mark.parametrize("column", [0, 8])
+def test_from_a_corner_streets_are_as_long_as_their_blocks(row, column):
+    cost, source = np.ones((7, 9)), np.array([[row, column]])
+    streets = spread(cost, source, np.zeros(1), -1, -1, False, 0.0, 0.0)
+    rows, columns = np.indices(cost.shape)
+    assert (streets == np.abs(rows - row) + np.abs(columns - column)).all()
+
+
 def test_a_star_goes_straight_to_its_target():
     cost, middle = np.ones((21, 41)), np.array([[10, 5]])
     found = spread(cost, middle, np.zeros(1), 10, 35, False, 1.0, 0.0)

@@ -215,6 +215,8 @@ def test_navfn_s_costs_are_those_of_upstream():
     cells[1, 2] = 100
     costs = crossing_costs(cells, navfn.NEUTRAL, navfn.FACTOR, INSCRIBED, np.inf)
     assert costs[1, 1:3] == pytest.approx([50.0, 130.0])
+    costs[1, 1:3] = np.inf
+    assert (costs == np.inf).all()  # no way along the edge of the map
 
 
 def test_the_window_of_orientations_smooths():

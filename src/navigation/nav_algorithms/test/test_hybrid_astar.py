@@ -7,9 +7,16 @@ from defaults import of
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning import hybrid_astar
-from nav_algorithms.global_planning.drives import DRIVE, REVERSE, TURN, TURNING, cost_of
+from nav_algorithms.global_planning.drives import (
+    DRIVE,
+    REVERSE,
+    TURN,
+    TURNING,
+    change_cost,
+    cost_of,
+)
 from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
-from nav_algorithms.global_planning.shots import free_way
+from nav_algorithms.global_planning.shots import free_way, shoot
 from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.poses import wrap_angle
 
@@ -114,6 +121,18 @@ def test_round_obstacles_and_twice_the_same():
     assert (plan(costmap, start, goal, CAR) == path).all()
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_way_between_walls_that_stand_far_out_on_a_long_map(turned):
+    """Two walls across the road near its far end, one open at its left and one at its right."""
+    costmap = road(2.4)
+    costmap.cells[:46, 140:142] = costmap.cells[34:, 170:172] = LETHAL
+    start, goal = np.array([1.0, 0.0, 0.0]), np.array([9.2, 0.0, 0.0])
+    if turned:
+        costmap = Costmap(np.ascontiguousarray(costmap.cells.T), 0.05, (-2.0, 0.0))
+        start, goal = (np.array([0.0, pose[0], np.pi / 2]) for pose in (start, goal))
+    check(plan(costmap, start, goal, CAR), costmap, start, goal)
+
+
 def test_outside_and_in_walls_is_none():
     start = np.array([1.0, 0, 0])
     assert plan(road(), start, np.array([20.0, 0, 0]), CAR) is None
@@ -163,6 +182,33 @@ def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
     assert to(-5.0, 0.0, 0.0) == pytest.approx(10.0)
     assert to(0.0, 4.0, np.pi, radius=2.0, reverse=False) == pytest.approx(2 * np.pi)
     assert to(0.0, 0.0, 1.0, turns=True) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("goal, radius, reverse, turns, cost", [
+    ((5.0, 0.0, 0.0), 1.0, True, False, 5.0), ((-5.0, 0.0, 0.0), 1.0, True, False, 2 * 5.0 + 4.0),
+    ((0.0, 4.0, np.pi), 2.0, False, False, 2 * np.pi * (1 + 0.5 * 5.0) + 0.5 * 6.0),
+    ((0.0, 0.0, 1.0), 1.0, True, True, 7.0),
+    ((0.0, 2.0, np.pi / 2), 1.0, True, True, 2 + 3.5 * np.pi)])
+def test_the_last_stretch_on_free_ground_costs_what_its_cheapest_drive_does(goal, radius, reverse,
+                                                                            turns, cost):
+    """After a piece straight ahead: a cusp costs 4, and 6 for each 1/m that the wheel turns."""
+    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `drives`
+    cells, found = np.zeros((400, 400), np.uint8), np.empty((5, 3))
+    for limit, expected in ((99.0, cost), (cost - 0.1, np.inf)):
+        assert shoot(cells, 0.05, -10.0, -10.0, np.full((400, 400), 99.0), 0.2, WAFFLE, True, terms,
+                     np.zeros(3), np.array(goal), radius, reverse, turns, DRIVE, 1.0, 0.0, limit,
+                     found) == pytest.approx(expected)
+
+
+def test_cusps_and_the_wheel_cost_between_drives_alone():
+    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])
+    for before, after, cost in (
+            ((DRIVE, 1.0, 0.5), (DRIVE, 1.0, -0.5), 6.0),
+            ((DRIVE, 1.0, 0.5), (DRIVE, -1.0, 0.5), 4.0),
+            ((DRIVE, 1.0, 0.0), (TURN, 1.0, 0.0), 0.0),
+            ((TURN, -1.0, 0.0), (DRIVE, 1.0, 0.0), 0.0),
+            ((DRIVE, 0.0, 0.0), (DRIVE, 1.0, 0.5), 0.0)):
+        assert change_cost(terms, *before, *after) == cost
 
 
 @pytest.mark.parametrize("kind, amount, curvature, cost", [

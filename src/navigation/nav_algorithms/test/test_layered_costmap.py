@@ -210,6 +210,8 @@ def test_inflated_costs_go_when_their_obstacle_goes():
     static.change_map(20, 20, np.zeros((1, 1), np.uint8))
     assert layered.update(HERE) == (slice(16, 25), slice(16, 25))
     assert not layered.master.cells.any()
+    inflation.reset()
+    assert layered.update(HERE) == (slice(0, 40), slice(0, 40))
 
 
 def test_partial_updates_equal_whole_ones():

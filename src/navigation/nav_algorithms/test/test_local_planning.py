@@ -100,15 +100,16 @@ def test_turning_slows_down_before_the_end():
 
 
 def test_oscillation_is_stopped_until_the_robot_has_moved():
-    flags = Oscillation(0.1, 0.5)
-    flags.took(np.array([0.2, 0, 0]), ORIGIN, 0.1)
-    flags.took(np.array([-0.2, 0, 0]), ORIGIN, 0.1)
-    both = np.array([[0.2, 0, 0], [-0.2, 0, 0]])
-    assert flags.allowed(both).tolist() == [False, True]
-    flags.at(np.array([-0.05, 0, 0]))
-    assert flags.allowed(both).tolist() == [False, True]
-    flags.at(np.array([-0.2, 0, 0]))
-    assert flags.allowed(both).tolist() == [True, True]
+    for place in (ORIGIN, np.array([5.0, -3.0, 2.0])):
+        flags = Oscillation(0.1, 0.5)
+        flags.took(np.array([0.2, 0, 0]), place, 0.1)
+        flags.took(np.array([-0.2, 0, 0]), place, 0.1)
+        both = np.array([[0.2, 0, 0], [-0.2, 0, 0]])
+        assert flags.allowed(both).tolist() == [False, True]
+        flags.at(place - np.array([0.05, 0, 0]))
+        assert flags.allowed(both).tolist() == [False, True]
+        flags.at(place - np.array([0.2, 0, 0]))
+        assert flags.allowed(both).tolist() == [True, True]
 
 
 def test_who_only_turns_to_and_fro_must_turn_farther_each_time():
@@ -264,6 +265,8 @@ def test_dwa_keeps_to_its_limits():
     assert np.abs(dwa(acc_lim_x=0.5).samples(np.array([0.2, 0, 0]), 5.0)[:, 0] - 0.2).max() < 0.051
     wide = dwa(use_dwa=False, acc_lim_x=0.1).samples(STILL, 5.0)
     assert wide[:, 0].max() == pytest.approx(0.2)
+    turning_ = dwa().samples(np.array([0.0, 0.0, 1.5]), 5.0)
+    assert (np.abs(turning_[turning_[:, 0] == 0.0, 2]) > 0.95).sum() > 30
     near = dwa(use_dwa=False).samples(STILL, 0.3)
     assert near[:, 0].max() == pytest.approx(0.15)
 

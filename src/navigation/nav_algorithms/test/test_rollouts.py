@@ -21,13 +21,14 @@ def floor():
     return Costmap(np.zeros((40, 40), np.uint8), 0.1, (-2.0, -2.0))
 
 
-def rolled(costmap, path_grid, sample, goal_range=9.0, outline=SQUARE):
+def rolled(costmap, path_grid, sample, goal_range=9.0, outline=SQUARE,
+           forward=0.0):
     """Of one drive of a second from the origin, in 10 steps."""
     grids = np.stack([path_grid, np.zeros((40, 40)), np.zeros((40, 40))])
     return rollout.rollouts(
         costmap.cells, costmap.resolution, *costmap.origin, np.full((40, 40), 99.0), 0.2, outline,
         grids, np.array([1.0, 0.0, 0.0, 0.0]), np.array([sample], float), STILL, STILL,
-        np.full(3, 9.0), True, 1.0, 0.1, 0.1, 0.0, goal_range, 0.0, np.inf, 0.0, 0.0)[0]
+        np.full(3, 9.0), True, 1.0, 0.1, 0.1, forward, goal_range, 0.0, np.inf, 0.0, 0.0)[0]
 
 
 def test_beside_what_cannot_be_reached_a_cell_s_own_value_counts():
@@ -45,6 +46,9 @@ def test_a_drive_is_legal_or_not_and_ends_at_the_goal_where_that_is_on_the_way()
         found = rolled(floor(), along, (1.0, 0.0, 0.0), goal_range)
         assert found[rollout.LEGAL] == 1.0
         assert found[rollout.PATH] == pytest.approx(cells - rollout.ON_PATH)
+    ahead = rolled(floor(), along, (0.5, 0.0, 0.0), forward=0.3)
+    assert ahead[[rollout.PATH, rollout.ALIGNMENT]] == pytest.approx(
+        np.array([5.0, 8.0]) - rollout.ON_PATH)
     blocked = floor()
     blocked.cells[:, 30] = LETHAL
     assert rolled(blocked, along, (1.0, 0.0, 0.0))[rollout.LEGAL] == 0.0

@@ -8,7 +8,7 @@ import pytest
 from nav_algorithms import poses
 from nav_algorithms.beam_walls import ALONG, holds
 from nav_algorithms.grid import FREE, OCCUPIED
-from nav_algorithms.hit_maps import ABSENT, HITS, HitMaps, value_at
+from nav_algorithms.hit_maps import ABSENT, HITS, NEAR, HitMaps, value_at
 from nav_algorithms.map_rendering import MARGIN, MapRendering
 from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.proposals import propose
@@ -186,6 +186,17 @@ def test_patches_are_shared_until_one_owner_writes():
     assert shared in maps.tables[1] and shared not in maps.tables[0]  # the last owner's own
 
 
+def test_the_search_takes_a_hit_s_neighbours_for_half_a_wall():
+    maps = HitMaps(1, 0.1, (0, 0), (2, 2))
+    maps.add(np.zeros((1, 3)), np.array([[1.05, 0.85]]))
+    column, row = maps.in_cells(np.array([[1.05, 0.85, 0.0]]))[0, :2].astype(int)
+    around = [[value_at(maps.tables[0], maps.pool, row + r, column + c, NEAR)
+               for c in range(-2, 3)] for r in range(-2, 3)]
+    expected = np.pad(np.ones((3, 3)), 1)
+    expected[2, 2] = 2.0
+    assert around == expected.tolist()
+
+
 def test_unowned_patches_are_used_again():
     maps = HitMaps(4, 0.1, (0, 0), (20, 20))
     random = np.random.default_rng(0)
@@ -258,8 +269,11 @@ def test_a_rendering_grows_by_what_is_seen_and_a_margin():
     rendering.follow(np.array([[0.5, 0.0, 0.0]]), np.arange(1), [scan], np.zeros(2))
     grid = rendering.grid(0.25)
     assert (grid.cells[tuple(grid.cells_of([[3.55, 0.05], [0.55, 3.05]]).T)] == OCCUPIED).all()
-    # 3 m about the robot, and at most MARGIN and three cells on each side
-    assert max(grid.cells.shape) * 0.1 <= 2 * (3.0 + MARGIN + 0.3) + 0.1
+    # About the robot as far as it saw and two cells, and MARGIN to each side
+    far = np.hypot(3.05, 0.05) + 0.2 + MARGIN - 1e-6
+    for side in ((far, 0.0), (-far, 0.0), (0.0, far), (0.0, -far)):
+        assert grid.contains(grid.cells_of(np.add((0.5, 0.0), side)))
+    assert max(grid.cells.shape) * 0.1 <= 2 * far + 0.2
 
 
 def test_a_cell_is_occupied_where_more_than_the_threshold_of_the_beams_end():
