@@ -1,5 +1,7 @@
 """Paths for cars: within the turning radius, free, and with as many cusps as are needed."""
 
+from bisect import bisect_left
+
 import numpy as np
 import pytest
 from defaults import of
@@ -21,6 +23,7 @@ from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.poses import wrap_angle
 
 CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])
+BACK = (-6 * np.cos(0.5) - np.sin(0.9), np.cos(0.9) - 1 - 6 * np.sin(0.5), 0.9)  # see the test
 WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
 
 
@@ -34,6 +37,10 @@ def road(width=1.2):
     half = round(width / 2 / 0.05)
     costmap.cells[40 - half:40 + half, 2:-2] = 0
     return costmap
+
+
+def length(path):
+    return np.hypot(*np.diff(path[:, :2], axis=0).T).sum()
 
 
 def check(path, costmap, start, goal, outline=CAR, radius=0.6):
@@ -53,7 +60,7 @@ def test_straight_on_is_straight():
     start, goal = np.array([1.0, 0, 0]), np.array([9.0, 0, 0])
     path = plan(road(), start, goal, CAR)
     check(path, road(), start, goal)
-    assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(8.0, abs=0.05)
+    assert length(path) == pytest.approx(8.0, abs=0.05)
     assert [piece.direction for piece in cut(path)] == [1]
 
 
@@ -84,7 +91,7 @@ def test_a_robot_that_turns_on_the_spot():
     assert 0 in {piece.direction for piece in cut(path)}
     drives = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1e-6
     assert wrap_angle(np.diff(path[:, 2]))[drives] == pytest.approx(0.0, abs=1e-6)  # no bends
-    assert np.hypot(*np.diff(path[:, :2], axis=0).T).sum() == pytest.approx(2.0, abs=0.1)
+    assert length(path) == pytest.approx(2.0, abs=0.1)
 
 
 def test_a_robot_that_turns_on_the_spot_goes_round_a_wall_without_bends():
@@ -165,6 +172,19 @@ def test_on_a_large_map_a_near_goal_is_sought_near_by_first(monkeypatch, wall, l
     assert sizes == looked_at
 
 
+def test_without_steps_to_improve_it_the_first_path_counts():
+    generator = np.random.default_rng(1)
+    costmap = Costmap(np.zeros((120, 120), np.uint8), 0.05, (0.0, 0.0))
+    for row, column in generator.integers(20, 100, (25, 2)):
+        costmap.cells[row:row + 4, column:column + 4] = LETHAL
+    start, goal = np.array([1.0, 0.5, 0.0]), np.array([5.0, 5.3, 3.0])
+    fewest = 1 + bisect_left(range(1, 10_000), True, key=lambda steps: plan(
+        costmap, start, goal, CAR, max_expansions=steps) is not None)
+    first = plan(costmap, start, goal, CAR, max_expansions=fewest)
+    assert (plan(costmap, start, goal, CAR, improve_expansions=0) == first).all()
+    assert length(plan(costmap, start, goal, CAR)) < length(first)
+
+
 def test_the_number_of_steps_is_bounded():
     assert plan(road(), np.array([5.0, 0, 0]), np.array([3.0, 0, np.pi]), CAR,
                 max_expansions=10) is None
@@ -187,11 +207,15 @@ def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
 @pytest.mark.parametrize("goal, radius, reverse, turns, cost", [
     ((5.0, 0.0, 0.0), 1.0, True, False, 5.0), ((-5.0, 0.0, 0.0), 1.0, True, False, 2 * 5.0 + 4.0),
     ((0.0, 4.0, np.pi), 2.0, False, False, 2 * np.pi * (1 + 0.5 * 5.0) + 0.5 * 6.0),
+    (BACK, 1.0, True, False, 2 * (6.0 + (0.5 + 0.4) * (1 + 5.0)) + 4.0 + 3 * 6.0),
     ((0.0, 0.0, 1.0), 1.0, True, True, 7.0),
     ((0.0, 2.0, np.pi / 2), 1.0, True, True, 2 + 3.5 * np.pi)])
 def test_the_last_stretch_on_free_ground_costs_what_its_cheapest_drive_does(goal, radius, reverse,
                                                                             turns, cost):
-    """After a piece straight ahead: a cusp costs 4, and 6 for each 1/m that the wheel turns."""
+    """After a piece straight ahead: a cusp costs 4, and 6 for each 1/m that the wheel turns.
+
+    BACK is 0.5 m back to the right, 6 m straight back, and 0.4 m back to the right.
+    """
     terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `drives`
     cells, found = np.zeros((400, 400), np.uint8), np.empty((5, 3))
     for limit, expected in ((99.0, cost), (cost - 0.1, np.inf)):
