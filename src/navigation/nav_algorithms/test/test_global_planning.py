@@ -219,6 +219,13 @@ def test_navfn_s_costs_are_those_of_upstream():
     assert (costs == np.inf).all()  # no way along the edge of the map
 
 
+def test_navfn_is_dijkstra_s_and_takes_no_heuristic(monkeypatch):
+    asked = []
+    monkeypatch.setattr(navfn, "spread", lambda *words: asked.append(words) or spread(*words))
+    assert navfn_plan(empty(), START, GOAL) is not None
+    assert asked[0][5:7] == (True, 0.0)  # quadratic, and no heuristic
+
+
 def test_the_window_of_orientations_smooths():
     path = np.column_stack((np.arange(20.0), np.arange(20) % 2, np.zeros(20)))
     rough, smooth = orient(path, 1, 1), orient(path, 1, 5)

@@ -214,8 +214,9 @@ def test_inflated_costs_go_when_their_obstacle_goes():
     assert layered.update(HERE) == (slice(0, 40), slice(0, 40))
 
 
-def test_partial_updates_equal_whole_ones():
-    inflation = InflationLayer("inflation", 0.35, 3.0)
+@pytest.mark.parametrize("radius", [0.1, 0.35])
+def test_partial_updates_equal_whole_ones(radius):
+    inflation = InflationLayer("inflation", radius, 3.0)
     layered, static = with_map(grid((30, 30), wall=[(3, 3)]), inflation)
     layered.set_footprint(SQUARE)
     generator = np.random.default_rng(2)

@@ -60,3 +60,9 @@ def test_the_estimate_is_of_the_heaviest_cluster_and_unsure_of_all():
 def test_converged_means_all_within_half_a_metre():
     assert have_converged(np.array([[0, 0, 0], [0.9, 0, 3.0]], float))
     assert not have_converged(np.array([[0, 0, 0], [0, 1.1, 0]], float))
+
+
+def test_particles_that_look_evenly_all_round_have_a_heading_that_nobody_knows():
+    particles = np.array([[0.0, 0.0, yaw] for yaw in (0.0, np.pi, -np.pi)])
+    covariance = estimate(particles, np.array([0.5, 0.25, 0.25])).covariance
+    assert np.pi**2 / 3 < covariance[2, 2] < np.inf  # more than evenly round

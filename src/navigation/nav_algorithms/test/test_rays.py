@@ -56,7 +56,12 @@ def test_cells_between_two_are_counted_once_without_the_last(begin, end):
     assert counts[begin] == 1 and counts[end] == 0
 
 
-def test_counting_passes_over_what_lies_outside():
+@pytest.mark.parametrize("line", [0, 1, 2])
+def test_counting_passes_over_what_lies_outside(line):
     counts = np.zeros((3, 3), np.int32)
-    rays.count_between(counts, 1, -2, 1, 9, 1)
-    assert counts.tolist() == [[0, 0, 0], [1, 1, 1], [0, 0, 0]]
+    rays.count_between(counts, line, -2, line, 9, 1)
+    rays.count_between(counts, 9, line, -2, line, 2)
+    expected = np.zeros((3, 3))
+    expected[line] += 1
+    expected[:, line] += 2
+    assert (counts == expected).all()

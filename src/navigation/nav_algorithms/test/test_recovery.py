@@ -64,6 +64,13 @@ def test_with_as_much_room_at_either_end_the_way_is_back():
     assert escape(costmap, WAFFLE, np.array([0.02, 0, 0])).vx == -0.1
 
 
+def test_a_thin_wall_on_the_way_is_not_driven_over():
+    costmap = free()
+    costmap.cells[:, 33:] = LETHAL
+    costmap.cells[:, 24] = LETHAL  # behind the robot, and before it 0.4 m farther back
+    assert escape(costmap, WAFFLE, ORIGIN) is None
+
+
 def test_a_car_leaves_in_a_curve():
     costmap = free()
     costmap.cells[:26] = LETHAL

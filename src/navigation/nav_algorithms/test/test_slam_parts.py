@@ -150,6 +150,22 @@ def test_a_scan_that_fits_too_little_leaves_the_odometry_s_draw():
         assert (matched == drawn).all() and (not factors.any()) == stays
 
 
+def test_a_heading_alone_is_refined_step_by_step():
+    """In the middle of a square room nothing moves the robot aside."""
+    along = np.linspace(-1.975, 1.975, 80)
+    wall = np.column_stack((np.full(80, 2.0125), along))
+    square = np.vstack([wall @ turn for turn in (np.eye(2), [[0, 1], [-1, 0]], -np.eye(2),
+                                                 [[0, -1], [1, 0]])])
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    for _ in range(3):
+        maps.add(np.zeros((1, 3)), square)
+    middle = maps.in_cells(np.zeros((1, 3)))[0]
+    pose = middle + np.array([0.0, 0.0, 0.04])
+    refine(maps.tables[0], maps.pool, beams_of(square), pose.copy(), LOOSE, pose, 30, 1, WIDTHS,
+           np.empty((3, 3)))
+    assert pose == pytest.approx(middle, abs=1e-3)
+
+
 def test_where_nothing_is_known_the_odometry_s_pose_is_the_best():
     maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
     prior = maps.in_cells(np.array([[0.2, 0.1, 0.3]]))[0]
@@ -166,6 +182,17 @@ def test_a_beam_that_ends_at_no_wall_is_a_miss_wherever_that_is(place):
     found = evaluate(maps.tables[0], maps.pool, beams, np.array([*place, 0.0]), 1, 1, WIDTHS,
                      np.empty((3, 3)), np.empty(3))
     assert found == (-MISS, 0.0)
+
+
+def test_a_beam_counts_by_how_far_from_the_wall_it_ends():
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    for _ in range(3):
+        maps.add(np.zeros((1, 3)), np.array([[1.0, 1.0]]))
+    pose = maps.in_cells(np.array([[1.0, 1.0, 0.0]]))[0] + np.array([0.6, -0.3, 0.0])
+    for across, square in (((1.0, 0.0, 0.0), 0.36), ((1.0, 0.0, 1.0), 0.45)):
+        found = evaluate(maps.tables[0], maps.pool, np.array([[0.0, 0.0, *across]]), pose, 1, 1,
+                         WIDTHS, np.empty((3, 3)), np.empty(3))
+        assert found == pytest.approx((-0.5 * square / 1.5**2, np.exp(-square / 20.0)))
 
 
 def test_two_deviations_off_the_odometry_cost_2():
