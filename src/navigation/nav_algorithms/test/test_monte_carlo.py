@@ -8,7 +8,7 @@ from defaults import of
 from house import ANGLES, LASER, RANGE_MAX, Robot, flat, ring, robust, room
 
 from nav_algorithms import poses
-from nav_algorithms.monte_carlo import Localisation, LocalisationSettings
+from nav_algorithms.monte_carlo import Localisation, LocalisationSettings, _at
 from nav_algorithms.sensor_models import FIELD, FIELD_PROB, Scan, SensorSettings
 
 SETTINGS = of(LocalisationSettings,
@@ -128,6 +128,12 @@ def test_weights_are_as_the_scan_fits_and_add_up_to_1():
     found.add(robot.odometry, robot.scan())
     assert np.ptp(found.weights[:1000]) == 0.0 and found.weights[0] > 1.2 / 2000
     assert found.weights.sum() == pytest.approx(1.0)
+
+
+def test_each_particle_is_drawn_by_its_share_of_the_weights():
+    sums = np.cumsum([1.0, 0.0, 1.0, 2.0])
+    assert _at(sums, np.array([0.0, 0.2, 0.3, 0.49, 0.51, 0.9, 1.0])).tolist() == [
+        0, 0, 2, 2, 3, 3, 3]
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_gives_others():

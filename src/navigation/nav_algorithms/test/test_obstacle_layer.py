@@ -8,7 +8,7 @@ from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import FREE, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.obstacles import Observation, ObstacleLayer
-from nav_algorithms.costmap.tracing import draw_lines, fill_polygon
+from nav_algorithms.costmap.tracing import clear_voxels, draw_lines, fill_polygon
 from nav_algorithms.costmap.voxels import VoxelLayer, VoxelSettings
 
 HERE = np.array([2.05, 2.05, 0.0])
@@ -125,6 +125,17 @@ def test_obstacles_along_the_edges_are_cleared_too(layer, edge, axis):
     cell = tuple(layered.master.cells_of(at(3.05)[:2]))
     assert update(layered, [wall])[cell] == LETHAL
     assert update(layered, [], [behind])[cell] == FREE
+
+
+def test_rays_among_voxels_change_nothing_that_lies_beyond_the_grid():
+    marked, unseen = np.full((2, 12, 4), 3, np.uint16)  # two levels, and the grid in the midst
+    cells = np.full((12, 4), LETHAL, np.uint8)
+    middle = np.array([2.0, 3.0, 0.5])  # column, row, level
+    ends = middle + np.array([[-9, 0, 0], [9, 0, 0], [0, -7, 0], [0, 7, 0], [0, 0, 9], [0, 0, -9]])
+    clear_voxels(marked[3:9], unseen[3:9], cells[3:9], middle, ends, 2, 0, 0)
+    assert (marked[:3] == 3).all() and (marked[9:] == 3).all() and (cells[[2, 9]] == LETHAL).all()
+    assert marked[6].tolist() == [2, 2, 0, 2] and marked[3:9, 2].tolist() == [2, 2, 2, 0, 2, 2]
+    assert cells[6, 2] == FREE
 
 
 def test_what_is_too_high_is_no_obstacle():

@@ -71,12 +71,13 @@ def test_a_thin_wall_on_the_way_is_not_driven_over():
     assert escape(costmap, WAFFLE, ORIGIN) is None
 
 
-def test_a_car_leaves_in_a_curve():
+@pytest.mark.parametrize("side, wall", [(1.0, slice(None, 26)), (-1.0, slice(-26, None))])
+def test_a_car_leaves_in_a_curve_away_from_the_wall(side, wall):
     costmap = free()
-    costmap.cells[:26] = LETHAL
-    command = escape(costmap, WAFFLE, ORIGIN, minimum_turning_radius=0.5)
-    assert command.omega != 0.0
-    assert command.trajectory[-1, 1] > 0.05
+    costmap.cells[wall] = LETHAL
+    command = escape(costmap, WAFFLE, ORIGIN, minimum_turning_radius=0.4)
+    assert command.omega == pytest.approx(-side * 0.1 / 0.4)  # backwards
+    assert command.trajectory[-1, 1] == pytest.approx(side * 0.4 * (1.0 - np.cos(1.0)))
 
 
 def test_half_the_way_is_better_than_none():
