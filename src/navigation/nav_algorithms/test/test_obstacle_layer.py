@@ -128,14 +128,16 @@ def test_obstacles_along_the_edges_are_cleared_too(layer, edge, axis):
 
 
 def test_rays_among_voxels_change_nothing_that_lies_beyond_the_grid():
-    marked, unseen = np.full((2, 12, 4), 3, np.uint16)  # two levels, and the grid in the midst
+    marked, unseen = np.full((2, 12, 4), 7, np.uint16)  # two levels, and the grid in the midst
     cells = np.full((12, 4), LETHAL, np.uint8)
     middle = np.array([2.0, 3.0, 0.5])  # column, row, level
     ends = middle + np.array([[-9, 0, 0], [9, 0, 0], [0, -7, 0], [0, 7, 0], [0, 0, 9], [0, 0, -9]])
-    clear_voxels(marked[3:9], unseen[3:9], cells[3:9], middle, ends, 2, 0, 0)
-    assert (marked[:3] == 3).all() and (marked[9:] == 3).all() and (cells[[2, 9]] == LETHAL).all()
-    assert marked[6].tolist() == [2, 2, 0, 2] and marked[3:9, 2].tolist() == [2, 2, 2, 0, 2, 2]
-    assert cells[6, 2] == FREE
+    clear_voxels(marked[3:9], unseen[3:9], cells[3:9], middle, ends, 2, 1, 1)
+    expected = np.full((12, 4), 7)
+    expected[6, :] = expected[3:9, 2] = 6  # the lower of the two is gone
+    expected[6, 2] = 4
+    assert (marked == expected).all() and (unseen == expected).all()
+    assert np.argwhere(cells == FREE).tolist() == [[6, 2]] and (cells == LETHAL).sum() == 47
 
 
 def test_what_is_too_high_is_no_obstacle():
