@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from nav_algorithms.global_planning.descent import descend
+from nav_algorithms.global_planning.heap import pop, push
 from nav_algorithms.global_planning.potential import spread, spread_everywhere
 
 SIZE = 10
@@ -59,6 +60,19 @@ def test_from_a_corner_streets_are_as_long_as_their_blocks(row, column):
     streets = spread(cost, source, np.zeros(1), -1, -1, False, 0.0, 0.0)
     rows, columns = np.indices(cost.shape)
     assert (streets == np.abs(rows - row) + np.abs(columns - column)).all()
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_heap_gives_the_least_key_first_and_of_equal_ones_the_first_item(seed):
+    given = np.random.default_rng(seed).integers(0, 8, 40)  # many are equal
+    keys, items = np.full(40, -1.0), np.full(40, -1)
+    for count, key in enumerate(given):
+        assert push(keys, items, count, float(key), count) == count + 1
+    found = []
+    for count in range(40, 0, -1):
+        found.append((int(keys[0]), int(items[0])))
+        assert pop(keys, items, count) == count - 1
+    assert found == sorted((int(key), item) for item, key in enumerate(given))
 
 
 def test_a_star_goes_straight_to_its_target():
