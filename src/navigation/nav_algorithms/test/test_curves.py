@@ -93,3 +93,14 @@ def test_dubins_only_goes_forwards():
     for goal in np.random.default_rng(2).uniform(-4, 4, (100, 3)):
         assert (words_to(curves.dubins, goal)[:, :, 0] >= 0).all()
         assert shortest(curves.reeds_shepp, goal) <= shortest(curves.dubins, goal) + 1e-9
+
+
+@pytest.mark.parametrize("way, three_arcs", [(1.0, True), (3.9, True), (4.1, False)])
+def test_dubins_six_words_and_those_of_three_arcs_as_long_as_two_circles_reach(way, three_arcs):
+    letters = {1.0: "L", 0.0: "S", -1.0: "R"}
+    found = {"".join(letters[curvature] for curvature in word[:3, 1])
+             for word in words_to(curves.dubins, (way, 0.0, 0.0))}
+    assert found == {"LSL", "RSR", "LSR", "RSL"} | ({"LRL", "RLR"} if three_arcs else set())
+    with_cusps = [word for word in words_to(curves.reeds_shepp, (way, 0.0, 0.0))
+                  if np.sign(word[:, 0] * abs(word[:, 1])).tolist() == [1, -1, 1, 0, 0]]
+    assert bool(with_cusps) == three_arcs
