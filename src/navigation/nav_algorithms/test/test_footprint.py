@@ -97,3 +97,13 @@ def test_a_robot_without_outline_is_its_centre(cost, expected):
     costmap = empty()
     costmap.cells[tuple(costmap.cells_of((0.0, 0.0)))] = cost
     assert footprint.costs(costmap, np.zeros((0, 2)), (0.01, 0.01, 1.0)).tolist() == [expected]
+
+
+@pytest.mark.parametrize("shape", [(40, 20), (20, 40)])
+def test_a_robot_without_an_outline_is_on_the_costmap_as_long_as_its_centre_is(shape):
+    costmap = Costmap(np.zeros(shape, np.uint8), 0.1, (0.0, 0.0))
+    rows, columns = shape
+    x, y = 0.1 * columns - 0.05, 0.1 * rows - 0.05  # of the last cell
+    poses = np.array([[0.05, y, 0], [x, 0.05, 0], [x + 0.1, 0.05, 0], [0.05, y + 0.1, 0],
+                      [-0.05, 0.05, 0], [0.05, -0.05, 0]])
+    assert footprint.costs(costmap, np.zeros((0, 2)), poses).tolist() == [0, 0] + [-3] * 4

@@ -117,6 +117,8 @@ def test_a_map_is_copied_and_so_are_its_changes():
     assert (layered.master.cells[:3, :4] == LETHAL).sum() == 6
     with pytest.raises(ValueError, match="outside the map"):
         static.change_map(3, 5, np.zeros((1, 2), np.uint8))
+    with pytest.raises(ValueError, match="outside the map"):
+        static.change_map(4, 0, np.zeros((2, 1), np.uint8))
 
 
 def test_a_map_in_another_frame_is_turned_into_a_rolling_window():

@@ -187,6 +187,24 @@ def test_a_beam_counts_by_how_far_from_the_wall_it_ends():
         assert found == pytest.approx((-0.5 * square / 1.5**2, np.exp(-square / 20.0)))
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.5, -2.0])
+@pytest.mark.parametrize("across", [0.0, 0.4, -1.2])
+def test_only_how_far_off_across_its_wall_a_beam_ends_counts(yaw, across):
+    """The way across the wall as the robot sees it turns with the robot."""
+    maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
+    for _ in range(3):
+        maps.add(np.zeros((1, 3)), np.array([[1.0, 1.0]]))
+    off = np.array([0.6, -0.3])
+    pose = maps.in_cells(np.array([[1.0, 1.0, yaw]]))[0] + np.array([*off, 0.0])
+    x, y = np.cos(across), np.sin(across)
+    found = evaluate(maps.tables[0], maps.pool, np.array([[0.0, 0.0, x * x, x * y, y * y]]), pose,
+                     1, 1, WIDTHS, hessian := np.empty((3, 3)), np.empty(3))
+    seen = np.array([np.cos(yaw + across), np.sin(yaw + across)])
+    assert found[0] == pytest.approx(-0.5 * (seen @ off)**2 / 1.5**2)
+    weight = 1.0 - (seen @ off)**2 / 1.5**2  # less the farther off it is within the kernel
+    assert hessian[:2, :2] == pytest.approx(weight * np.outer(seen, seen))
+
+
 def test_two_deviations_off_the_odometry_cost_2():
     assert prior_cost(np.array([1.0, 0.2, 0.0]), np.array([1.0, 0.0, 0.0]),
                       np.diag([1.0, 1 / 0.1**2, 1.0])) == pytest.approx(2.0)
