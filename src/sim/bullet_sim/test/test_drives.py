@@ -132,6 +132,7 @@ def test_what_is_deleted_is_let_go_before(world):
     first, second = world.spawn(cube("a")), world.spawn(cube("b"), Pose((1.0, 0, 0)))
     weld = second.links["l"].attach(first.links["l"])
     world.delete("a")
+    assert not second.bodies[0].attached
     world.step(10)
     weld.release()
     second.links["l"].attach(world.spawn(cube("s", static=True)).links["l"])

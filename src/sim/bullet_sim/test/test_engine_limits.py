@@ -3,6 +3,7 @@
 import itertools
 import logging
 import math
+import os
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_model
 from bullet_sim.physics.collision_filters import CollisionFilters
 from bullet_sim.physics.parameter_bounds import KEPT, MOST_POSITIONS
-from bullet_sim.physics.quiet import EngineError, pybullet
+from bullet_sim.physics.quiet import STDERR, STDOUT, EngineError, pybullet, quiet
 from bullet_sim.pose import Pose, quaternion_from_rpy, rotation_matrix
 from bullet_sim.world import World
 
@@ -150,6 +151,15 @@ def test_flat_plates_turn_however_they_lie():
     for link, normal in links.items():
         assert link.twist.angular == pytest.approx(world.timestep * normal, abs=1e-6)
     world.close()
+
+
+def test_what_the_engine_prints_is_not_seen_and_what_follows_is(capfd):
+    with quiet(STDOUT, STDERR):
+        for stream in (1, 2):
+            os.write(stream, b"b3Printf\n")
+    for stream in (1, 2):
+        os.write(stream, b"after\n")
+    assert capfd.readouterr() == ("after\n", "after\n")
 
 
 def test_a_text_that_the_engine_refuses_is_our_own_error(world, monkeypatch):

@@ -1,32 +1,78 @@
 """When a group that touches is disabled, with poses that are given instead of an engine's."""
 
+import math
 from types import SimpleNamespace
+
+import pytest
 
 from bullet_sim.physics.auto_disable import SAMPLE_PERIOD
 from bullet_sim.physics.island_sleeping import IslandSleeping
 from bullet_sim.physics.quiet import pybullet
 
 
-def test_it_is_the_mean_over_the_last_second_that_counts():
-    """0.15 m/s is too fast; below 0.1 m/s is the mean after a third of a second without motion."""
-    place, asleep = 0.0, []
+class Pair:
+    """Two bodies that touch, always at the same place (m) along x and turned (rad) about z."""
 
-    def run(function, *args, activationState=None, **_):
+    def __init__(self):
+        self.place = self.turn = 0.0
+        self.asleep: list[int] = []
+        self.pushes: list[tuple] = []
+        self._sleeping = IslandSleeping(self._run, [
+            SimpleNamespace(number=number, auto_disables=True,
+                            tree=SimpleNamespace(fixed_base=False)) for number in (1, 2)])
+
+    def _run(self, function, *args, activationState=None, **_):
         if function is pybullet.getBasePositionAndOrientation:
-            return (place, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+            half = self.turn / 2
+            return (self.place, 0.0, 0.0), (0.0, 0.0, math.sin(half), math.cos(half))
+        if function is pybullet.resetBaseVelocity:
+            self.pushes.append(args)
         if activationState == pybullet.ACTIVATION_STATE_SLEEP:
-            asleep.append(args[0])
+            self.asleep.append(args[0])
         return [(0, 1, 2)] if function is pybullet.getContactPoints else None
 
-    bodies = [SimpleNamespace(number=number, auto_disables=True,
-                              tree=SimpleNamespace(fixed_base=False)) for number in (1, 2)]
-    sleeping = IslandSleeping(run, bodies)
-    for _ in range(60):
-        place += 0.15 * SAMPLE_PERIOD
-        sleeping.after_step(True)
-    assert not asleep
-    for _ in range(int(1 / 3 / SAMPLE_PERIOD)):
-        sleeping.after_step(True)
-    assert not asleep
-    sleeping.after_step(True)
-    assert sorted(asleep) == [1, 2]
+    def change(self, function, *args) -> None:
+        """As a client does: what sleeps is enabled first."""
+        self._sleeping.changed(function, args)
+        self._run(function, *args)
+
+    def look(self, times: int, speed: float = 0.0, rate: float = 0.0) -> None:
+        """So often, after they have moved at m/s and rad/s for a sample's time each."""
+        for _ in range(times):
+            self.place += speed * SAMPLE_PERIOD
+            self.turn += rate * SAMPLE_PERIOD
+            self._sleeping.after_step(True)
+
+
+@pytest.mark.parametrize("fast", [{"speed": 0.15}, {"rate": 0.15}])
+def test_it_is_the_mean_over_the_last_second_that_counts(fast):
+    """0.15 is too fast; below 0.1 m/s or rad/s is the mean after a third of a second without motion.
+    """
+    pair = Pair()
+    pair.look(60, **fast)
+    assert not pair.asleep
+    pair.look(int(1 / 3 / SAMPLE_PERIOD))
+    assert not pair.asleep
+    pair.look(1)
+    assert sorted(pair.asleep) == [1, 2]
+
+
+def test_what_stands_still_from_the_first_look_is_disabled_a_second_later():
+    pair = Pair()
+    pair.look(1)
+    pair.look(round(1.0 / SAMPLE_PERIOD) - 1)
+    assert not pair.asleep
+    pair.look(1)
+    assert sorted(pair.asleep) == [1, 2]
+
+
+def test_a_push_of_what_wakes_counts_after_another_is_removed_and_goes_with_its_own_body():
+    """The engine's next step leaves out what wakes: a push is given again after it."""
+    pair = Pair()
+    pair.look(round(1.0 / SAMPLE_PERIOD) + 1)
+    for number in (1, 2):
+        pair.change(pybullet.resetBaseVelocity, number, (0.5, 0.0, 0.0))
+    pair.change(pybullet.removeBody, 1)
+    pair.pushes.clear()
+    pair.look(1)
+    assert pair.pushes == [(2, (0.5, 0.0, 0.0))]

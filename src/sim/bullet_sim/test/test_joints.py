@@ -259,8 +259,8 @@ def test_a_screw_travels_with_its_turn(world):
     assert list(model.joints) == ["j"]
 
 
-def gearbox(more: str) -> str:
-    return (link("frame") + link("sun") + link("wheel", "1 0 0 0 0 0")
+def gearbox(more: str, roll: float = 0.0) -> str:
+    return (link("frame") + link("sun") + link("wheel", f"1 0 0 {roll} 0 0")
             + joint("w", "fixed", "world", "frame")
             + joint("a", "continuous", "frame", "sun", axis("0 0 1"))
             + joint("b", "continuous", "frame", "wheel", axis("0 0 -1"))
@@ -268,16 +268,17 @@ def gearbox(more: str) -> str:
                     + more))
 
 
-def test_a_gearbox_couples_two_joints_by_its_ratio(world):
+@pytest.mark.parametrize("roll, way", [(0.0, 1), (math.pi, -1)])
+def test_a_gearbox_couples_two_joints_by_its_ratio(world, roll, way):
     # conforms: sdf joint@type/gearbox, sdf joint/gearbox_ratio, sdf joint/gearbox_reference_body
     model = world.spawn(read(gearbox("<gearbox_ratio>3</gearbox_ratio>"
-                                     "<gearbox_reference_body>frame</gearbox_reference_body>")))
+                                     "<gearbox_reference_body>frame</gearbox_reference_body>", roll)))
     for _ in range(500):
         model.joint("a").drive_effort(0.01)
         world.step()
-    # theta_1 = -ratio theta_2 about z; joint b counts the other way round.
+    # theta_1 = -ratio theta_2 about z; joint b counts the other way round, unless its wheel does.
     assert model.joint("a").position > 0.1
-    assert model.joint("b").position == pytest.approx(model.joint("a").position / 3, rel=1e-3)
+    assert model.joint("b").position == pytest.approx(way * model.joint("a").position / 3, rel=1e-3)
     # The sun feels the wheel's inertia by the ratio squared.
     assert model.joint("a").velocity == pytest.approx(0.01 * 0.5 / (1e-2 * (1 + 1 / 9)), rel=1e-2)
 

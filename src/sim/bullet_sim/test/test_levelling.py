@@ -133,9 +133,25 @@ def test_balls_that_turn_any_way_stay_centred_and_get_smaller(mu):
         assert ball.pose == Pose()
 
 
-def test_boxes_that_turn_any_way_come_up_as_they_are():
-    pair = [caster(name, x, 3e-4, Box((0.04, 0.04, 0.04))) for name, x in (("a", 0.1), ("b", -0.1))]
-    assert set(raised(tree_of(*pair, caster_type="ball"))) == {"a", "b"}
+def off_centre(link: LinkDescription, by: float) -> LinkDescription:
+    """Its shape stays where it is; its frame and joint are so much higher (m)."""
+    (shape,) = link.collisions
+    return replace(link, pose=link.pose * Pose((0.0, 0.0, by)),
+                   collisions=(replace(shape, pose=Pose((0.0, 0.0, -by))),))
+
+
+@pytest.mark.parametrize("shape, by", [(Box((0.04, 0.04, 0.04)), 0.0), (BALL, 0.01)])
+def test_what_hangs_on_a_ball_joint_and_does_not_roll_comes_up_as_it_is(shape, by):
+    pair = [off_centre(caster(name, x, 3e-4, shape), by) for name, x in (("a", 0.1), ("b", -0.1))]
+    assert raised(tree_of(*pair, caster_type="ball")) == {
+        name: pytest.approx(3e-4 + CLEARANCE) for name in "ab"}
+
+
+@pytest.mark.parametrize("shape, by", [(Box((0.04, 0.04, 0.04)), 0.0), (BALL, 0.01)])
+def test_what_an_axle_moves_up_and_down_as_it_turns_carries_nothing(shape, by):
+    pair = [off_centre(caster(name, x, 3e-4, shape, mu=0.0), by)
+            for name, x in (("a", 0.1), ("b", -0.1))]
+    assert raised(tree_of(*pair, caster_type="continuous")) == {}
 
 
 def swivelling(trail: float):
@@ -187,6 +203,10 @@ def test_a_mesh_stands_on_its_lowest_corners(tmp_path, feet, up):
 def test_a_mesh_that_cannot_be_read_carries_nothing():
     pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4, Mesh("/none.stl"))]
     assert raised(tree_of(*pair)) == {}
+    front = pair[0]
+    lost = replace(front.collisions[0], name="lost", geometry=Mesh("/none.stl"))
+    both = replace(front, collisions=(lost, *front.collisions))  # what it has besides does
+    assert set(raised(tree_of(both, caster("back", -0.1, 3e-4)))) == {"front", "back"}
 
 
 def test_a_box_from_front_to_back_comes_up():
@@ -194,10 +214,11 @@ def test_a_box_from_front_to_back_comes_up():
     assert raised(tree_of(caster("plate", 0.1, 3e-4, Box((0.1, 0.05, 0.04))))) == {}
 
 
-def test_slippery_meshes_on_axles_get_smaller(tmp_path):
+@pytest.mark.parametrize("kind", ["continuous", "ball"])
+def test_slippery_meshes_that_roll_get_smaller(tmp_path, kind):
     pair = [caster(name, x, 3e-4, plate(tmp_path, 0.0), mu=0.0)
             for name, x in (("front", 0.1), ("back", -0.1))]
-    after = levelled(tree_of(*pair, caster_type="continuous"), LAYER).links[3].collisions[0]
+    after = levelled(tree_of(*pair, caster_type=kind), LAYER).links[3].collisions[0]
     part = 1.0 - (3e-4 + CLEARANCE) / 0.02
     assert after.geometry.scale == pytest.approx([part] * 3, rel=1e-3)
 
@@ -210,7 +231,8 @@ def test_a_wheel_has_a_tread_in_its_middle():
 
 
 @pytest.mark.parametrize("tree", [
-    tree_of(axis=SWIVEL), tree_of(axis=(0.0, 1.0, 0.1)), tree_of(wheel_type="fixed")])
+    tree_of(axis=SWIVEL), tree_of(axis=(1.0, 0.0, 0.0)), tree_of(axis=(0.0, 1.0, 0.1)),
+    tree_of(wheel_type="fixed")])
 def test_other_cylinders_are_left_alone(tree):
     for link in tree.links:
         assert list(engine_shapes(link)) == link.collisions

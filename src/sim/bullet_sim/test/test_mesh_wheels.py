@@ -115,6 +115,13 @@ def test_the_tread_is_on_the_rim_wherever_the_mesh_has_its_origin(export):
     assert middle == pytest.approx((0, 0, 0), abs=1e-6)
 
 
+def test_a_wheel_beside_its_links_origin_gets_smaller_about_its_own_middle(tyre):
+    beside = LAID * Pose((0.0, 0.0, 0.3))
+    tread, shoulders = engine_shapes(link(tyre(32), beside))
+    assert tread.pose.position == pytest.approx(beside.position)
+    assert shoulders.pose.position == pytest.approx(beside.position)
+
+
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, -2, 0)])
 def test_a_tread_lies_along_any_axis(export, axis):
     disc = trimesh.creation.cylinder(RADIUS, WIDTH, sections=32)
@@ -126,7 +133,9 @@ def test_a_tread_lies_along_any_axis(export, axis):
 
 
 def test_what_is_not_round_about_the_axis_is_left_alone(export, tyre):
+    wire = trimesh.Trimesh([(0, 0, 0), (0, 0, 0.1), (0, 0, 0.2)], [(0, 1, 2)], process=False)
     cases = [
+        link(export("wire", wire), axis=(0.0, 0.0, 1.0)),  # no breadth
         link(tyre(8), LAID),  # a corner and a side differ by 8 %
         link(tyre(32), LAID, axis=(1.0, 0.0, 0.0)),
         link(tyre(32), LAID * Pose((0.01, 0.0, 0.0))),
