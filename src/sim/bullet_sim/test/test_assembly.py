@@ -87,6 +87,17 @@ def test_a_fixed_joint_is_none_that_can_move(world, caplog):
     assert not caplog.records
 
 
+def test_a_static_model_is_in_as_few_pieces_of_128_parts_as_can_be():
+    """A link of one surface, and 200 of two: what belongs to a link stays in one piece."""
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    smooth = f'<collision name="smooth">{box}</collision>'
+    rough = (f'<collision name="rough">{box}<surface><friction><ode><mu>5</mu></ode></friction>'
+             "</surface></collision>")
+    trees = assemble(read(f'<static>true</static><link name="one">{smooth}</link>' + "".join(
+        f'<link name="{number}">{smooth}{rough}</link>' for number in range(200))))
+    assert [len(tree.links) for tree in trees] == [127, 128, 128, 18]
+
+
 def test_velocity_decay_reaches_the_engines_links():
     (tree,) = assemble(read(f"""<link name="a">{ROD}<velocity_decay><linear>0.5</linear>
         <angular>0.25</angular></velocity_decay></link>"""))

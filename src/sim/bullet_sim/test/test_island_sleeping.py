@@ -46,8 +46,7 @@ class Pair:
 
 @pytest.mark.parametrize("fast", [{"speed": 0.15}, {"rate": 0.15}])
 def test_it_is_the_mean_over_the_last_second_that_counts(fast):
-    """0.15 is too fast; below 0.1 m/s or rad/s is the mean after a third of a second without motion.
-    """
+    """0.15 m/s or rad/s is too fast; the mean is below 0.1 after a third of a second of rest."""
     pair = Pair()
     pair.look(60, **fast)
     assert not pair.asleep

@@ -272,7 +272,8 @@ def gearbox(more: str, roll: float = 0.0) -> str:
 def test_a_gearbox_couples_two_joints_by_its_ratio(world, roll, way):
     # conforms: sdf joint@type/gearbox, sdf joint/gearbox_ratio, sdf joint/gearbox_reference_body
     model = world.spawn(read(gearbox("<gearbox_ratio>3</gearbox_ratio>"
-                                     "<gearbox_reference_body>frame</gearbox_reference_body>", roll)))
+                                     "<gearbox_reference_body>frame</gearbox_reference_body>",
+                                     roll)))
     for _ in range(500):
         model.joint("a").drive_effort(0.01)
         world.step()
