@@ -218,7 +218,8 @@ def test_ackermann_open_loop_turns_the_angle_into_a_rate_of_yaw():
 GEOMETRY = FourWheelGeometry(track=0.6, wheelbase=0.8, wheel_radius=0.1)
 
 
-@pytest.mark.parametrize("front, rear", [(0.4, -0.4), (0.3, 0.0), (0.2, 0.2), (-0.5, 0.1)])
+@pytest.mark.parametrize("front, rear", [
+    (0.4, -0.4), (0.3, 0.0), (0.2, 0.2), (-0.5, 0.1), (1.0, -1.0)])
 @pytest.mark.parametrize("forward", [1.0, -0.7])
 def test_no_wheel_scrubs(front, rear, forward):
     """Each wheel rolls as the rigid body moves at its place."""

@@ -40,6 +40,7 @@ class Jaw:
 
 def test_a_goal_is_reached():
     jaw = Jaw()
+    assert jaw.gripper.state().effort == 0.0  # nothing has been done yet
     jaw.gripper.pursue(0.0, 0.05, 10.0)
     assert jaw.run(0.45) is None
     outcome = jaw.run(0.1)

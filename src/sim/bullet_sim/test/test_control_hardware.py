@@ -116,6 +116,19 @@ def test_a_continuous_joint_counts_turns_and_turns_the_short_way():
     assert bench.hardware.joints["b"].position == pytest.approx(20.0, rel=0.01)
 
 
+def test_until_a_command_comes_positions_are_held():
+    bench = Bench(a="position", b="position")
+    bench.model.joint("a").reset(0.4)
+    hardware = RobotHardware(
+        bench.model, [Transmission(name, name, "position") for name in "ab"], {}, {})
+    for _ in range(100):
+        hardware.read()
+        hardware.write(DT)
+        bench.world.step()
+    positions = [bench.model.joint(name).position for name in "ab"]
+    assert positions == pytest.approx([0.4, 0.0], abs=1e-6)
+
+
 def test_an_emergency_stop_holds_positions_and_lets_go_of_the_rest():
     bench = Bench(kind="continuous", a="effort", b="position", c="velocity")
     law = Forward([bench.handle(name) for name in "abc"])

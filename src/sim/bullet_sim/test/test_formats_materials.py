@@ -61,6 +61,23 @@ def test_a_statement_without_a_value_sets_nothing():
     assert to_material("A", script, lambda file: file) == Material(diffuse=(1, 0, 0, 1))
 
 
+@pytest.mark.parametrize("picture", ["wall.png", "pass", "technique"])
+def test_a_picture_may_have_any_name(picture):
+    script = parse_script(TEXTURED.format("A", picture))
+    assert to_material("A", script, lambda file: f"/t/{file}").texture == f"/t/{picture}"
+
+
+@pytest.mark.parametrize("alias, texture", [
+    ("texture_alias wall", "brick.png"), ("texture_alias wall painted", "brick.png"),
+    ("texture_alias roof", "wall.png"), ("texture_alias roof wall", "wall.png"),
+    ("", "brick.png")])
+def test_a_material_that_inherits_may_replace_a_picture_by_its_alias(alias, texture):
+    script = parse_script(TEXTURED.format("A", f"wall.png\n{alias}\n")
+                          + "\nmaterial B : A { set_texture_alias wall brick.png }")
+    assert to_material("A", script, lambda file: file).texture == "wall.png"
+    assert to_material("B", script, lambda file: file).texture == texture
+
+
 def test_some_of_gazebos_values():
     # conforms: materials Gazebo/*
     named = named_materials()

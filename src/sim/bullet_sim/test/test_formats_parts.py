@@ -1,5 +1,6 @@
 """Small readers against known numbers: noise, scaled shapes, bounds of xacro's expansion."""
 
+import contextlib
 import resource
 from xml.etree import ElementTree
 
@@ -96,6 +97,14 @@ def test_an_expansion_has_only_so_many_parts(write, monkeypatch, bound, said):
         expand(path)
 
 
+@pytest.mark.parametrize("most, refused", [(13, False), (12, True)])
+def test_a_macro_and_each_call_of_it_is_a_part(write, monkeypatch, most, refused):
+    path = write(calls(12))
+    monkeypatch.setattr(bounds, "MOST_PARTS", most)
+    with pytest.raises(TooLarge) if refused else contextlib.nullcontext():
+        expand(path)
+
+
 def test_only_so_many_files_are_included(write, monkeypatch):
     write("", "part.xacro")
     path = write('<xacro:include filename="part.xacro"/>' * 5)
@@ -108,6 +117,13 @@ def test_only_so_many_files_are_included(write, monkeypatch):
 def test_a_file_that_includes_itself_is_said(write):
     path = write('<xacro:include filename="robot.xacro"/>')
     with pytest.raises(FormatError, match="the file includes itself without end; put the"):
+        expand(path)
+
+
+def test_an_included_file_that_includes_itself_is_said(write):
+    write('<xacro:include filename="other.xacro"/>', "other.xacro")
+    path = write('<xacro:include filename="other.xacro"/>')
+    with pytest.raises(FormatError, match=r"other\.xacro: the file includes itself without end"):
         expand(path)
 
 

@@ -46,6 +46,20 @@ def test_package_file_absolute_and_relative(tmp_path):
     assert paths.resolve("meshes/../meshes/a.stl", base=tmp_path / "pkg") == mesh
 
 
+@pytest.mark.parametrize("uri", [
+    "model://arm/meshes/left hand.stl", "model://arm/meshes/left%20hand.stl",
+    "model://arm\\meshes\\left hand.stl", " model://arm\\meshes/left%20hand.stl "])
+def test_letters_may_be_written_as_in_the_web_and_folders_as_in_windows(tmp_path, uri):
+    hand = touch(tmp_path / "arm/meshes/left hand.stl")
+    assert Resources([tmp_path]).resolve(uri) == hand
+
+
+def test_what_is_there_as_written_comes_first(tmp_path):
+    touch(tmp_path / "left hand.stl")
+    written = touch(tmp_path / "left%20hand.stl")
+    assert Resources([tmp_path]).resolve("model://left%20hand.stl") == written
+
+
 def test_world_is_looked_up_here_then_in_the_resource_paths(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     paths = Resources([], [tmp_path / "share"])

@@ -7,6 +7,7 @@ import pytest
 from bullet_sim.description import Box, Inertial, Plane, Surface
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_light, load_model
+from bullet_sim.formats.source import NEWEST_SDF, sdf_version
 
 NO_FILES = Resources()
 
@@ -25,6 +26,12 @@ def test_an_empty_link_has_sdfs_defaults():
     link = model.links[0]
     assert link.inertial == Inertial(1.0, inertia=(1, 0, 0, 1, 0, 1))
     assert (link.gravity, link.kinematic, link.linear_damping) == (True, False, 0)
+
+
+@pytest.mark.parametrize("text, version", [
+    ("1.4", (1, 4)), (" 1.10 ", (1, 10)), ("1", (1, 0)), ("", NEWEST_SDF), ("new", NEWEST_SDF)])
+def test_versions_of_sdf(text, version):
+    assert sdf_version(text) == version
 
 
 def test_shapes_and_surfaces():
@@ -63,6 +70,11 @@ def test_axis_is_brought_into_the_joint_frame(version, more, expected):
     joint = read(ARM.format(yaw=math.pi / 2, roll=0, more=more), version).joints[0]
     assert joint.axis == pytest.approx(expected, abs=1e-12)
     assert (joint.lower, joint.upper, joint.effort) == (-1, 1, -1)
+
+
+def test_an_axis_has_length_1():
+    arm = ARM.format(yaw=0, roll=0, more="").replace("<xyz>1 0 0", "<xyz>3 0 -4")
+    assert read(arm).joints[0].axis == pytest.approx((0.6, 0.0, -0.8))
 
 
 def test_the_joints_own_turn_counts_for_a_model_frame_axis():

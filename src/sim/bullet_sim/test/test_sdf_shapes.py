@@ -115,6 +115,7 @@ def test_heightmap_layers_show_by_height(shape, tmp_path, caplog):
     low, high = load_mesh(only(model))
     assert low.material.texture == str(tmp_path / "mine.png")
     assert np.ptp(low.uv[:, 0]) == pytest.approx(8)  # 4 m in images of 0.5 m
+    assert np.ptp(high.uv[:, 1]) == pytest.approx(0.4)  # of 10 m, unless told
     assert high.material.texture is None and high.material.diffuse[1] > high.material.diffuse[0]
     assert len(low.faces) == pytest.approx(3 * len(high.faces), rel=0.1)
     assert caplog.records == []

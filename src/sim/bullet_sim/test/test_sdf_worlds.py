@@ -139,6 +139,11 @@ def test_population_in_a_box(load, kind):
     assert (gaps.min() > 0.5) == (kind == "uniform")
 
 
+def test_population_in_a_cube_of_a_metre_unless_told(load):
+    found = places(load(population("<model_count>99</model_count>"))) - (10, 0, 0.5)
+    assert (np.abs(found) <= 0.5).all() and (np.ptp(found, axis=0) > 0.9).all()
+
+
 def test_population_in_a_cylinder(load):
     # conforms: sdf population/cylinder
     found = places(load(population("""<cylinder><radius>3</radius><length>0.1</length></cylinder>
@@ -153,6 +158,10 @@ def test_population_on_a_grid_and_in_a_row(load):
     grid = places(load(population("""<distribution><type>grid</type><rows>2</rows><cols>3</cols>
         <step>1 2 0</step></distribution>""")))
     assert sorted(set(grid[:, 0])) == [9.5, 10.5] and sorted(set(grid[:, 1])) == [-2, 0, 2]
+    usual = places(load(population("""<distribution><type>grid</type><rows>2</rows><cols>2</cols>
+        </distribution>""")))
+    assert usual.tolist() == [[9.75, -0.25, 0.5], [9.75, 0.25, 0.5], [10.25, -0.25, 0.5],
+                              [10.25, 0.25, 0.5]]
     row = places(load(population("""<box><size>4 4 4</size></box><model_count>3</model_count>
         <distribution><type>linear-y</type></distribution>""")))
     assert row.tolist() == [[10, -2, 0.5], [10, 0, 0.5], [10, 2, 0.5]]
@@ -182,6 +191,7 @@ def test_road_is_drawn_and_not_touched(load):
         <road name="path"><point>0 5 0</point><point>9 5 0</point></road>""")
     (_, street), (_, path) = description.scenery
     assert street.geometry == Strip(((0, 0, 0), (10, 0, 0)), 3)
+    assert street.pose.position[:2] == (0.0, 0.0)
     assert 0.0 < street.pose.position[2] < 0.02  # above the ground, and not to be seen
     assert street.material == named_materials()["Gazebo/Red"]
     assert path.material == named_materials()["Gazebo/Road"] and path.geometry.width == 1

@@ -82,9 +82,9 @@ def test_a_degree_on_earth_has_the_length_it_has():
     # WGS84: a degree of latitude at 45 degrees is 111 132 m, one of longitude 78 847 m.
     north = GeoReference(45.0, 7.0, 100.0, heading=0.0)
     latitude, longitude, altitude = north.geodetic((111_132.0, 0.0, 5.0))
-    assert (latitude, longitude, altitude) == pytest.approx((46.0, 7.0, 105.0), abs=1e-3)
+    assert (latitude, longitude, altitude) == pytest.approx((46.0, 7.0, 105.0), abs=1e-5)
     east = GeoReference(45.0, 7.0, 100.0, heading=math.pi / 2)
-    assert east.geodetic((78_847.0, 0.0, 0.0))[:2] == pytest.approx((45.0, 8.0), abs=1e-3)
+    assert east.geodetic((78_847.0, 0.0, 0.0))[:2] == pytest.approx((45.0, 8.0), abs=1e-5)
     assert east.north_west_up((1.0, 0.0, 2.0)) == pytest.approx((0.0, -1.0, 2.0), abs=1e-12)
 
 

@@ -102,6 +102,7 @@ def test_a_collision_that_is_not_there_is_said(standing, caplog):
 
 def test_what_falls_is_pulled_by_its_weight(world):
     link = world.spawn(body("a")).links["l"]
+    world.step(100)
     force = NetForce(world, link)
     assert not force.sample().any()  # at first
     world.step(10)
