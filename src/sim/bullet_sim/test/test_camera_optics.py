@@ -173,6 +173,7 @@ def test_a_small_cube_blurs(renderer):
 @pytest.mark.parametrize("changes, said", [
     ({"horizontal_fov": 7.0}, "<horizontal_fov> is 7.0, which is not between 0 and 2 pi"),
     ({"lens": Lens(1.0, 1.0, function="tan"), "horizontal_fov": 3.3}, "more than this <lens> can"),
+    ({"lens": Lens(1.0, 1.0, -0.5, "tan"), "horizontal_fov": 1.0}, "more than this <lens> can"),
     ({"lens": Lens(env_texture_size=2)}, "<env_texture_size> is 2, which is not between 8 and"),
     ({"lens": Lens(c1=0.0)}, "<c1>, <c2> and <f> of a lens cannot be 0"),
 ])

@@ -179,7 +179,8 @@ def test_open_loop_believes_the_command():
     base, _ = diff_drive(BaseOptions(open_loop=True))
     drive(base, (), 1.0, (0.5, 0.0))  # the wheels do not turn at all
     assert base.odometry.sample().pose.position[0] == pytest.approx(0.5, rel=0.01)
-    assert base.odometry.sample().forward == 0.5
+    reading = base.odometry.sample()
+    assert (reading.forward, reading.leftward, reading.yaw_rate) == (0.5, 0.0, 0.0)
 
 
 # --- Ackermann steering

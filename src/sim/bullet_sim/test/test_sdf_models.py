@@ -264,3 +264,11 @@ def test_what_is_silently_accepted(load, caplog):
         <torsional/></friction><contact><ode/></contact></surface></collision></link></model>
         <road:own/>""")
     assert caplog.records == []
+
+
+@pytest.mark.parametrize("tag", ["gripper", "urdf"])
+def test_what_is_left_out_of_a_model_is_one_warning(load, caplog, tag):
+    (model,) = load(f'<model name="m"><link name="l"/><{tag}/><{tag}/></model>').models
+    assert [link.name for link in model.links] == ["l"]
+    assert [record.getMessage() for record in caplog.records] == [
+        f"model 'm': <{tag}> is not supported, left out"]

@@ -88,6 +88,14 @@ def test_a_degree_on_earth_has_the_length_it_has():
     assert east.north_west_up((1.0, 0.0, 2.0)) == pytest.approx((0.0, -1.0, 2.0), abs=1e-12)
 
 
+def test_a_bias_goes_either_way_as_often(world):
+    """Gazebo's GaussianNoiseModel tosses a coin for the sign."""
+    noise = Noise("gaussian", 0.0, 0.0, bias_mean=0.5)
+    biases = [SensorNoise(world, f"s{number}", [noise]).bias.item() for number in range(100)]
+    assert set(biases) == {-0.5, 0.5}
+    assert 30 < biases.count(0.5) < 70
+
+
 def test_noise_is_a_function_of_seed_name_and_tick(world):
     noise = Noise("gaussian", 0.0, 1.0, bias_stddev=1.0)
     first = SensorNoise(world, "a", [noise]).apply(np.zeros(4))
