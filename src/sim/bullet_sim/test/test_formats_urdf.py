@@ -300,7 +300,8 @@ def test_robot_level_tags():
     model = read(massive("a") + lumped + """<origin xyz="1 2 3"/><gazebo><static>TRUE</static>
         <self_collide>1</self_collide></gazebo>
         <gazebo><link name="extra"><pose>0 0 1 0 0 0</pose></link>
-        <joint name="weld" type="fixed"><parent>arm</parent><child>extra</child></joint></gazebo>""")
+        <joint name="weld" type="fixed"><parent>arm</parent><child>extra</child></joint>
+        </gazebo>""")
     assert model.static and model.self_collide
     assert model.pose.position == (1, 2, 3)
     assert model.links[1].name == "extra"
