@@ -27,6 +27,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.sensors.camera import Camera
+from bullet_sim.sensors.distortion import Distortion
 from bullet_sim.world import World
 
 BLACK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
@@ -91,6 +92,17 @@ def test_a_point_is_seen_where_browns_model_says(renderer, across, down):
     matrix = np.array([[focal, 0, 159.5], [0, focal, 119.5], [0, 0, 1]])
     expected = cv2.projectPoints(place, np.zeros(3), np.zeros(3), matrix, np.array(BARREL))[0]
     np.testing.assert_allclose(spot(eye.sample().rgb), expected.ravel(), atol=0.5)
+
+
+def test_every_coefficient_counts_as_in_opencv():
+    coefficients = np.array([-0.3, 0.1, 0.05, -0.04, -0.02])
+    centre, focal = np.array([159.5, 119.5]), 200.0
+    places = np.random.default_rng(1).uniform(-0.8, 0.8, (50, 3)) * (1, 1, 0) + (0, 0, 1)
+    matrix = np.array([[focal, 0, centre[0]], [0, focal, centre[1]], [0, 0, 1]])
+    expected = cv2.projectPoints(places, np.zeros(3), np.zeros(3), matrix, coefficients)[0][:, 0]
+    bent = Distortion(replace(BENT, distortion=tuple(coefficients)), focal, crop=False)
+    found = bent.seen_at(places[:, :2] * focal + centre)
+    np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
 def test_opencv_makes_the_pinholes_picture_of_it_again(renderer):
