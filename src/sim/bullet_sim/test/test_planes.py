@@ -18,8 +18,9 @@ from bullet_sim.world import World
 UP = (0.0, 0.0, 1.0)
 
 
-def plane(name, mu=100.0, normal=UP):
-    shape = Collision("c", Plane(normal, (4.0, 4.0)), surface=Surface(mu=mu))
+def plane(name, normal=UP, laser_retro=0.0, **surface):
+    shape = Collision("c", Plane(normal, (4.0, 4.0)), laser_retro=laser_retro,
+                      surface=Surface(**({"mu": 100.0} | surface)))
     return ModelDescription(name, static=True, links=(LinkDescription("l", collisions=(shape,)),))
 
 
@@ -52,11 +53,35 @@ def settle(world):
     return world.model("box").pose.position[2]
 
 
-def test_of_two_planes_in_one_place_the_first_is_touched(world):
-    for name in ("ground", "course"):
-        world.spawn(plane(name))
+@pytest.mark.parametrize("other", [
+    {}, {"mu": 1.5}, {"normal": (0.0, -0.0, 1.0)}])  # more friction than 1 counts as 1
+def test_of_two_planes_in_one_place_the_first_is_touched(world, other):
+    world.spawn(plane("ground"))
+    world.spawn(plane("course", **other))
     world.spawn(box(), Pose((0.3, 0.2, 0.05)))
     assert settle(world) == pytest.approx(0.05, abs=1e-4)
+    assert touched(world) == [number(world, "ground")] * 4
+
+
+@pytest.mark.parametrize("lower, count", [(1e-7, 4), (3e-6, 8)])
+def test_places_are_told_apart_from_a_micrometre_on(world, lower, count):
+    world.spawn(plane("ground"))
+    world.spawn(plane("course"), Pose((0.0, 0.0, -lower)))
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    settle(world)
+    assert len(touched(world)) == count
+
+
+def test_a_plane_that_comes_after_one_that_went_is_not_touched_either(world):
+    """The engine gives it the number of the one that went."""
+    for name in ("ground", "course"):
+        world.spawn(plane(name))
+    before = number(world, "course")
+    world.delete("course")
+    world.spawn(plane("other"))
+    assert number(world, "other") == before
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    settle(world)
     assert touched(world) == [number(world, "ground")] * 4
 
 
@@ -79,7 +104,7 @@ def test_when_the_first_goes_the_second_holds(world, leave):
 
 
 @pytest.mark.parametrize("other", [
-    {"mu": 0.5}, {"normal": (0.0, 0.1, 0.995)},
+    {"mu": 0.5}, {"normal": (0.0, 0.1, 0.995)}, {"restitution": 0.5}, {"laser_retro": 2.0},
 ])
 def test_planes_that_differ_both_collide(world, other):
     world.spawn(plane("ground"))
