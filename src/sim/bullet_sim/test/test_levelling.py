@@ -81,7 +81,7 @@ def test_they_are_before_and_behind_whichever_way_the_wheels_face(yaw):
 def test_the_bottom_of_each_shape_is_known():
     lying = Cylinder(0.02, 0.1)
     tree = tree_of(caster("front", 0.1, 0.0, Box((0.02, 0.02, 0.04))),
-                   caster("back", -0.1, 0.0, Cylinder(0.01, 0.04)))
+                   caster("back", -0.1, -0.01, Cylinder(0.01, 0.06)))
     assert raised(tree) == {"front": pytest.approx(CLEARANCE), "back": pytest.approx(CLEARANCE)}
     lain = caster("front", 0.1, 0.0, lying)
     rolled = LinkDescription("front", pose=Pose.from_xyz_rpy((0.1, 0, 0.02), (math.pi / 2, 0, 0)),
@@ -109,9 +109,22 @@ def test_the_layer_decides_and_is_no_thicker_than_a_millimetre():
 def test_without_wheels_on_level_axles_nothing_is_levelled():
     pair = [caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4)]
     assert raised(tree_of(*pair, axis=SWIVEL)) == {}
-    assert raised(tree_of(*pair, axis=(0.0, 1.0, 0.5))) == {}
+    assert raised(tree_of(*pair, axis=(0.0, 1.0, 0.15))) == {}
+    assert set(raised(tree_of(*pair, axis=(0.0, 1.0, 0.05)))) == {"front", "back"}
     assert raised(tree_of(*pair, wheel_type="prismatic", axis=TRAVEL)) == {}
     assert raised(tree_of(*pair, wheel_type="fixed")) == {}
+
+
+def test_what_never_moves_is_not_levelled():
+    tree = tree_of(caster("front", 0.1, 3e-4), caster("back", -0.1, 3e-4))
+    assert raised(replace(tree, fixed=True)) == {}
+
+
+@pytest.mark.parametrize("mu, smaller", [(0.5, True), (0.51, False)])
+def test_what_has_half_the_grip_of_the_wheels_is_a_caster(mu, smaller):
+    pair = [caster("front", 0.1, 3e-4, mu=mu), caster("back", -0.1, 3e-4, mu=mu)]
+    after = levelled(tree_of(*pair, caster_type="continuous"), LAYER).links[3].collisions[0]
+    assert (after.geometry.radius < BALL.radius) == smaller
 
 
 def test_slippery_balls_on_axles_are_casters_and_get_smaller():
@@ -169,8 +182,9 @@ def swivelling(trail: float):
     return tree_of(*links, more=joints)
 
 
-def test_wheels_behind_swivels_are_casters_and_get_smaller():
-    tree = swivelling(0.01)
+@pytest.mark.parametrize("trail", [0.01, 0.0025, -0.0025])
+def test_wheels_behind_swivels_are_casters_and_get_smaller(trail):
+    tree = swivelling(trail)
     after = {link.name: link for link in levelled(tree, LAYER).links}
     for name in ("front", "back"):
         (tyre,) = after[name].collisions
@@ -179,8 +193,10 @@ def test_wheels_behind_swivels_are_casters_and_get_smaller():
     assert after["left"].collisions == tree.links[1].collisions
 
 
-def test_steered_wheels_stay_as_described():
-    assert raised(swivelling(0.0)) == {}
+@pytest.mark.parametrize("trail", [0.0, 0.0015, -0.0015])  # up to a tenth of the radius
+def test_steered_wheels_stay_as_described(trail):
+    tree = swivelling(trail)
+    assert levelled(tree, LAYER) == tree
 
 
 def plate(tmp_path, *feet: float):
@@ -212,6 +228,13 @@ def test_a_mesh_that_cannot_be_read_carries_nothing():
 def test_a_box_from_front_to_back_comes_up():
     assert set(raised(tree_of(caster("plate", 0.0, 3e-4, Box((0.3, 0.05, 0.04)))))) == {"plate"}
     assert raised(tree_of(caster("plate", 0.1, 3e-4, Box((0.1, 0.05, 0.04))))) == {}
+
+
+@pytest.mark.parametrize("higher, up", [(5e-5, True), (2e-4, False)])
+def test_a_box_whose_back_is_a_little_higher_stands_on_it_too(higher, up):
+    plate = caster("plate", 0.0, 3e-4, Box((0.3, 0.05, 0.04)))
+    tilted = replace(plate, pose=plate.pose * Pose.from_xyz_rpy((0, 0, 0), (0, higher / 0.3, 0)))
+    assert bool(raised(tree_of(tilted))) == up
 
 
 @pytest.mark.parametrize("kind", ["continuous", "ball"])

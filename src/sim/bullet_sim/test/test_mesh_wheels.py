@@ -92,8 +92,9 @@ def test_a_robot_of_meshes_drives_and_turns_as_told(export, tyre, kind, corners)
     assert (forward, turn) == (pytest.approx(0.2, rel=0.01), pytest.approx(1.0, rel=0.01))
 
 
-def test_a_round_mesh_has_a_tread_and_is_a_little_smaller_itself(tyre):
-    mesh = tyre(32)
+@pytest.mark.parametrize("corners", [10, 32])
+def test_a_round_mesh_has_a_tread_and_is_a_little_smaller_itself(tyre, corners):
+    mesh = tyre(corners)
     tread, shoulders = engine_shapes(link(mesh, LAID))
     assert tread.geometry == Cylinder(pytest.approx(RADIUS, rel=1e-5), TREAD)
     assert tread.pose.transform((0, 0, 1)) == pytest.approx(AXLE)
@@ -113,6 +114,21 @@ def test_the_tread_is_on_the_rim_wherever_the_mesh_has_its_origin(export):
     smaller = 1.0 - CROWN / RADIUS  # about the tread's middle
     middle = shoulders.pose.transform(tuple(smaller * each for each in (0.3, 0.2, -0.5)))
     assert middle == pytest.approx((0, 0, 0), abs=1e-6)
+
+
+def test_the_tread_is_in_the_middle_of_what_reaches_the_ground(export):
+    wheel = trimesh.creation.cylinder(RADIUS, 0.01, sections=32)
+    flange = trimesh.creation.cylinder(0.97 * RADIUS, 0.04, sections=32)
+    flange.apply_translation((0.0, 0.0, 0.025))  # beside it
+    made = link(export("both", trimesh.util.concatenate([wheel, flange])), LAID)
+    assert find_tyre(made, made.collisions[0]).middle.position == pytest.approx((0, 0, 0), abs=1e-6)
+
+
+@pytest.mark.parametrize("shape, aside", [
+    (Cylinder(0.006, WIDTH), 0.0), (Cylinder(RADIUS, WIDTH), 5e-4)])
+def test_small_wheels_and_those_that_are_hardly_off_their_axle_are_wheels(shape, aside):
+    made = link(shape, LAID * Pose((aside, 0.0, 0.0)))
+    assert len(list(engine_shapes(made))) == 2
 
 
 def test_a_wheel_beside_its_links_origin_gets_smaller_about_its_own_middle(tyre):
@@ -136,7 +152,9 @@ def test_what_is_not_round_about_the_axis_is_left_alone(export, tyre):
     wire = trimesh.Trimesh([(0, 0, 0), (0, 0, 0.1), (0, 0, 0.2)], [(0, 1, 2)], process=False)
     cases = [
         link(export("wire", wire), axis=(0.0, 0.0, 1.0)),  # no breadth
-        link(tyre(8), LAID),  # a corner and a side differ by 8 %
+        link(tyre(9), LAID),  # a corner and a side differ by 6 %
+        link(Cylinder(0.004, WIDTH), LAID),  # too small
+        link(Cylinder(RADIUS, WIDTH), LAID * Pose((0.0015, 0.0, 0.0))),
         link(tyre(32), LAID, axis=(1.0, 0.0, 0.0)),
         link(tyre(32), LAID * Pose((0.01, 0.0, 0.0))),
         link(tyre(32), LAID, kind="fixed"),
