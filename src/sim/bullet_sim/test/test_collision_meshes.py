@@ -47,6 +47,17 @@ def test_of_a_hull_each_corner_is_read_once(ball, tmp_path):
     assert np.allclose(np.array(first_appearances(hull)) * inner, first_appearances(whole))
 
 
+def test_a_hull_beside_its_origin_stays_there(tmp_path):
+    """The engine's margin around it makes it as large as the mesh."""
+    box = trimesh.creation.box((0.2, 0.4, 0.6))
+    box.apply_translation((1.0, -2.0, 3.0))
+    box.export(tmp_path / "box.stl")
+    corners = read(MeshFiles(tmp_path)(Mesh(str(tmp_path / "box.stl")), hull=True)).reshape(-1, 3)
+    margin = urdf_text.HULL_MARGIN
+    assert corners.min(axis=0) == pytest.approx(np.array((0.9, -2.2, 2.7)) + margin)
+    assert corners.max(axis=0) == pytest.approx(np.array((1.1, -1.8, 3.3)) - margin)
+
+
 @pytest.mark.parametrize("size", [(0.2, 0.2, 0.2), (0.3, 0.1, 0.004), (0.2, 0.2, 0.0015)])
 def test_a_box_of_triangles_is_as_high_as_a_box(tmp_path, size):
     trimesh.creation.box(size).export(tmp_path / "box.stl")

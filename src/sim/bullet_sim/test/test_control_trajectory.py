@@ -134,6 +134,13 @@ def test_the_present_trajectory_goes_on_until_the_new_one_begins():
     assert path.end_time == 5.0
 
 
+def test_before_its_first_segment_a_path_stays_where_that_begins():
+    path = Path([Segment(1.0, Waypoint(3.0), 2.0, Waypoint(4.0)),
+                 Segment(2.0, Waypoint(4.0), 3.0, Waypoint(9.0))])
+    assert [path.sample(time).position for time in (0.5, 1.0, 2.0, 3.0, 9.0)] == [3, 3, 4, 9, 9]
+    assert path.between(0.0, 1.5) == path.segments[:1]
+
+
 def test_points_of_the_past_are_left_out():
     wanted = request((1.0, [9.0]), (3.0, [4.0]), joints=["one"], start=10.0)
     [path] = join(wanted, ["one"], [False], standing(0.0), 12.0)

@@ -67,6 +67,11 @@ def test_a_picture_may_have_any_name(picture):
     assert to_material("A", script, lambda file: f"/t/{file}").texture == f"/t/{picture}"
 
 
+def test_what_follows_a_pictures_name_is_of_no_matter():
+    script = parse_script(TEXTURED.format("A", "wall.png 2d unlimited"))
+    assert to_material("A", script, lambda file: file).texture == "wall.png"
+
+
 @pytest.mark.parametrize("alias, texture", [
     ("texture_alias wall", "brick.png"), ("texture_alias wall painted", "brick.png"),
     ("texture_alias roof", "wall.png"), ("texture_alias roof wall", "wall.png"),

@@ -164,6 +164,15 @@ def test_lumped_collisions_have_sdformats_names(waffle):
     assert wheel_left.collisions[0].name == "wheel_left_link_collision"
 
 
+def test_lumped_visuals_are_named_after_themselves_or_their_links():
+    ball = "<visual {}><geometry><sphere radius='1'/></geometry></visual>"
+    shapes = ball.format("name='nose'") + ball.format("")
+    model = read(massive("a", ball.format("")) + massive("b", shapes)
+                 + fixed("ab", "a", "b", "0 0 1"))
+    assert [visual.name for visual in model.links[0].visuals] == [
+        "a_visual", "a_fixed_joint_lump__nose_visual_1", "a_fixed_joint_lump__b_visual_2"]
+
+
 def test_lumped_shapes_keep_their_place_and_surface(waffle):
     base, caster_left, _, scan = waffle.links[0].collisions
     assert base.pose.position == pytest.approx((-0.064, 0, 0.057))

@@ -158,6 +158,11 @@ def test_population_on_a_grid_and_in_a_row(load):
     grid = places(load(population("""<distribution><type>grid</type><rows>2</rows><cols>3</cols>
         <step>1 2 0</step></distribution>""")))
     assert sorted(set(grid[:, 0])) == [9.5, 10.5] and sorted(set(grid[:, 1])) == [-2, 0, 2]
+    one = places(load(population("<distribution><type>grid</type></distribution>")))
+    assert one.tolist() == [[10, 0, 0.5]]
+    line = places(load(population("""<distribution><type>grid</type><rows>2</rows>
+        <step>1 2 0</step></distribution>""")))
+    assert line.tolist() == [[9.5, 0, 0.5], [10.5, 0, 0.5]]
     usual = places(load(population("""<distribution><type>grid</type><rows>2</rows><cols>2</cols>
         </distribution>""")))
     assert usual.tolist() == [[9.75, -0.25, 0.5], [9.75, 0.25, 0.5], [10.25, -0.25, 0.5],

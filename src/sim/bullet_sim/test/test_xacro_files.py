@@ -86,6 +86,16 @@ def test_a_tag_that_is_no_macro_is_kept_with_a_warning(write, caplog):
     assert "<wheeel" in text and "<wheeel>" in caplog.text and "group" not in caplog.text
 
 
+def test_before_melodic_macros_and_properties_counted_above_their_lines(write, caplog):
+    with caplog.at_level(logging.WARNING):
+        text = expand(write(
+            '<xacro:wheel side="left"/><xacro:macro name="wheel" params="side">'
+            '<link name="${side}_${part}"/></xacro:macro>'
+            '<xacro:property name="part" value="rim"/>'))
+    assert names(text, "link") == ["left_rim"]
+    assert "define things before they are used" in caplog.text
+
+
 def test_gazebos_include_is_not_xacros(write):
     inside = "<gazebo><include><uri>model://sun</uri></include></gazebo>"
     assert "model://sun" in expand(write(f'{inside}<property name="a" value="1"/>'))
