@@ -51,10 +51,18 @@ def test_a_reset_leads_back_to_the_same_time_whatever_the_step(world):
 
 
 OUTSIDE = {
-    "max_step_size": (0.0, -0.001, 1e-9, 0.2, math.nan, math.inf),
-    "real_time_update_rate": (-1.0, math.nan, math.inf),
+    "max_step_size": (0.0, -0.001, 0.99e-5, 0.101, math.nan, math.inf),
+    "real_time_update_rate": (-1.0, 1e6 + 0.5, math.nan, math.inf),
     "iterations": (-1, 10_001, 2 ** 40),
 }
+
+
+@pytest.mark.parametrize("name, value", [
+    ("max_step_size", 1e-5), ("max_step_size", 0.1), ("real_time_update_rate", 0.0),
+    ("real_time_update_rate", 1e6), ("iterations", 0), ("iterations", 10_000)])
+def test_the_bounds_themselves_are_possible(world, name, value):
+    world.configure_physics(**{name: value})
+    assert getattr(world.description.physics, name) == value
 
 
 @pytest.mark.parametrize("name, value", [(n, v) for n, values in OUTSIDE.items() for v in values])
