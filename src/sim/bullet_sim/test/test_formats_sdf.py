@@ -149,7 +149,9 @@ def test_gazebo_root_and_light_root():
     assert (light.name, light.type, light.range) == ("lamp", "spot", 10)
     assert light.diffuse == (1, 0, 0, 1)
     assert load_light(sdf('<link name="l"/>'), NO_FILES) is None
-    for other in ('<sdf version="1.6"/>', '<robot><light name="lamp" type="spot"/></robot>'):
+    lamp = '<light name="lamp" type="spot"/>'
+    for other in ('<sdf version="1.6"/>', f"<robot>{lamp}</robot>",
+                  f'<sdf version="1.6"><include><uri>model://x</uri></include>{lamp}</sdf>'):
         assert load_light(other, NO_FILES) is None
 
 

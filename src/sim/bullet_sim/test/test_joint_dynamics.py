@@ -142,7 +142,7 @@ def test_the_load_of_a_joint_whose_parent_hangs_on_its_child(spawn):
     """Of the arm, its child, on the joint: upwards, in the arm's frame, whose x points down."""
     down = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0))
     arm = JointDescription("arm", "revolute", "base", "arm_link", axis=(1.0, 0.0, 0.0),
-                           pose=Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0)))
+                           pose=Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.5, 0.0)))
     lamp = JointDescription("j", "revolute", "lamp", "arm_link", axis=(1.0, 0.0, 0.0))
     world, model = spawn(rig(arm, lamp, links=(part("arm_link", down), part("lamp"))), G)
     force, _ = reaction(world, model.joint("j"))
