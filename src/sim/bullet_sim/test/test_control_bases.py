@@ -21,6 +21,7 @@ from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
 from bullet_sim.control.controllers.speed_limiter import SpeedLimiter, SpeedLimits
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.errors import SimulationError
+from bullet_sim.sensors.odometry import WheelOdometry
 
 STEP = 0.001  # s
 
@@ -102,6 +103,16 @@ def test_a_full_circle_ends_where_it_began():
         odometry.move(float(step), 3.0 / steps, 0.0, 2 * math.pi / steps)
     x, y, _ = odometry.sample().pose.position
     assert (x, y) == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("signed, forward", [(False, 0.2), (True, -0.2)])
+def test_gazebos_odometry_of_wheels_knows_no_way_back_unless_signed(signed, forward):
+    """gazebo_ros_diff_drive tells the length of the way: it is positive backwards, too."""
+    counted = WheelOdometry(wheel_separation=0.5, wheel_diameter=0.2, signed=signed)
+    counted.update(0.05, -2.5, -1.5)
+    reading = counted.sample()
+    assert (reading.forward, reading.yaw_rate) == pytest.approx((forward, 0.2))
+    assert reading.pose.position[0] == pytest.approx(-0.2 * 0.05, rel=1e-3)
 
 
 def test_a_quarter_of_an_arc_is_exact_in_one_step():

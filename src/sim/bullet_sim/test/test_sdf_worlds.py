@@ -325,3 +325,8 @@ def test_solver_numbers_are_kept(load):
     assert (physics.sor, physics.cfm, physics.erp) == (1.1, 0.1, 0.3)
     assert (physics.contact_max_correcting_vel, physics.contact_surface_layer) == (4, 0.01)
     assert physics.real_time_factor == 0.5
+
+
+@pytest.mark.parametrize("text, seconds", [("7", 7.0), ("7 500000000", 7.5), ("", 0.0)])
+def test_the_time_of_a_saved_state_is_in_seconds_and_nanoseconds(load, text, seconds):
+    assert load(f"<state><sim_time>{text}</sim_time></state>").sim_time == seconds
