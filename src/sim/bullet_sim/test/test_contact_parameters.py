@@ -31,7 +31,8 @@ def test_what_never_moves_is_rigid():
     assert hardness(Surface(), True, 30.0) == {}
 
 
-@pytest.mark.parametrize("kp, counts", [(0.99, False), (1.0, True), (1e5, True), (100_000.5, False)])
+@pytest.mark.parametrize("kp, counts", [
+    (0.99, False), (1.0, True), (1e5, True), (100_000.5, False)])
 def test_a_stiffness_from_1_to_100_000_is_taken_as_told(kp, counts):
     told = {"contactStiffness": kp, "contactDamping": 7.0}
     assert (hardness(Surface(kp=kp, kd=7.0), False, 30.0) == told) == counts

@@ -6,6 +6,7 @@ import pytest
 
 from bullet_sim.control.controllers.forward import Forward
 from bullet_sim.control.controllers.servo import PositionServo, Servos, VelocityServo
+from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.description import (
@@ -114,6 +115,11 @@ def test_a_continuous_joint_counts_turns_and_turns_the_short_way():
     bench.run(2000)
     assert bench.hardware.joints["a"].position == pytest.approx(0.2, abs=1e-2)
     assert bench.hardware.joints["b"].position == pytest.approx(20.0, rel=0.01)
+
+
+@pytest.mark.parametrize("interface", ["effort", "velocity", "position"])
+def test_nothing_is_commanded_at_first(interface):
+    assert CommandHandle(JointHandle("a", "revolute"), interface).command == 0.0
 
 
 def test_until_a_command_comes_positions_are_held():
