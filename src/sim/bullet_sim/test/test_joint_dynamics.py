@@ -7,6 +7,7 @@ from rigs import hinge, part, rig, slider
 
 from bullet_sim.description import (
     Inertial,
+    JointAxis,
     JointDescription,
     LinkDescription,
     WorldDescription,
@@ -112,6 +113,25 @@ def test_a_screw_s_stops_are_angles(spawn):
     assert model.joint("j").position == pytest.approx(0.9, rel=0.01)
     world.step(1000)
     assert model.joint("j").position == pytest.approx(1.0, abs=0.02)
+
+
+# --- gears
+
+@pytest.mark.parametrize("ratio", [2.5, -1.5])
+def test_a_planet_turns_on_its_carrier_by_the_ratio_of_the_gears(spawn, ratio):
+    """The sun stands. Seen from the carrier it turns back, and the planet by that over -ratio."""
+    planet = JointDescription("planet", "continuous", "carrier_link", "wheel", axis=UPWARD)
+    gear = JointDescription("gear", "gearbox", "base", "wheel", axis=UPWARD,
+                            axis2=JointAxis(axis=UPWARD), gearbox_ratio=ratio,
+                            gearbox_reference_body="carrier_link")
+    wheel = part("wheel", Pose((1.0, 0.0, 0.0)))
+    world, model = spawn(rig(hinge("carrier"), planet, gear, links=(wheel,)))
+    for _ in range(300):
+        model.joint("carrier").drive_effort(1.0)
+        world.step()
+    carrier, turned = (model.joint(name).position for name in ("carrier", "planet"))
+    assert carrier > 0.02
+    assert turned == pytest.approx(carrier / ratio, rel=1e-2)
 
 
 # --- what a joint bears
