@@ -37,7 +37,7 @@ class FilmFile:
         self._path, self._part = path, path.with_suffix(f".part{path.suffix}")
         self._ended, self._lock = threading.Event(), threading.Lock()
         self._writer: FfmpegEncoder | OpenCvEncoder | None = None
-        self.codec = ""
+        self.codec = ""  # once there is a page
 
     @property
     def process_id(self) -> int | None:
@@ -57,14 +57,14 @@ class FilmFile:
         fault = "interrupted"
         try:
             with self._lock:
-                fault = self._writer.close() if self._writer is not None else ""
+                fault = self._writer.close() if self.codec else ""
         finally:
-            if fault:
+            if fault or not self.codec:
                 if self._writer is not None:
                     self._writer.kill()
                 self.codec = ""
                 self._part.unlink(missing_ok=True)
-            elif self._writer is not None:
+            else:
                 self._part.replace(self._path)
         return fault
 
@@ -78,9 +78,9 @@ class FilmFile:
                 height, width, _ = page.shape
                 make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
                 self._writer = make(self._part, width, height, FILM_RATE_HZ)
-                self.codec = self._writer.codec
             for _ in range(times):
                 self._writer.write(page)
+                self.codec = self._writer.codec
 
 
 class CameraFilm(FilmFile):
@@ -100,7 +100,8 @@ class CameraFilm(FilmFile):
         """The film's picture, BGR, with what the camera sees (fits into VIEW_PX) at a time, s."""
 
     def start(self) -> None:
-        """Begin to film."""
+        """Begin to film. On a busy machine the encoder takes seconds to load: it begins now."""
+        self._add(self.page(np.zeros((*VIEW_PX[::-1], 3), np.uint8), 0.0), times=0)
         # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
         rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
 
@@ -119,8 +120,7 @@ class CameraFilm(FilmFile):
         # The film keeps simulated time even where pictures are missing.
         self._add(page, min(max(number - last, 1), LONGEST_GAP))
         pace = (began - last_began) / max(number - last, 1)  # s, wall, from one picture to the next
-        due = began + 0.8 * pace
-        self._ended.wait(min(max(0.0, due - time.monotonic()), LONGEST_WAIT))
+        self._ended.wait(min(max(0.0, began + 0.8 * pace - time.monotonic()), LONGEST_WAIT))
 
 
 def side_by_side(view: np.ndarray | None, plan: np.ndarray, words: Mapping[int, str],
