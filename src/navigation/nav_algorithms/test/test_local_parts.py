@@ -2,25 +2,14 @@
 
 import numpy as np
 import pytest
+from local_plans import ORIGIN, STILL, WAFFLE, straight, window_around
 
-from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
+from nav_algorithms.costmap.costs import LETHAL, UNKNOWN
 from nav_algorithms.local_planning.following import Following, within
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
 from nav_algorithms.local_planning.oscillation import Oscillation
 from nav_algorithms.local_planning.pieces import cut
 from nav_algorithms.local_planning.velocities import samples, slowed, turning, window
-
-WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
-ORIGIN, STILL = np.zeros(3), np.zeros(3)
-
-
-def window_around(cells=60):
-    return Costmap(np.zeros((cells, cells), np.uint8), 0.05, (-cells / 40, -cells / 40))
-
-
-def straight(length=1.2, yaw=0.0, count=40):
-    along = np.linspace(0.0, length, count)
-    return np.column_stack((along * np.cos(yaw), along * np.sin(yaw), np.full(count, yaw)))
 
 
 def test_the_window_of_velocities():

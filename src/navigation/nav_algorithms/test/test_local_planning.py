@@ -6,9 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from defaults import of
+from local_plans import ORIGIN, STILL, WAFFLE, straight, window_around
 
 from nav_algorithms.costmap import footprint as footprints
-from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, Costmap
+from nav_algorithms.costmap.costs import INSCRIBED, LETHAL
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
 from nav_algorithms.local_planning.free_arcs import free_arc
 from nav_algorithms.local_planning.pure_pursuit import PurePursuit, PurePursuitSettings
@@ -18,23 +19,12 @@ from nav_algorithms.local_planning.trajectory_rollout import (
 )
 from nav_algorithms.poses import relative
 
-WAFFLE = np.array([[-0.205, -0.155], [-0.205, 0.155], [0.077, 0.155], [0.077, -0.155]])
 WAFFLE_DWA = dict(max_vel_x=0.26, min_vel_x=-0.26, max_vel_trans=0.26, min_vel_trans=0.13,
                   max_vel_theta=1.82, min_vel_theta=0.9, acc_lim_y=0.0, max_vel_y=0.0,
                   min_vel_y=0.0, xy_goal_tolerance=0.05, yaw_goal_tolerance=0.17, sim_time=2.0,
                   vx_samples=20, vy_samples=0, vth_samples=40, path_distance_bias=32.0,
                   goal_distance_bias=20.0, occdist_scale=0.02, controller_frequency=10.0)
 SWIFT = dict(min_in_place_vel_theta=1.5, max_vel_theta=1.5, min_vel_theta=-1.5)
-ORIGIN, STILL = np.zeros(3), np.zeros(3)
-
-
-def window_around(cells=60):
-    return Costmap(np.zeros((cells, cells), np.uint8), 0.05, (-cells / 40, -cells / 40))
-
-
-def straight(length=1.2, yaw=0.0, count=40):
-    along = np.linspace(0.0, length, count)
-    return np.column_stack((along * np.cos(yaw), along * np.sin(yaw), np.full(count, yaw)))
 
 
 def dwa(**changed):
