@@ -1,5 +1,6 @@
 """The film of a drive: one picture a period of simulated time, whatever the pace and the gaps."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -59,6 +60,18 @@ def test_the_encoder_loads_before_the_first_picture_comes(tmp_path, monkeypatch)
     assert film.process_id is not None and not film.codec
     assert film.close() == "" and not film.codec
     assert not list(tmp_path.iterdir())
+
+
+def test_an_encoder_that_cannot_begin_is_no_end_of_the_drive(tmp_path, monkeypatch):
+    monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
+    film = new_film(tmp_path / "nowhere" / "run.mp4")
+    monkeypatch.setattr(encoders.tempfile, "TemporaryFile", no_room)
+    film.start()
+    assert film.close() == ""
+
+
+def no_room():
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 def test_a_gap_is_filled(tmp_path):

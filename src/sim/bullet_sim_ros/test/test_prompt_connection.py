@@ -1,8 +1,12 @@
 """Messages over a real socket pair: at once where it takes them, in order, never waiting."""
 
+import gc
 import socket
 import threading
+import time
+import weakref
 
+import numpy as np
 import pytest
 from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
@@ -70,6 +74,26 @@ def test_a_message_in_pieces_is_one(pair):
     pair.connection.write_data([memoryview(piece) for piece in pieces])
     pair.connection.write_data(b"next")
     assert pair.read(20_000_012) == b"".join(pieces) + b"next"
+
+
+@pytest.fixture
+def no_collector():
+    gc.collect()
+    gc.disable()
+    yield
+    gc.enable()
+
+
+def test_a_message_that_could_not_be_sent_is_not_kept(pair, no_collector):
+    message = np.zeros(20_000_000, np.uint8)
+    kept = weakref.ref(message)
+    pair.connection.write_data([message.data])
+    pair.transport.socket.shutdown(socket.SHUT_WR)
+    del message
+    until = time.monotonic() + LIMIT
+    while kept() is not None and time.monotonic() < until:
+        time.sleep(0.01)
+    assert kept() is None
 
 
 def test_a_closed_subscriber_is_told_to_rospy(pair):

@@ -1,7 +1,8 @@
-"""The films: files that begin with the first page and take no more once they are ended."""
+"""The films: files that are there once there is a page, and take no more once they are ended."""
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import threading
 import time
@@ -20,9 +21,8 @@ from evaluation.plan import write_text
 from evaluation.session.encoders import FfmpegEncoder, OpenCvEncoder
 
 FILM_RATE_HZ = 10
-# s, simulated, between two pictures of the film, which so runs at 2 or 8 times the speed
-FILM_PERIOD = 0.2
-FAST_FILM_PERIOD = 0.8  # the same where simulated time runs several times faster than real time
+# s, simulated, between two pictures: a film runs at 2 times the speed, of a fast drive at 8
+FILM_PERIOD, FAST_FILM_PERIOD = 0.2, 0.8
 VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
 BAR_PX = 44  # of text, above
 LONGEST_GAP = 30 * FILM_RATE_HZ  # pictures that a pause in the camera may add to the film
@@ -75,9 +75,8 @@ class FilmFile:
                 return
             if self._writer is None:
                 self._path.unlink(missing_ok=True)
-                height, width, _ = page.shape
                 make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
-                self._writer = make(self._part, width, height, FILM_RATE_HZ)
+                self._writer = make(self._part, *page.shape[1::-1], FILM_RATE_HZ)
             for _ in range(times):
                 self._writer.write(page)
                 self.codec = self._writer.codec
@@ -101,7 +100,8 @@ class CameraFilm(FilmFile):
 
     def start(self) -> None:
         """Begin to film. On a busy machine the encoder takes seconds to load: it begins now."""
-        self._add(self.page(np.zeros((*VIEW_PX[::-1], 3), np.uint8), 0.0), times=0)
+        with contextlib.suppress(OSError):  # the drive goes on; the first page tries again
+            self._add(self.page(np.zeros((*VIEW_PX[::-1], 3), np.uint8), 0.0), times=0)
         # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
         rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
 

@@ -107,7 +107,8 @@ class PromptConnection:
                 self._connection.stat_num_msg -= len(data) - 1  # it was one message
                 error = None
             except Exception as failure:  # raised where the next message is published
-                error = failure.with_traceback(None)  # which would keep the message
+                error = failure.with_traceback(None)  # it would keep the message, as its cause's
+                error.__context__ = None
             data = piece = None  # else a message is kept until the next one
             with self._changed:
                 self._sending, self._error = None, error
