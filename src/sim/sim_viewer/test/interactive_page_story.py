@@ -228,6 +228,19 @@ class InteractivePage(unittest.TestCase):
         self.assertEqual(self.events(), ["MOUSE_DOWN", "MOUSE_UP", "BUTTON_CLICK"])
         self.assertEqual(self.last("BUTTON_CLICK").control_name, "button")
 
+    def test_3_what_is_refused_loses_nothing_else(self):
+        self.page.evaluate("""(({ _hand }) => {
+            const call = _hand._call;
+            _hand._call = (operation, message) => {
+                if (message.event === "BUTTON_CLICK") _hand._call = call;
+                return message.event === "MOUSE_DOWN" ? new Promise((_, refuse) =>
+                    setTimeout(refuse, 500, new Error("not now"))) : call(operation, message);
+            };
+        })(window.rviz.session.displays[0].shown)""")
+        self.drag((-2.0, -1.5, 0.2), (-2.0, -1.5, 0.2))
+        self.wait_for("BUTTON_CLICK")
+        self.assertEqual(self.events(), ["MOUSE_UP", "BUTTON_CLICK"])
+
     def test_4_an_entry_of_a_menu_is_chosen(self):
         for kind in ("Pressed", "Released"):
             self.mouse(kind, -2.0, -1.5, 0.2, button="right")

@@ -77,6 +77,14 @@ def test_an_entry_of_a_menu_is_told_of_without_a_move(context, shown, sent):
     assert shown.draw(MadeUpView()) is None
 
 
+def test_a_marker_that_came_anew_is_told_of_before_it_is_drawn(context, shown, sent):
+    button = control(Mode.BUTTON, "c")
+    shown.take(init(1, handle("a", button, button)), None, 0.0)
+    for name in ("c", "c_u0", ""):
+        say(context, control=name)
+    assert [message.control_name for _, message in sent] == ["c", "c_u0", ""]
+
+
 @pytest.mark.parametrize("changes, said", [
     ({"display": 3}, "no such one"), ({"display": 2}, "shows no interactive markers"),
     ({"marker": "s\nb"}, "no marker"), ({"marker": "a"}, "no marker"),

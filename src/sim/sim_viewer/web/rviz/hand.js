@@ -172,11 +172,12 @@ export class Hand {
   async _flush() {
     if (this._busy) return;
     this._busy = true;
-    try {
-      while (this._queue.length) await this._call("rviz_feedback", this._queue.shift());
-    } catch (error) {
-      this._queue = [];
-      this._complain(error.message);
+    while (this._queue.length) {
+      try {
+        await this._call("rviz_feedback", this._queue.shift());
+      } catch (error) {
+        this._complain(error.message);
+      }
     }
     this._busy = false;
   }

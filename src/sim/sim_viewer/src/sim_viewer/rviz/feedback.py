@@ -30,7 +30,7 @@ async def rviz_feedback(context: Context, display: int, marker: str, control: st
     Refused for what there is not, and for what are no such numbers.
     """
     shown, found = _find(context, display, marker)
-    if control not in (one.name for one in found.controls):
+    if control not in found.control_names:
         raise Refused(f"there is no control {control!r:.40} of the marker")
     message = feedback(found, control, event, pose, point, entry)
     message.client_id = f"{rospy.get_name()}/{context.client}/{display}"

@@ -27,6 +27,7 @@ LARGEST = 1e6  # m, sizes and places
 MOST_CONTROLS = 100  # of a marker
 MOST_MARKERS = 200  # of a control
 MOST_ENTRIES = 200  # of a menu
+TITLE = ""  # name of the controls that are its axes and words
 FEEDBACK = 0  # type of a menu's entry; the others would start programs here
 AXIS_WIDTH = 0.05  # sizes of the marker
 
@@ -73,7 +74,16 @@ class InteractiveMarker:
     def size(self) -> int:
         """How many markers there are to be drawn."""
         return sum(max(1, min(len(one.markers), MOST_MARKERS))
-                   for one in self.message.controls[:MOST_CONTROLS])
+                   for one in self._given)
+
+    @property
+    def control_names(self) -> list[str]:
+        """By which feedback tells its controls apart, also before they are built."""
+        return [TITLE, *unique([one.name[:LONGEST_TEXT] for one in self._given])]
+
+    @property
+    def _given(self) -> list[Any]:
+        return self.message.controls[:MOST_CONTROLS]
 
     def move(self, pose: Pose, header: Any = None) -> None:
         """It is elsewhere, maybe in another frame."""
@@ -94,12 +104,11 @@ class InteractiveMarker:
         self.controls += _extras(self.message, scale)
 
     def _build_controls(self, scale: float, view: View, most_points: int) -> None:
-        given = self.message.controls[:MOST_CONTROLS]
+        given = self._given
         if len(given) < len(self.message.controls):
             self.problems.append(f"showing {MOST_CONTROLS} of {len(self.message.controls)} "
                                  "controls")
-        names = unique([one.name[:LONGEST_TEXT] for one in given])
-        for name, one in zip(names, given, strict=True):
+        for name, one in zip(self.control_names[1:], given, strict=True):
             try:
                 made = _control(name, one, scale, view, most_points // len(given))
             except Problem as problem:
@@ -216,10 +225,10 @@ def _still(parts: list[Any]) -> Shown:
 def _extras(message: Any, scale: float) -> list[Control]:
     """Axes and words, which the options show."""
     cross = axes(np.array([[0.0] * 6 + [1.0]]), scale, AXIS_WIDTH * scale)
-    made = [Control("", NONE, INHERIT, IDENTITY.orientation, shown=[_still(cross)],
+    made = [Control(TITLE, NONE, INHERIT, IDENTITY.orientation, shown=[_still(cross)],
                     option="Show Axes")]
     if message.description.strip():
         title = words(message.description, TITLE_ABOVE * scale, TITLE_HEIGHT * scale)
-        made.append(Control("", NONE, VIEW_FACING, IDENTITY.orientation, shown=[_still([title])],
+        made.append(Control(TITLE, NONE, VIEW_FACING, IDENTITY.orientation, shown=[_still([title])],
                             option="Show Descriptions"))
     return made

@@ -36,8 +36,11 @@ class Server:
             self._followed = False
             return False
         self._number, self._missed, self._followed = init.seq_num, False, False
-        self.markers = {}
-        self._insert(init.markers)
+        markers: dict[str, InteractiveMarker] = {}
+        try:
+            _insert(init.markers, markers)
+        finally:
+            self.markers = markers  # at once, since other threads look for markers meanwhile
         return True
 
     def update(self, update: Any) -> bool:
@@ -53,7 +56,7 @@ class Server:
         for name in update.erases:
             self.markers.pop(name, None)
         self._move(update.poses)
-        self._insert(update.markers)
+        _insert(update.markers, self.markers)
         return True
 
     def status(self, wall: float) -> tuple[str, str]:
@@ -68,14 +71,6 @@ class Server:
             return WARNING, f"No update received for {round(wall - self._heard)} seconds."
         return OK, "OK"
 
-    def _insert(self, markers: list[Any]) -> None:
-        for marker in markers:
-            if len(marker.name) > LONGEST_NAME:
-                raise Problem(f"the name {marker.name:.40} is longer than {LONGEST_NAME}")
-            if marker.name not in self.markers and len(self.markers) >= MOST_MARKERS:
-                raise Problem(f"showing {MOST_MARKERS} markers: more are left out")
-            self.markers[marker.name] = InteractiveMarker(marker)
-
     def _move(self, poses: list[Any]) -> None:
         problem = None
         for one in poses:
@@ -86,3 +81,12 @@ class Server:
                 problem = Problem(f"{one.name:.40}: {found}")
         if problem:
             raise problem
+
+
+def _insert(messages: list[Any], markers: dict[str, InteractiveMarker]) -> None:
+    for message in messages:
+        if len(message.name) > LONGEST_NAME:
+            raise Problem(f"the name {message.name:.40} is longer than {LONGEST_NAME}")
+        if message.name not in markers and len(markers) >= MOST_MARKERS:
+            raise Problem(f"showing {MOST_MARKERS} markers: more are left out")
+        markers[message.name] = InteractiveMarker(message)
