@@ -21,12 +21,13 @@ PROGRAM = Path(__file__).parent / "soak" / "soak.py"
 HOUR = 3600.0
 
 
-def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _: 1.0):
+def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _: 1.0,
+          driven=lambda _: 0.5):
     """Samples of a process and the clock; each figure is a function of the time, s."""
     found = []
     for now in (number * PERIOD for number in range(int(count * HOUR / PERIOD))):
-        found.append(Sample(now, CLOCK, 0.0, 0, 0, pace(now), 100.0))
-        found.append(Sample(now, "gazebo", memory(now), descriptors(now), 12, 0.0, 0.0))
+        found.append(Sample(now, CLOCK, 0.0, 0, 0, pace(now), 100.0, driven(now)))
+        found.append(Sample(now, "gazebo", memory(now), descriptors(now), 12, 0.0, 0.0, 0.0))
     return found
 
 
@@ -39,10 +40,13 @@ def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _
     ({"descriptors": lambda time: 20 + int(time // 600)}, ["gazebo descriptors"]),
     ({"pace": lambda time: 1.0 - 0.05 * time / HOUR}, ["clock pace"]),
     ({"pace": lambda _: 0.0}, ["clock pace"]),  # it stands still
+    ({"driven": lambda time: 0.5 * (time < HOUR)}, ["clock driven"]),
+    ({"driven": lambda time: 4.0 * (time % 60 < PERIOD)}, []),  # a goal a minute
 ])
 def test_growth_is_more_than_two_percent_after_the_warm_up(figures, changed):
     table, verdict = judge(hours(1.5, **figures))
-    rows = [" ".join(line.split()[:2]) for line in table.splitlines() if line.endswith("CHANGES")]
+    rows = [" ".join(line.split()[:2]) for line in table.splitlines()
+            if line.endswith(("CHANGES", "STANDS"))]
     assert rows == changed and verdict is bool(changed)
 
 
@@ -56,7 +60,8 @@ def test_ever_more_processes_of_other_names_are_growth(monkeypatch):
     monkeypatch.setattr(samples.rospy, "Subscriber", lambda *_, **__: None)
     monkeypatch.setattr(samples.rospy, "get_time", time.monotonic)
     monkeypatch.setattr(samples, "processes", lambda: left)
-    sampler, left, found = samples.Sampler(), [], []
+    monkeypatch.setattr(samples, "_place", lambda _: (0.0, 0.0))
+    sampler, left, found = samples.Sampler("robot"), [], []
     for number in range(24):
         left.append(Process(os.getpid(), f"node{number}", 0.0, 1 << 20))
         found += sampler.look()

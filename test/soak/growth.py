@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from samples import CLOCK, Sample
@@ -17,10 +17,12 @@ SHARE = 5  # the first and the last of so many parts of what follows are held ag
 MOST_GROWTH = 0.02
 LEAST = {"memory": 2.0, "descriptors": 2.0, "threads": 2.0}  # MiB, count: less is no growth
 MOST_DRIFT = 0.02  # of pace and rate
+LEAST_DRIVEN = 1.0  # m, in the last part; a robot that stands loads nothing
+CLOCK_FIGURES = {"pace": statistics.median, "rate": statistics.median, "driven": sum}
 
 
 def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
-    """The table, and whether anything grows, or simulated time or its messages change pace.
+    """The table, and whether anything grows, the robot stands, or simulated time changes pace.
 
     RunError where there are too few samples for an opinion.
     """
@@ -28,26 +30,36 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
         raise RunError("too few samples to say whether anything grows: let it run on")
     rows, changes = [("process", "", "first", "last", "change", "")], False
     for name, found in grouped(samples, lambda each: each.name).items():
-        for kind in (("pace", "rate") if name == CLOCK else tuple(LEAST)):
-            parts = _ends([(each.time, getattr(each, kind)) for each in found])
+        for kind in CLOCK_FIGURES if name == CLOCK else LEAST:
+            parts = _ends([(each.time, getattr(each, kind)) for each in found],
+                          CLOCK_FIGURES.get(kind, statistics.median))
             if parts is None:
                 continue
             first, last = parts
             change = (last - first) / first if first else 0.0
-            bad = (abs(change) > MOST_DRIFT or not last if name == CLOCK else
-                   change > MOST_GROWTH and last - first >= LEAST[kind])
-            changes |= bad
-            rows.append((name, kind, f"{first:.2f}", f"{last:.2f}", f"{change:+.1%}",
-                         "CHANGES" if bad else ""))
+            verdict = _verdict(kind, first, last, change)
+            changes |= bool(verdict)
+            rows.append((name, kind, f"{first:.2f}", f"{last:.2f}", f"{change:+.1%}", verdict))
     return table(rows, left=(0, 1, 5)), changes
 
 
-def _ends(seen: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
-    """Medians of the first and the last part after the warm-up; None of too few samples."""
+def _verdict(kind: str, first: float, last: float, change: float) -> str:
+    """What is wrong with a figure; nothing of one that is as it should be."""
+    if kind == "driven":
+        return "STANDS" if last < LEAST_DRIVEN else ""
+    if kind in CLOCK_FIGURES:
+        return "CHANGES" if abs(change) > MOST_DRIFT or not last else ""
+    return "CHANGES" if change > MOST_GROWTH and last - first >= LEAST[kind] else ""
+
+
+def _ends(seen: Sequence[tuple[float, float]],
+          figure: Callable[[Sequence[float]], float] = statistics.median,
+          ) -> tuple[float, float] | None:
+    """A figure of the first and the last part after the warm-up; None of too few samples."""
     begin = min(WARM_UP, seen[-1][0] / 3) if seen else 0.0
     values = [value for when, value in seen if when >= begin]
     part = len(values) // SHARE
-    return (statistics.median(values[:part]), statistics.median(values[-part:])) if part else None
+    return (figure(values[:part]), figure(values[-part:])) if part else None
 
 
 def draw(samples: Sequence[Sample], path: Path) -> None:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from typing import NamedTuple
 
 import psutil
 import rospy
+from gazebo_msgs.srv import GetModelState
 from rosgraph_msgs.msg import Clock
 
+from run_session import names
 from run_session.cpu import processes
+from run_session.simulator import call
 
 PERIOD = 10.0  # s, wall, between two samples
 FEWEST = 30  # samples of a short run
@@ -29,12 +33,14 @@ class Sample(NamedTuple):
     threads: int
     pace: float  # simulated seconds a second since the last sample; 0 for a process
     rate: float  # messages of /clock a simulated second
+    driven: float  # m, in a straight line, since the last sample
 
 
 class Sampler:
-    """Looks at all processes below this one."""
+    """Looks at all processes below this one, and at where the robot is."""
 
-    def __init__(self) -> None:
+    def __init__(self, robot: str) -> None:
+        self._robot, self._place = robot, _place(robot)
         self._began = self._looked = time.monotonic()
         self._clocks = 0
         rospy.Subscriber("/clock", Clock, self._count, queue_size=100)
@@ -44,16 +50,18 @@ class Sampler:
         """A row for the clock, one for ALL, one for each process, those of one name added up."""
         now, simulated = time.monotonic(), rospy.get_time()
         elapsed, passed = now - self._looked, simulated - self._simulated
+        place = _place(self._robot)
         clock = Sample(now - self._began, CLOCK, 0.0, 0, 0, passed / elapsed,
-                       self._clocks / max(passed, 1e-9))
+                       self._clocks / max(passed, 1e-9), math.dist(place, self._place))
         self._looked, self._simulated, self._clocks = now, simulated, 0
+        self._place = place
         found: dict[str, Sample] = {}
         for each in processes():
             with contextlib.suppress(psutil.NoSuchProcess):
                 process = psutil.Process(each.pid)
                 held = (each.memory / MEBIBYTE, process.num_fds(), process.num_threads())
                 for name in (each.name, ALL):
-                    before = found.get(name) or Sample(clock.time, name, 0.0, 0, 0, 0.0, 0.0)
+                    before = found.get(name) or Sample(clock.time, name, 0.0, 0, 0, 0.0, 0.0, 0.0)
                     found[name] = before._replace(
                         memory=before.memory + held[0], descriptors=before.descriptors + held[1],
                         threads=before.threads + held[2])
@@ -61,3 +69,9 @@ class Sampler:
 
     def _count(self, _: Clock) -> None:
         self._clocks += 1
+
+
+def _place(robot: str) -> tuple[float, float]:
+    """x and y, m. RunError where there is no such model."""
+    position = call(names.POSE, GetModelState, robot, "").pose.position
+    return position.x, position.y

@@ -5,7 +5,7 @@
 
 Beside it: the page with five visitors, a model that is spawned and deleted, a bag that rolls.
 Writes out/soak/NAME: samples.csv, growth.png and log/. Exit code 0: all is flat after the warm-up;
-1: something grows; 2: could not run.
+1: something grows, or the robot stands; 2: could not run.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ COURSES = {  # the robot, and the words of each roslaunch
     "course": ("turtlebot3_waffle", [["learning_topic", "course_follow.launch", *SIZE]]),
     "race": ("racecar", [["racecar_description", "race.launch", *SIZE]]),
     "navigation": ("mycar", [["urdf02_gazebo", "demo02_obstacles.launch"],
-                             ["nav_demo", "nav06_auto_slam.launch", "state_publishers:=false"]]),
+                             ["nav_demo", "nav06_auto_slam.launch"]]),
 }
 
 
@@ -68,7 +68,7 @@ def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
     session.at_end(beside.end)
     seconds = options.hours * 3600
     period, until = min(PERIOD, seconds / FEWEST), time.monotonic() + seconds
-    sampler, samples = Sampler(), []
+    sampler, samples = Sampler(robot), []
     try:
         while (left := until - time.monotonic()) > 0:
             _wait(launched, beside, min(period, left))
