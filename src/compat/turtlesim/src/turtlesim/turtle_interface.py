@@ -66,7 +66,7 @@ class TurtleInterface:
             self._inbox.put(lambda: self._turtle().command(*speeds, now))
         else:
             rospy.logwarn_throttle(
-                1.0, f"{self._name}/cmd_vel: {speeds} are not finite numbers: not obeyed"
+                1.0, f"{self._name}/cmd_vel: {speeds} are not finite numbers: ignored"
             )
 
     def _set_pen(self, request) -> SetPenResponse:

@@ -109,7 +109,7 @@ def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
     """What is missing, why, and the patience with it, where a transform is not to be had."""
     name = f"transform from {link.parent} to {link.child}"
     if link.newest is None:
-        return name, "nothing on /tf or /tf_static says it", None
+        return name, "nothing publishes it on /tf or /tf_static", None
     age = rospy.Time.now().to_sec() - link.newest
     if age > LATE or stamp.is_zero():
         return f"new {name}", f"the newest is {age:.1f} s old", None
