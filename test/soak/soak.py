@@ -33,7 +33,8 @@ ROOT = Path(__file__).resolve().parents[2]
 START_LIMIT = 300.0  # s, wall
 SIZE = ["camera_width:=320", "camera_height:=240"]
 COURSES = {  # the robot, and the words of each roslaunch
-    "course": ("turtlebot3_waffle", [["learning_topic", "course_follow.launch", *SIZE]]),
+    "course": ("turtlebot3_waffle", [["learning_topic", "course_follow.launch", *SIZE,
+                                      "follower:=07follower_ground.py"]]),
     "race": ("racecar", [["racecar_description", "race.launch", *SIZE]]),
     "navigation": ("mycar", [["urdf02_gazebo", "demo02_obstacles.launch"],
                              ["nav_demo", "nav06_auto_slam.launch"]]),
