@@ -59,7 +59,7 @@ def test_a_mistake_names_file_and_key(tmp_path, values, said):
 
 def test_a_file_that_is_no_text_or_not_there(tmp_path):
     (tmp_path / "binary.yaml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(RunError, match="no text file"):
+    with pytest.raises(RunError, match="not a text file"):
         load_course(str(tmp_path / "binary.yaml"))
     with pytest.raises(RunError, match="No such file"):
         load_course(str(tmp_path / "none.yaml"))
@@ -68,7 +68,7 @@ def test_a_file_that_is_no_text_or_not_there(tmp_path):
 @pytest.mark.parametrize("text", ["a: 2020-13-45", "a: !!int ''", "a: !!bool x", "[" * 1000])
 def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
     (tmp_path / "mine.yaml").write_text(text)
-    with pytest.raises(RunError, match=r"mine\.yaml: no YAML: [^\n]{1,300}$"):
+    with pytest.raises(RunError, match=r"mine\.yaml: not valid YAML: [^\n]{1,300}$"):
         load_course(str(tmp_path / "mine.yaml"))
 
 

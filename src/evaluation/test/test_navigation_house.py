@@ -67,8 +67,8 @@ def test_a_wrong_value_is_named_with_file_and_key(tmp_path, key, value, said):
 
 
 @pytest.mark.parametrize("text, said", [
-    ("[1]", "missing key"), ("world: [", "no YAML"), (yaml.safe_dump({**VALUES, "colour": 1}),
-                                                      "unknown key 'colour'")])
+    ("[1]", "missing key"), ("world: [", "not valid YAML"),
+    (yaml.safe_dump({**VALUES, "colour": 1}), "unknown key 'colour'")])
 def test_a_broken_file_is_named(tmp_path, text, said):
     path = tmp_path / "mine.yaml"
     path.write_text(text)

@@ -150,8 +150,9 @@ def hinge(joint, pid):
 
 def test_a_table_that_is_no_controllers_file(tmp_path, capsys):
     file = tmp_path / "mine.yaml"
-    for text, code, said in (("a: [", 2, "no YAML"), ("a: !!int ''", 2, "no YAML"),
-                             ("a: 2020-13-45", 2, "no YAML"), ("[" * 1000, 2, "no YAML"),
+    for text, code, said in (("a: [", 2, "not valid YAML"), ("a: !!int ''", 2, "not valid YAML"),
+                             ("a: 2020-13-45", 2, "not valid YAML"),
+                             ("[" * 1000, 2, "not valid YAML"),
                              ("robot: {}", 1, "first key must be `racecar`"),
                              ("racecar: {left: {type: x}}", 1, "left: lacks `joint`"),
                              ("racecar: {left: 3}", 1, "left: lacks `type`"),

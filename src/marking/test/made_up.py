@@ -207,7 +207,7 @@ ARCHIVES: dict[str, tuple[bytes, str, float, float]] = {
     "broken.zip": (b"PK\3\4 no zip", "cannot be unpacked", 0, 0),
     "empty.zip": (_zip({"readme.txt": "hi"}), "no Python program", 0, 0),
     "two.zip": (_zip({"a.py": LESSON, "b.py": LESSON}), "which program drives?", 0, 0),
-    "report.docx": (b"PK", "no Python file", 0, 0),
+    "report.docx": (b"PK", "not a Python file", 0, 0),
 }
 
 

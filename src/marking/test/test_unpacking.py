@@ -61,7 +61,7 @@ def test_a_link_in_a_folder_is_refused(tmp_path):
 
 def test_a_pipe_that_is_called_an_archive_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "a.zip")
-    with pytest.raises(UnpackError, match=r"a\.zip: is no file"):
+    with pytest.raises(UnpackError, match=r"a\.zip: is not a file"):
         unpack(tmp_path / "a.zip", tmp_path / "out")
 
 

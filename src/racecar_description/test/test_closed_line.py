@@ -25,7 +25,7 @@ BROKEN = {
     "bends_overlap": "corners[0] and [1]: the bends overlap by",
     "start_beside_line": "start: 0.500 m beside the line",
     "negative_width": "line_width: must be more than 0, is -0.019",
-    "no_yaml": "no YAML: ",
+    "no_yaml": "not valid YAML: ",
     "no_mapping": "must have the keys name, size",
 }
 
@@ -130,7 +130,7 @@ def test_missing_track_file_is_named():
 
 def test_a_track_file_that_is_no_text_is_named(tmp_path):
     (tmp_path / "picture.yaml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(TrackError, match=r"picture\.yaml: no text file"):
+    with pytest.raises(TrackError, match=r"picture\.yaml: not a text file"):
         load_track(tmp_path / "picture.yaml")
 
 
@@ -144,7 +144,7 @@ MERGES = "a: &a {x: 1}\n" + "".join(
     MERGES])
 def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
     (tmp_path / "track.yaml").write_text(text)
-    with pytest.raises(TrackError, match=r"track\.yaml: no YAML: ") as caught:
+    with pytest.raises(TrackError, match=r"track\.yaml: not valid YAML: ") as caught:
         load_track(tmp_path / "track.yaml")
     assert len(str(caught.value)) < 1000
 

@@ -197,7 +197,7 @@ def test_a_tight_bend_is_a_warning(make_track):
 
 
 def test_what_is_no_picture_leaves_none(make_track, tmp_path):
-    for content, message in ((b"", "is empty"), (b"no picture", "is no picture")):
+    for content, message in ((b"", "is empty"), (b"no picture", "is not a picture")):
         (tmp_path / "bad.png").write_bytes(content)
         code, output, error = make_track(tmp_path / "bad.png")
         assert (code, output, error.count("\n")) == (1, "", 1)
@@ -295,7 +295,7 @@ def test_what_others_made_is_not_overwritten(make_track, tmp_path):
 
 
 @pytest.mark.parametrize("text, message", [
-    ("[", "no YAML"), ("name: a", "key 'size' is missing"),
+    ("[", "not valid YAML"), ("name: a", "key 'size' is missing"),
     (RACETRACK.read_text().replace("radius: 1.5}", "radius: 50}"), "bends overlap"),
     (RACETRACK.read_text().replace("start: [0.0, 0.0]", "start: [0.0, 0.5]"), "beside the line"),
     (RACETRACK.read_text() + "colour: red\n", "unknown key 'colour'")])

@@ -171,7 +171,7 @@ def test_a_road_that_would_touch_itself_says_how_wide_it_may_be(course_of):
 def test_files_that_are_no_pictures(tmp_path):
     for name, data, message in [
         ("empty.png", b"", "is empty"),
-        ("text.png", b"hello", "no picture that can be read"),
+        ("text.png", b"hello", "not a picture that can be read"),
         ("small.png", cv2.imencode(".png", drawn.blank((40, 40)))[1].tobytes(), "too small"),
     ]:
         (tmp_path / name).write_bytes(data)

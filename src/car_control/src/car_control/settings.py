@@ -92,7 +92,8 @@ def _read_table(path: Path, section: str | None, place: str) -> dict:
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
     if section is not None:
         values = values.get(section) if isinstance(values, dict) else None
     if not isinstance(values, dict):

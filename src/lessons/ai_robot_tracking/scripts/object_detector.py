@@ -120,7 +120,7 @@ def main():
             raise SettingsError(f"~window must be true or false, not {given['window']!r}")
         topic = rospy.resolve_name(given.get("image") or "image")
         if not rosgraph.names.is_legal_name(topic):
-            raise SettingsError(f"'{topic}' can be no topic; see: rostopic list")
+            raise SettingsError(f"'{topic}' cannot be a topic; see: rostopic list")
         config = given.get("config") or os.path.join(PACKAGE, "config/detector_params.yaml")
         path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
         numbers = {key: given[key] for key in FIELDS if key in given}

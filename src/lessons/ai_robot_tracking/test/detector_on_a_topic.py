@@ -123,7 +123,7 @@ class Detector(unittest.TestCase):
         self.assertIn("~window must be true or false, not 5", self.refused("_window:=5"))
 
     def test_a_name_that_is_no_topic_ends_the_node_with_one_line(self):
-        self.assertIn("'/my camera' can be no topic", self.refused("_image:=my camera"))
+        self.assertIn("'/my camera' cannot be a topic", self.refused("_image:=my camera"))
 
     def refused(self, argument):
         done = subprocess.run(

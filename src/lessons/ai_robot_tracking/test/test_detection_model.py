@@ -66,8 +66,8 @@ def test_a_yaml_beside_the_model_wins(tmp_path):
     ("name: [a, b]", "unknown key 'name'"),
     ("names: [a, b, c]", "its names are 3"),
     ("names: {1: a, 2: b}", "the numbers must be 0 to 1"),
-    ("names: [a, 7]", "7 is no name"),
-    ("names: [no, yes]", "False is no name; write it in quotes"),
+    ("names: [a, 7]", "7 is not a name"),
+    ("names: [no, yes]", "False is not a name; write it in quotes"),
     ("names: []", "must be a list"),
     ("nc: 3\nnames: [a, b]", "nc is 3, but there are 2 names"),
     ("imgsz: [0, 9]", "imgsz: must be [height, width]"),
@@ -124,7 +124,7 @@ def test_missing_files_folders_and_torch_files_are_told(tmp_path):
     assert "there is no such file" in complaint(tmp_path / "none.onnx")
     assert "is a folder" in complaint(tmp_path)
     os.mkfifo(tmp_path / "pipe.onnx")  # to read it would wait for ever
-    assert "is no regular file" in complaint(tmp_path / "pipe.onnx")
+    assert "is not a regular file" in complaint(tmp_path / "pipe.onnx")
     (tmp_path / "best.pt").write_bytes(b"PK")
     assert "yolo export model=best.pt format=onnx" in complaint(tmp_path / "best.pt")
 

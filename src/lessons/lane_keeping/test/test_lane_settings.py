@@ -60,7 +60,7 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(SettingsError, match="not a table of 'key: value' lines"):
         load_settings(tmp_path / "list.yaml")
     (tmp_path / "broken.yaml").write_text("a: [", encoding="utf-8")
-    with pytest.raises(SettingsError, match="no YAML"):
+    with pytest.raises(SettingsError, match="not valid YAML"):
         load_settings(tmp_path / "broken.yaml")
 
 
@@ -76,6 +76,6 @@ def test_parameters_win():
 def test_what_yaml_itself_trips_over_is_one_line(tmp_path, text):
     path = tmp_path / "odd.yaml"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(SettingsError, match="no YAML") as caught:
+    with pytest.raises(SettingsError, match="not valid YAML") as caught:
         load_settings(path)
     assert "\n" not in str(caught.value) and str(path) in str(caught.value)

@@ -59,7 +59,7 @@ def test_a_right_master_uri():
     ({"ROS_HOSTNAME": "localhost"}, "ROS_HOSTNAME is 'localhost', which is 127.0.0.1"),
     ({}, "hostname is 'debian', which is 127.0.1.1: the master is on another machine (robot)"),
     ({"ROS_IP": "10.0.0.9"}, "ROS_IP is '10.0.0.9', which is 10.0.0.9, no address of this machine"),
-    ({"ROS_IP": "laptop"}, "ROS_IP is 'laptop', which is no address"),
+    ({"ROS_IP": "laptop"}, "ROS_IP is 'laptop', which is not an address"),
     ({"ROS_HOSTNAME": "lap"}, "not even this machine knows its address"),
     ({"ROS_HOSTNAME": "http://laptop"}, "no http:// and no port")])
 def test_own_name(own, words):
@@ -93,7 +93,7 @@ def test_which_name_others_are_told():
     (Node("/a", "http://localhost:1", "127.0.0.1", "refused"), "leads each machine to itself"),
     (Node("/a", "http://robot:1", "10.0.0.2", "refused"), "nobody listens there any more"),
     (Node("/a", "http://robot:1", "10.0.0.2", "silence"), "does not answer at robot:1"),
-    (Node("/a", "rosrpc://x", "", "silence"), "no address")])
+    (Node("/a", "rosrpc://x", "", "silence"), "not an address")])
 def test_nodes(node, words):
     (finding,) = check_nodes([node], master_is_here=False)
     assert words in str(finding)
@@ -116,7 +116,7 @@ def test_nodes_that_answer_are_right():
 
 @pytest.mark.parametrize("answer, words", [
     ("refused", "there is no master, or it listens to its own machine alone"),
-    ("silence", "does not answer"), ("other", "no ROS master")])
+    ("silence", "does not answer"), ("other", "not a ROS master")])
 def test_master_answers(answer, words):
     (finding,) = check_master_answer(answer, "robot", 11311)
     assert words in finding.wrong and "robot" in finding.remedy

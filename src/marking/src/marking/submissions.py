@@ -105,4 +105,4 @@ def _student(entry: os.DirEntry) -> tuple[str, str]:
         return student, f"{name} is a symbolic link"
     if entry.is_dir() or is_archive(Path(name)) or name.endswith(".py"):
         return student, ""
-    return name, f"{name} is no Python file, no folder, no zip and no tar"
+    return name, f"{name} is not a Python file, a folder, a zip or a tar"

@@ -71,7 +71,7 @@ def _unpack(source: Path, folder: Path) -> None:
         if not is_archive(source) or source.is_dir():
             _write(_plain_members(source), folder)
         elif not source.is_file():
-            raise UnpackError("is no file")
+            raise UnpackError("is not a file")
         elif source.name.lower().endswith(".zip"):
             with zipfile.ZipFile(source) as opened:
                 _write(_zip_members(opened), folder)

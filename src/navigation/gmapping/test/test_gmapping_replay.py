@@ -123,8 +123,9 @@ def test_a_bag_that_is_not_there_is_one_line(capsys):
 
 
 @pytest.mark.parametrize("text, said", [
-    ("", "NAME: VALUE lines"), ("- particles", "NAME: VALUE lines"), ("a: [", "is no YAML"),
-    ("a: 2020-13-45", "is no YAML"), ("a: !!int ''", "is no YAML"), ("[" * 1000, "is no YAML")])
+    ("", "NAME: VALUE lines"), ("- particles", "NAME: VALUE lines"), ("a: [", "is not valid YAML"),
+    ("a: 2020-13-45", "is not valid YAML"), ("a: !!int ''", "is not valid YAML"),
+    ("[" * 1000, "is not valid YAML")])
 def test_a_file_of_parameters_that_is_none(bag, capsys, tmp_path, text, said):
     (tmp_path / "slam.yaml").write_text(text)
     assert replay(bag, "none", "--params", str(tmp_path / "slam.yaml")) == 1

@@ -142,8 +142,8 @@ class RoundTrip(unittest.TestCase):
         for said, command in (("no.yaml: there is no such file", ["no.yaml"]),
                               ("none.pgm: there is no such image", ["image.yaml"]),
                               ("resolution is 'wide', but must be a number", ["size.yaml"]),
-                              ("cut.pgm: is no image, or a damaged one", ["cut.yaml"]),
-                              ("'1e-46' is no resolution", ["one.pgm", "1e-46"]),
+                              ("cut.pgm: is not an image, or a damaged one", ["cut.yaml"]),
+                              ("'1e-46' is not a resolution", ["one.pgm", "1e-46"]),
                               ("got 0 arguments; usage", []),
                               ("frame_id is 3, but must be", ["one.yaml", "_frame_id:=3"])):
             self.fails(255, said, "map_server", *command)
@@ -151,7 +151,7 @@ class RoundTrip(unittest.TestCase):
     def test_mistakes_of_map_saver(self):
         for said, arguments in (("there is no such folder", ["-f", "no/map"]),
                                 ("--free 70 must be below --occ 65", ["--free", "70"]),
-                                ("'x' is no whole number", ["--occ", "x"]),
+                                ("'x' is not a whole number", ["--occ", "x"]),
                                 ("unrecognized arguments: map.pgm", ["map.pgm"])):
             self.fails(1, said, "map_saver", *arguments)
 

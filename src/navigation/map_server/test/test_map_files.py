@@ -170,12 +170,13 @@ def png_of(width, height):
 
 
 @pytest.mark.parametrize("content, said", [
-    (b"", "is no image, or a damaged one"), (b"hello", "is no image"),
-    (b"P5" + b" " * 1000 + b"x", "is no image"),
-    (b"P5\n40 30\n255\n" + bytes(1000), "is no image, or a damaged one"),
+    (b"", "is not an image, or a damaged one"), (b"hello", "is not an image"),
+    (b"P5" + b" " * 1000 + b"x", "is not an image"),
+    (b"P5\n40 30\n255\n" + bytes(1000), "is not an image, or a damaged one"),
     (b"P5\n20000 20000\n255\n" + bytes(1000), "20000 x 20000 pixels are too many"),
     (b"P4\n20000 20000\n" + bytes(1000), "20000 x 20000 pixels are too many"),
-    (png_of(30000, 30000), "30000 x 30000 pixels are too many"), (png_of(30, 30), "is no image")])
+    (png_of(30000, 30000), "30000 x 30000 pixels are too many"),
+    (png_of(30, 30), "is not an image")])
 def test_damaged_and_enormous_images(tmp_path, capfd, content, said):
     path = write(tmp_path, greys([0]))
     (tmp_path / "map.pgm").write_bytes(content)
@@ -226,7 +227,7 @@ def test_round_trip_is_exact(tmp_path, name):
 def test_where_nothing_can_be_written(tmp_path):
     (tmp_path / "taken.pgm").mkdir()
     for name, said in ((tmp_path / "no" / "map", "there is no such folder; make it first: mkdir"),
-                       (tmp_path / "taken", "is a folder"), (tmp_path / "a\nb", "is no name")):
+                       (tmp_path / "taken", "is a folder"), (tmp_path / "a\nb", "is not a name")):
         with pytest.raises(MapFileError, match=said):
             write_map(name, grid_of([[0]]))
 
@@ -250,7 +251,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):
         for old, new in zip("abcdefghi", "bcdefghij"))])
 def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
     (tmp_path / "map.yaml").write_text(text)
-    with pytest.raises(MapMetadataError, match=r"map\.yaml: is no YAML: [^\n]{1,300}$"):
+    with pytest.raises(MapMetadataError, match=r"map\.yaml: is not valid YAML: [^\n]{1,300}$"):
         read_map(tmp_path / "map.yaml")
 
 

@@ -85,9 +85,9 @@ def read_keys(path: Path, expected: Sequence[str]) -> dict:
     except OSError as error:
         raise RunError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise RunError(f"{path}: no text file") from error
+        raise RunError(f"{path}: not a text file") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise RunError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise RunError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(values, dict) or set(values) != set(expected):
         given = set(values) if isinstance(values, dict) else set()
         wrong = sorted(given - set(expected), key=str) or sorted(set(expected) - given)

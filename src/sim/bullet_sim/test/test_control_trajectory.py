@@ -112,7 +112,7 @@ def test_some_of_the_joints_are_enough_where_that_is_allowed():
     ([(1.0, [0.0])], "point 1 has 1 positions for 2 joints"),
     ([(1.0, [])], "point 1 has 0 positions"),
     ([(1.0, [0.0, 0.0], [1.0])], "point 1 has 1 velocities"),
-    ([(1.0, [0.0, math.nan])], "point 1 has positions that are no finite numbers"),
+    ([(1.0, [0.0, math.nan])], "point 1 has positions that are not finite numbers"),
 ])
 def test_impossible_points_are_told(points, text):
     with pytest.raises(InvalidTrajectory, match=text):

@@ -119,7 +119,7 @@ def test_a_texture_that_will_not_be_seen_is_one_warning(tmp_path, caplog):
     path.write_text("no image")
     warn_if_unreadable(str(path))
     assert [record.getMessage() for record in caplog.records] == [
-        f"texture {path} cannot be read: it is no image; give a PNG or JPEG; left out"]
+        f"texture {path} cannot be read: it is not an image; give a PNG or JPEG; left out"]
     cv2.imwrite(str(path), np.zeros((4, 4), np.uint8))
     caplog.clear()
     warn_if_unreadable(str(path))

@@ -77,5 +77,5 @@ def test_plugins_stay_where_they_are():
     "", "[]", "{}", '{"scene": 1}', json.dumps({"is": "Thing"}), json.dumps({"is": "Box"}),
 ])
 def test_other_texts_are_no_scene(text):
-    with pytest.raises(FormatError, match="this is no scene"):
+    with pytest.raises(FormatError, match="this is not a scene"):
         scene_from_text(text)

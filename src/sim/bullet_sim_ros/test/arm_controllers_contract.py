@@ -174,7 +174,7 @@ class ArmControllers(unittest.TestCase):
                 (trajectory((1.0, (0.1, 0.2)), joints=("shoulder", "wrist")), -2, "wrist"),
                 (trajectory((1.0, (0.1,))), -1, "1 positions for 2 joints"),
                 (trajectory((1.0, HOME), (0.5, HOME)), -1, "strictly increasing"),
-                (trajectory((1.0, (float("nan"), 0.0))), -1, "no finite numbers"),
+                (trajectory((1.0, (float("nan"), 0.0))), -1, "not finite numbers"),
                 (trajectory((0.5, HOME), start=past), -1, "in the past")):
             self.arm.send(msg)
             status, code, text = self.arm.end()

@@ -253,7 +253,7 @@ class Lockstep(unittest.TestCase):
         self.assertEqual(server.process.wait(LIMIT), 1)
         lines = server.output().strip().splitlines()
         self.assertEqual(len(lines), 1, lines)
-        self.assertIn("'no topic!', which is no topic name", lines[0])
+        self.assertIn("'no topic!', which is not a topic name", lines[0])
 
 
 if __name__ == "__main__":

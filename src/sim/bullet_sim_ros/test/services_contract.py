@@ -152,7 +152,7 @@ class Services(unittest.TestCase):
         extra = ('<gazebo><plugin name="p" filename="libgazebo_ros_joint_state_publisher.so">'
                  "<robotNamespace>a b</robotNamespace></plugin></gazebo>")
         self.assertTrue(self.put(xml=BOX.format(visual='<box size="1 1 1"/>', extra=extra)).success)
-        wait_until(lambda: any("no legal topic name" in line for line in self.log), "an error")
+        wait_until(lambda: any("not a legal topic name" in line for line in self.log), "an error")
 
     def test_a_missing_mesh_is_one_warning_and_the_model_spawns(self):
         mesh = '<mesh filename="package://gazebo_ros/meshes/not_there.stl"/>'

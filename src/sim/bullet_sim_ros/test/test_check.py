@@ -410,7 +410,7 @@ def test_a_texture_that_is_no_image(check, tmp_path):
         "<model name='m'><link name='l'><visual name='v'><geometry><box><size>1 1 1</size></box>"
         "</geometry><material><pbr><metal><albedo_map>file://" + str(tmp_path / "a.png")
         + "</albedo_map></metal></pbr></material></visual></link></model>"))
-    assert code == 1 and "a.png cannot be read: it is no image; give a PNG or JPEG" in said
+    assert code == 1 and "a.png cannot be read: it is not an image; give a PNG or JPEG" in said
 
 
 def test_a_name_of_a_million_letters_is_one_short_line(check):
@@ -444,7 +444,7 @@ def test_a_workspace_before_it_is_built(tmp_path, capsys):
 
 def test_a_folder_that_is_no_workspace_and_one_that_is_named_by_its_src(tmp_path, capsys):
     assert main([str(tmp_path)]) == 2
-    assert "this is no workspace, it has no src/ with packages" in capsys.readouterr().err
+    assert "this is not a workspace, it has no src/ with packages" in capsys.readouterr().err
     for place in ("a", "b"):
         (tmp_path / "src" / place).mkdir(parents=True)
         (tmp_path / "src" / place / "package.xml").write_text(

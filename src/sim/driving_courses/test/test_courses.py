@@ -142,7 +142,7 @@ def test_a_mistake_in_a_course_file_names_file_and_key(tmp_path, old, new, said)
 @pytest.mark.parametrize("text", ["a: 2020-13-45", "a: !!int ''", "a: !!bool x", "[" * 1000])
 def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
     (tmp_path / "mine.yaml").write_text(text)
-    with pytest.raises(CourseError, match=r"mine\.yaml: no YAML: [^\n]{1,300}$"):
+    with pytest.raises(CourseError, match=r"mine\.yaml: not valid YAML: [^\n]{1,300}$"):
         load_course(tmp_path / "mine.yaml")
 
 

@@ -108,8 +108,8 @@ def test_topics_that_can_be_driven(ask):
     ({"linear": 21, "angular": 0}, "more than 20"),
     ({"linear": 0, "angular": -1e9}, "more than 20"),
     ({"linear": 0.1, "angular": 0, "topic": "/scan"}, "no robot listens to /scan; there is /cmd"),
-    ({"linear": 0.1, "angular": 0, "topic": "a b"}, "no name of a topic"),
-    ({"linear": 0.1, "angular": 0, "topic": "/" + "a" * 5000}, "no name of a topic"),
+    ({"linear": 0.1, "angular": 0, "topic": "a b"}, "not the name of a topic"),
+    ({"linear": 0.1, "angular": 0, "topic": "/" + "a" * 5000}, "not the name of a topic"),
     ({"linear": 0.1, "angular": 0, "wheels": 3}, "wheels"),
 ])
 def test_what_is_no_command_is_refused_with_its_reason(ask, args, reason):

@@ -59,22 +59,22 @@ def test_what_is_unknown_becomes_an_entry_and_a_wrong_value_a_warning():
     strange, grid = config["displays"]
     assert (strange["supported"], strange["name"]) == (False, "P")
     assert grid["options"] == defaults(TYPES["rviz/Grid"].options)
-    assert grid["warnings"] == ["Color is '1; 2', which is no colour such as 255; 0; 0",
-                                "Alpha is 'much', which is no number from 0 to 1"]
+    assert grid["warnings"] == ["Color is '1; 2', which is not a colour such as 255; 0; 0",
+                                "Alpha is 'much', which is not a number from 0 to 1"]
 
 
 @pytest.mark.parametrize("text, said", [
-    ("a: [1", "line 1: this is no YAML"), ("[]", "there is no `Visualization Manager:`"),
-    ("Visualization Manager: {Displays: 3}", "Displays is no list"),
+    ("a: [1", "line 1: this is not valid YAML"), ("[]", "there is no `Visualization Manager:`"),
+    ("Visualization Manager: {Displays: 3}", "Displays is not a list"),
     ("Visualization Manager: {Displays: [{Name: a}]}", "entry 1 has no Class"),
-    ("Visualization Manager: {Global Options: 1}", "Global Options is no mapping"),
+    ("Visualization Manager: {Global Options: 1}", "Global Options is not a mapping"),
     ("Visualization Manager: {Displays: &a [{Class: rviz/Group, Displays: *a}]}",
-     "line 1: this is no YAML: an alias (*name)"),
+     "line 1: this is not valid YAML: an alias (*name)"),
     ("Visualization Manager: {Displays: [&a {Class: rviz/Grid, Offset: *a}]}", "an alias (*name)"),
-    ("Date: 2001-13-01", "this is no YAML: month must be in 1..12"),
-    ("a: !!int ''", "this is no YAML"), ("a: !!bool x", "this is no YAML"),
+    ("Date: 2001-13-01", "this is not valid YAML: month must be in 1..12"),
+    ("a: !!int ''", "this is not valid YAML"), ("a: !!bool x", "this is not valid YAML"),
     ("a" * (1 << 20) + "b", "is larger than 1048576 bytes"),
-    ("\0", "this is no YAML"), (b"\xff\xfe\x80", "is no text"),
+    ("\0", "this is not valid YAML"), (b"\xff\xfe\x80", "is not text"),
     ("Visualization Manager: {Displays: [" + "{Class: rviz/Grid}," * 51 + "]}", "51 displays"),
 ])
 def test_a_broken_file_is_one_line(tmp_path, monkeypatch, text, said):

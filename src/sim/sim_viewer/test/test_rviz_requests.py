@@ -79,7 +79,7 @@ def test_what_is_no_name_of_a_topic_is_not_subscribed_to(laser, topic, monkeypat
     shown = laser(topic)
     shown._open()
     level, text = shown._showing.statuses["Topic"]
-    assert level == "error" and "is no name of a topic" in text and len(text) < 100
+    assert level == "error" and "is not the name of a topic" in text and len(text) < 100
 
 
 def test_a_message_that_is_too_large_is_not_read(laser):
@@ -116,8 +116,8 @@ def test_tools_publish_what_rviz_publishes():
 
 def test_tools_are_refused_what_is_no_topic_and_places_that_are_far_off(context):
     publishers = context.node.shared(Publishers)
-    for tool, topic, said in (("drive", "/goal", "no tool 'drive'"), ("goal", "a b", "no name"),
-                              ("goal", "~goal", "no name"), ("goal", "/" * 300, "no name")):
+    for tool, topic, said in (("drive", "/goal", "no tool 'drive'"), ("goal", "a b", "not the"),
+                              ("goal", "~goal", "not the"), ("goal", "/" * 300, "not the")):
         with pytest.raises(Refused, match=said):
             publishers.open(tool, topic)
     with pytest.raises(Refused, match="no fixed frame yet"):

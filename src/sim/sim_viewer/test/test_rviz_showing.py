@@ -32,7 +32,7 @@ class Raw:
 
 def read(raw):
     if raw.message is None:
-        raise Problem("this is no sensor_msgs/LaserScan")
+        raise Problem("this is not a sensor_msgs/LaserScan")
     return raw.message, "/laser_node"
 
 
@@ -82,7 +82,7 @@ def test_what_cannot_be_read_is_an_error_until_one_comes_that_can():
     view.places["laser"] = IDENTITY
     shown.waiting.put(Raw(None))
     assert shown.look() is None
-    assert shown.statuses["Topic"] == ("error", "this is no sensor_msgs/LaserScan")
+    assert shown.statuses["Topic"] == ("error", "this is not a sensor_msgs/LaserScan")
     shown.waiting.put(scan_at(1.0))
     assert shown.look() and shown.statuses["Topic"] == ("ok", "2 messages received")
 
@@ -146,7 +146,7 @@ def test_an_error_stays_until_something_can_be_drawn():
     shown.waiting.put(broken)
     for _ in range(2):
         assert shown.look() is None
-        assert shown.statuses["Error"] == ("error", "The scan's angles are no numbers")
+        assert shown.statuses["Error"] == ("error", "The scan's angles are not numbers")
     shown.waiting.put(scan_at(2.0))
     assert shown.look() and "Error" not in shown.statuses
 

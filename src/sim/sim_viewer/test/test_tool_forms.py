@@ -30,12 +30,12 @@ def test_a_filled_in_template_is_the_message():
 
 @pytest.mark.parametrize("kind, text, reason", [
     (SpawnRequest, "xx: 1", "no field 'xx'; turtlesim/SpawnRequest has: x, y, theta, name"),
-    (SpawnRequest, "x: left", "x is 'left', which is no float32"),
-    (SpawnRequest, "name: 5", "name is 5, which is no string"),
+    (SpawnRequest, "x: left", "x is 'left', which is not of type float32"),
+    (SpawnRequest, "name: 5", "name is 5, which is not of type string"),
     (SpawnRequest, "[1, 2]", "a list of `field: value`"),
     (SpawnRequest, "x: [1", "not YAML: line 1"),
-    (SetPenRequest, "r: 256", "r is 256, which is no uint8"),
-    (SetBoolRequest, "data: 1", "data is 1, which is no bool"),
+    (SetPenRequest, "r: 256", "r is 256, which is not of type uint8"),
+    (SetBoolRequest, "data: 1", "data is 1, which is not of type bool"),
     (SetModelStateRequest, "model_state: {pose: {position: 3}}", "model_state.pose.position is 3"),
     (SetModelStateRequest, "model_state: {pose: {position: {x: {}}}}", "position.x is {}"),
     (Header, "stamp: soon", "stamp is 'soon'"),

@@ -104,7 +104,7 @@ class Tools(unittest.TestCase):
         self.assertEqual(answer, 'name: "leo"')
         self.assertEqual(rospy.wait_for_message("/leo/pose", Pose, 10.0).x, 2.0)
         for request, reason in (("z: 1", "no field 'z'; turtlesim/SpawnRequest has: x, y, theta"),
-                                ("x: far", "x is 'far', which is no float32")):
+                                ("x: far", "x is 'far', which is not of type float32")):
             error = self.link.error("call_service", name="/spawn", request=request)
             self.assertIn(reason, error)
             self.assertNotIn("\n", error)

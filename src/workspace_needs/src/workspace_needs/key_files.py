@@ -30,14 +30,14 @@ class KeyFileError(ValueError):
 def check_system_keys(content: Any, where: str) -> dict[str, Any]:
     """The content of data/system_keys.yaml; KeyFileError names an unknown or twofold key."""
     if not isinstance(content, dict):
-        raise KeyFileError(f"{where}: this is no mapping")
+        raise KeyFileError(f"{where}: this is not a mapping")
     for section in content:
         if section not in SECTIONS:
             raise KeyFileError(f"{where}: unknown section {section!r}; there are "
                                f"{', '.join(SECTIONS)}")
     for key, packages in content.get("keys", {}).items():
         if not packages or not all(isinstance(name, str) for name in packages):
-            raise KeyFileError(f"{where}: {key}: {packages!r} is no list of packages")
+            raise KeyFileError(f"{where}: {key}: {packages!r} is not a list of packages")
     return content
 
 

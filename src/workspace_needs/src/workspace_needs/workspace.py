@@ -61,7 +61,7 @@ def source_folder(path: Path) -> Path:
             return folder.resolve()
     if (path / "src").is_dir():
         raise WorkspaceError(f"{path}/src: there is no package in it; clone one into it first")
-    raise WorkspaceError(f"{path}: this is no workspace, it has no src/ with packages; give the "
+    raise WorkspaceError(f"{path}: this is not a workspace, it has no src/ with packages; give the "
                          "folder above src/, such as ~/catkin_ws")
 
 

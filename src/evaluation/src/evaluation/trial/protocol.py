@@ -171,5 +171,5 @@ def from_json(kind: Any, value: Any) -> Any:
         return tuple(from_json(get_args(kind)[0], each) for each in value)
     kinds = get_args(kind) if isinstance(kind, UnionType) else (get_origin(kind) or kind,)
     if not isinstance(value, (*kinds, int) if float in kinds else kinds):
-        raise TypeError(f"{value!r} is no {kind}")
+        raise TypeError(f"{value!r} is not of type {kind}")
     return value

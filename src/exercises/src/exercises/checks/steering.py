@@ -25,11 +25,12 @@ MOST_GAIN = 1e9  # of any kind
 
 
 def read(file: Path) -> None:
-    """CannotCheck where it is no YAML, Mistake where it lacks what controllers need."""
+    """CannotCheck where it is not valid YAML, Mistake where it lacks what controllers need."""
     try:
         table = yaml.safe_load(file.read_text(encoding="utf-8"))
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise CannotCheck(f"{file}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise CannotCheck(f"{file}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
         raise Mistake(f"{file}: its first key must be `racecar`, with controllers below it")
     for name, entry in table["racecar"].items():
@@ -68,7 +69,7 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
             drive.command(0.0, limits["angle"])
             drive.run(world.tick + round(limits["seconds"] / world.timestep))
         except KeyError as error:
-            raise Mistake(f"{file}: {error} is no controller of this car, or missing in a pid") \
+            raise Mistake(f"{file}: {error} is not a controller of this car, or missing in a pid") \
                 from error
         except SimulationError as error:
             raise Mistake(f"{file}: {error}") from error

@@ -80,7 +80,8 @@ def _section(path: Path, section: str) -> dict:
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
     values = sections.get(section) if isinstance(sections, dict) else None
     if not isinstance(values, dict):
         raise SettingsError(f"{path}: no section '{section}:' with lines of 'key: number' in it")

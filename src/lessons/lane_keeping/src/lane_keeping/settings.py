@@ -139,7 +139,8 @@ def read_table(path: Path) -> dict:
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise SettingsError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
     if not isinstance(values, dict):
         raise SettingsError(f"{path}: not a table of 'key: value' lines")
     return values

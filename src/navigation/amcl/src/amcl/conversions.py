@@ -44,7 +44,7 @@ def known_pose(message: PoseWithCovarianceStamped) -> tuple[np.ndarray, np.ndarr
     covariance[2, 2] = six[YAW, YAW]
     if not (is_valid(message.pose.pose.orientation) and np.isfinite(pose).all()
             and np.isfinite(covariance).all()):
-        raise ValueError("it holds nan, inf or a quaternion that is no turn about z")
+        raise ValueError("it holds nan, inf or a quaternion that is not a turn about z")
     return pose, covariance
 
 

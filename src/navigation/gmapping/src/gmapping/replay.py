@@ -157,7 +157,7 @@ def values_from(settings: list[str], seed: int | None, params: Path | None) -> d
     for setting in settings:
         name, separator, value = setting.partition(":=")
         if not separator:
-            raise ParameterError(f"{setting} is no NAME:=VALUE")
+            raise ParameterError(f"{setting} is not NAME:=VALUE")
         given[name.lstrip("_~")] = _yaml(value, setting)
     if seed is not None:
         given["seed"] = seed
@@ -176,7 +176,7 @@ def _yaml(text: str, where: str) -> Any:
     try:
         return yaml.safe_load(text)
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise ParameterError(f"{where:.500} is no YAML: "
+        raise ParameterError(f"{where:.500} is not valid YAML: "
                              f"{' '.join(str(error).split())[:200]}") from None
 
 

@@ -82,8 +82,8 @@ def _decode(path: Path, content: bytes) -> np.ndarray:
     finally:
         cv2.setLogLevel(told)
     if pixels is None or not pixels.size:
-        raise MapImageError(f"{path}: is no image, or a damaged one ({len(content)} bytes); a PGM "
-                            f"or PNG file is wanted")
+        raise MapImageError(f"{path}: is not an image, or a damaged one ({len(content)} bytes); a "
+                            f"PGM or PNG file is wanted")
     return pixels
 
 

@@ -67,7 +67,7 @@ def check_target(name: Path) -> None:
     if not folder.is_dir():
         raise MapFileError(f"{folder}: there is no such folder; make it first: mkdir -p {folder}")
     if not name.name.isprintable() or not name.name:
-        raise MapFileError(f"{str(name)!r} is no name for a map; write for example map")
+        raise MapFileError(f"{str(name)!r} is not a name for a map; write for example map")
     if not os.access(folder, os.W_OK | os.X_OK):
         raise MapFileError(f"{folder}: is not yours to write in; choose another folder")
     for path in _files(name):

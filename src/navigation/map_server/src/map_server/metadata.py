@@ -92,14 +92,14 @@ def _load(path: Path) -> dict[str, Any]:
         raise MapMetadataError(f"{path}: is an image; write the YAML file that belongs to it, "
                                f"such as {path.with_suffix('.yaml').name}")
     if len(content) > LARGEST:
-        raise MapMetadataError(f"{path}: is no map's YAML file: it has more than {LARGEST} "
+        raise MapMetadataError(f"{path}: is not a map's YAML file: it has more than {LARGEST} "
                                f"bytes")
     try:
         found = yaml.load(content, _Loader)
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
         reason = " ".join(str(error).split())[:200]
-        raise MapMetadataError(f"{path}: is no YAML: {reason}; write KEY: VALUE lines such as "
-                               f"{EXAMPLES['resolution']}") from None
+        raise MapMetadataError(f"{path}: is not valid YAML: {reason}; write KEY: VALUE lines such "
+                               f"as {EXAMPLES['resolution']}") from None
     if not isinstance(found, dict):
         raise MapMetadataError(f"{path}: must hold KEY: VALUE lines such as {EXAMPLES['image']}")
     return found

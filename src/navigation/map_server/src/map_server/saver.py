@@ -91,5 +91,5 @@ class _Parser(argparse.ArgumentParser):
 
 def _percent(text: str) -> int:
     if not text.isdigit() or int(text) > 100:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from 0 to 100")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 100")
     return int(text)

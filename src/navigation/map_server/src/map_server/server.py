@@ -115,7 +115,7 @@ def _load(arguments: list[str], values: dict) -> tuple:
     except ValueError:
         resolution = 0.0
     if not FINEST <= resolution <= COARSEST:
-        raise MapFileError(f"{arguments[1]!r} is no resolution; {USAGE}")
+        raise MapFileError(f"{arguments[1]!r} is not a resolution; {USAGE}")
     if values["free_thresh"] > values["occupied_thresh"]:
         raise MapFileError("~free_thresh is above ~occupied_thresh: the two are the wrong way "
                            "round; write for example _free_thresh:=0.196")

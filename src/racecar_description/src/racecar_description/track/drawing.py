@@ -49,7 +49,7 @@ def read_picture(path: Path) -> np.ndarray:
         raise TrackError(f"{path}: {error.strerror}") from error
     picture = _decode(data) if data.size else None
     if picture is None:
-        what = "is no picture that can be read" if data.size else "is empty"
+        what = "is not a picture that can be read" if data.size else "is empty"
         raise TrackError(f"{path}: {what}; save it as PNG or JPEG")
     height, width = picture.shape[:2]
     if min(height, width) < LEAST_PX:

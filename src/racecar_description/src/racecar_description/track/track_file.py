@@ -41,10 +41,10 @@ def load_track_file(path: str | Path) -> TrackFile:
     try:
         values = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "no text file"
+        reason = getattr(error, "strerror", None) or "not a text file"
         raise TrackError(f"{path}: {reason}") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise TrackError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise TrackError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
     try:
         return _track_file(values)
     except TrackError as error:

@@ -121,7 +121,7 @@ def _entry(name: str, values: dict, where: str) -> Entry:
 
 def _known(content: Any, keys: set[str], where: str) -> dict:
     if not isinstance(content, dict):
-        raise InterfaceError(f"{where}: {content!r} is no mapping")
+        raise InterfaceError(f"{where}: {content!r} is not a mapping")
     for key in content:
         if key not in keys:
             raise InterfaceError(f"{where}: unknown key {key!r}; there are {', '.join(keys)}")

@@ -139,7 +139,7 @@ def start(options: argparse.Namespace) -> Simulation | None:
     for name, topics in ((names.LOCKSTEP, parameters.lockstep),
                          (names.LOCKSTEP_SENSOR, parameters.lockstep_sensor)):
         if not all(is_legal_name(topic) for topic in split(topics)):
-            rospy.logfatal("parameter %s is %r, which is no topic name; for example /cmd_vel",
+            rospy.logfatal("parameter %s is %r, which is not a topic name; for example /cmd_vel",
                            rospy.resolve_name(name), topics)
             return None
     simulation = Simulation(world, parameters)

@@ -75,7 +75,8 @@ def load_course(name: str | Path) -> Course:
         known = ", ".join(sorted(found.stem for found in FOLDER.glob("*.yaml")))
         raise CourseError(f"{path}: {error.strerror}; there are: {known}") from error
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise CourseError(f"{path}: no YAML: {' '.join(str(error).split())[:200]}") from error
+        raise CourseError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
     course = _fill(Course, values, str(path))
     for key, known in CHOICES.items():
         if getattr(course, key) not in known:

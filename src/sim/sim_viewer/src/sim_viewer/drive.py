@@ -185,7 +185,7 @@ async def drive_release(context: Context) -> None:
 def _legal(topic: str) -> str:
     """Its full name."""
     if len(topic) > 256 or not rosgraph.names.is_legal_name(topic) or topic.startswith("~"):
-        raise Refused(f"{topic[:40]!r} is no name of a topic; cmd_vel is one")
+        raise Refused(f"{topic[:40]!r} is not the name of a topic; cmd_vel is one")
     return rospy.resolve_name(topic)
 
 

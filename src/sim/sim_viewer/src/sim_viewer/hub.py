@@ -196,7 +196,7 @@ def _decode(text: str) -> dict[str, Any]:
     try:
         request = json.loads(text, parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
-        raise Refused(f"this is no JSON: {error}") from None
+        raise Refused(f"this is not valid JSON: {error}") from None
     if not isinstance(request, dict):
         raise Refused("a message is an object: {\"id\": 1, \"op\": \"NAME\"}")
     return request

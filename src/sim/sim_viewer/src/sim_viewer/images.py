@@ -142,5 +142,5 @@ def _find(master: MasterView, wished: str) -> tuple[str, type]:
     (topic, *others), types = sources(master, wished), master.types()
     if not others:
         return topic, KINDS[types[topic]]
-    raise Refused(f"{wished!r:.80} is no image topic that somebody publishes; "
+    raise Refused(f"{wished!r:.80} is not an image topic that somebody publishes; "
                   f"there are {', '.join(_offered(master)) or 'none'}")

@@ -65,6 +65,6 @@ def read_options() -> Options:
 def _read(name: str, kind: type, default):
     value = rospy.get_param(f"~{name}", default)
     if type(value) is not kind:
-        raise OptionError(f"{name} is {value!r}, which is no {kind.__name__}; "
+        raise OptionError(f"{name} is {value!r}, which is not of type {kind.__name__}; "
                           f"the default is {name}:={str(default).lower()}")
     return value

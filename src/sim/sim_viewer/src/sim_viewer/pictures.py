@@ -46,7 +46,7 @@ def visible(msg: Image) -> np.ndarray:
         raise _cannot(msg, str(error)) from None
     channels = 1 if picture.ndim == 2 else picture.shape[2]
     if channels not in (1, 3, 4):
-        raise _cannot(msg, f"{channels} numbers a pixel are no colour")
+        raise _cannot(msg, f"{channels} numbers a pixel are not a colour")
     colours = picture[..., :3] if channels == 4 else picture
     if msg.encoding.startswith("rgb"):
         colours = colours[..., ::-1]

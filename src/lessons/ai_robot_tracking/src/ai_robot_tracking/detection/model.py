@@ -122,7 +122,7 @@ def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
     if not path.is_file():  # nor a pipe or a device: they may never end
         reason = "there is no such file"
         if path.exists():
-            reason = "is a folder" if path.is_dir() else "is no regular file"
+            reason = "is a folder" if path.is_dir() else "is not a regular file"
         raise ModelError(f"{path}: {reason}; give the path of an .onnx file")
     if path.suffix.lower() in (".pt", ".pth"):
         raise ModelError(f"{path}: is for PyTorch; export it: yolo export model={path.name} "

@@ -60,7 +60,7 @@ def checked_names(value: object, where: str) -> list[str]:
         raise SettingsError(f"{where}: must be a list, for example [person, cone]")
     for name in value:
         if not isinstance(name, str) or not name:
-            raise SettingsError(f"{where}: {name!r} is no name; write it in quotes")
+            raise SettingsError(f"{where}: {name!r} is not a name; write it in quotes")
     return value
 
 

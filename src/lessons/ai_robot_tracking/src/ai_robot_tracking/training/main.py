@@ -81,7 +81,7 @@ def _seed(text: str) -> int:
 
 def _whole(text: str, least: int) -> int:
     if not (text.isascii() and text.isdigit()) or not least <= int(text) <= MOST:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} to {MOST}")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {MOST}")
     return int(text)
 
 

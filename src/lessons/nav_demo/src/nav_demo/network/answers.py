@@ -36,7 +36,7 @@ def _judged(node: Node, master_is_here: bool) -> tuple[str, str] | None:
     """What is wrong with a node, and what to type."""
     place = split_uri(node.uri)
     if place is None:
-        return f"registered {node.uri!r}, which is no address", "rosnode cleanup"
+        return f"registered {node.uri!r}, which is not an address", "rosnode cleanup"
     host, port = place
     there = "(on the machine where it runs; then start it again)"
     if not node.address:
@@ -70,8 +70,8 @@ def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
                     f"on {host}: export ROS_HOSTNAME={host}; roscore"),
         "silence": (f"{place} does not answer: the address is wrong, or a firewall is between",
                     f"ping -c 3 {host}"),
-        "other": (f"what listens at {place} is no ROS master", f"roscore -p OTHER_PORT, on {host}, "
-                  f"and that port in ROS_MASTER_URI"),
+        "other": (f"what listens at {place} is not a ROS master",
+                  f"roscore -p OTHER_PORT, on {host}, and that port in ROS_MASTER_URI"),
     }[answer]
     return [Finding(wrong, remedy)] if wrong else []
 

@@ -75,7 +75,7 @@ def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list
         found.append(Finding(f"ROS_HOSTNAME is {hostname!r} and ROS_IP {ip!r}: the second has no "
                              f"effect", "unset ROS_IP"))
     if source == "ROS_IP" and not ADDRESS.fullmatch(name):
-        return [*found, Finding(f"ROS_IP is {name!r}, which is no address", remedy)]
+        return [*found, Finding(f"ROS_IP is {name!r}, which is not an address", remedy)]
     if "/" in name or ":" in name:
         return [*found, Finding(f"{source} is {name!r}: only a name or an address belongs there, "
                                 f"no http:// and no port", remedy)]

@@ -45,7 +45,7 @@ def warn_if_unreadable(path: str) -> None:
     try:
         check_image(path)
         if not cv2.haveImageReader(path):
-            raise FormatError(f"{path} cannot be read: it is no image; give a PNG or JPEG")
+            raise FormatError(f"{path} cannot be read: it is not an image; give a PNG or JPEG")
     except FormatError as error:
         log.warning("texture %s; left out", error)
 

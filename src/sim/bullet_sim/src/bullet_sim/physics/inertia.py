@@ -37,7 +37,7 @@ def check_inertial(inertial: Inertial) -> None:
     moments = np.linalg.eigvalsh(symmetric_matrix(inertial.inertia))
     if moments[0] <= 0:
         raise SimulationError(
-            f"this is no inertia: its principal moments would be "
+            f"this is not an inertia: its principal moments would be "
             f"{', '.join(f'{m:.3g}' for m in moments)} kg m^2, and all have to be above 0; ixy, "
             "ixz and iyz are too large for ixx, iyy and izz")
 

@@ -54,7 +54,7 @@ def scene_from_text(text: str) -> SceneContent:
             (link["model"], link["link"]): (link["pose"], _tuples(link["visuals"]))
             for link in read["links"]})
     except (ValueError, KeyError, TypeError) as error:
-        raise FormatError(f"this is no scene: {error!r}") from None
+        raise FormatError(f"this is not a scene: {error!r}") from None
 
 
 def _plain(value: Any) -> Any:

@@ -62,7 +62,7 @@ def decode(msg: Image) -> np.ndarray:
     depth = np.dtype((">u2" if msg.is_bigendian else "<u2") if msg.encoding in _DEEP else "u1")
     row = msg.width * channels * depth.itemsize
     if not msg.width or not msg.height or msg.step < row or len(msg.data) < msg.step * msg.height:
-        raise ValueError(f"{len(msg.data)} bytes, {msg.step} a row, are no image of "
+        raise ValueError(f"{len(msg.data)} bytes, {msg.step} a row, are not an image of "
                          f"{msg.width}x{msg.height} px with {row} bytes a row")
     rows = np.frombuffer(msg.data, np.uint8, msg.step * msg.height).reshape(msg.height, msg.step)
     pixels = np.ascontiguousarray(rows[:, :row]).view(depth)

@@ -175,5 +175,5 @@ class PluginContext(PluginScope):
 
 def _legal(name: str) -> str:
     if not is_legal_name(name):
-        raise PluginError(f"{name!r} is no legal topic name: letters, digits, _ and / only")
+        raise PluginError(f"{name!r} is not a legal topic name: letters, digits, _ and / only")
     return name

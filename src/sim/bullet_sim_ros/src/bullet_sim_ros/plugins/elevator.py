@@ -34,7 +34,8 @@ class ElevatorPlugin:
         try:
             floor = int(msg.data)
         except ValueError:
-            log.error("%s: %r is no floor; a whole number is", self._context.describe(), msg.data)
+            log.error("%s: %r is not a floor; a whole number is", self._context.describe(),
+                      msg.data)
             return None
         if not self._bottom <= floor <= self._top:
             log.error("%s: there is no floor %d; there are %g to %g", self._context.describe(),

@@ -42,6 +42,6 @@ class GraspFixPlugin:
         fingers = [context.model.links[name] for name in named if name in context.model.links]
         for name in named:
             if name not in context.model.links:
-                log.error("%s: <gripper_link> %r is no link; there are: %s", context.describe(),
+                log.error("%s: <gripper_link> %r is not a link; there are: %s", context.describe(),
                           name, ", ".join(context.model.links))
         return Grasp(context.world, context.model.link(palm), fingers, parameters)

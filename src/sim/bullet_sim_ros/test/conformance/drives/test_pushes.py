@@ -242,7 +242,7 @@ def test_lift_names_and_bounds(bench, lift, caplog):
     # conforms: libgazebo_ros_elevator.so/bottom_floor, libgazebo_ros_elevator.so/top_floor
     cabin = lift(topic="call", robotNamespace="/house", bottom_floor=0, top_floor=1)
     for text, said in (("2", "there is no floor 2"), ("-1", "there is no floor -1"),
-                       ("up", "'up' is no floor")):
+                       ("up", "'up' is not a floor")):
         bench.send("/house/call", String(text))
         assert said in caplog.text
     bench.run(0.5)

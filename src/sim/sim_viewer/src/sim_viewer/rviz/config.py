@@ -52,9 +52,10 @@ def read_config(path: str | Path) -> dict[str, Any]:
     try:
         read = Loader(data.decode("utf-8")).get_single_data()
     except UnicodeDecodeError:
-        raise ConfigError(f"{path} is no text; give a .rviz file") from None
+        raise ConfigError(f"{path} is not text; give a .rviz file") from None
     except Exception as error:  # PyYAML lets out KeyError, IndexError and more
-        raise ConfigError(f"{path}{_where(error)}: this is no YAML: {_what(error)}") from None
+        raise ConfigError(f"{path}{_where(error)}: this is not valid YAML: {_what(error)}") \
+            from None
     try:
         return parse(read)
     except ConfigError as error:
@@ -92,7 +93,7 @@ def _displays(listed: Any, where: str, enabled: bool) -> list[dict[str, Any]]:
     if listed is None:
         return []
     if not isinstance(listed, list):
-        raise ConfigError(f"{where} is no list")
+        raise ConfigError(f"{where} is not a list")
     found = []
     for number, entry in enumerate(listed, 1):
         if not isinstance(entry, Mapping) or not isinstance(entry.get("Class"), str):
@@ -181,7 +182,7 @@ def _mapping(value: Any, where: str) -> Mapping[str, Any]:
     if value is None:
         return {}
     if not isinstance(value, Mapping):
-        raise ConfigError(f"{where} is no mapping")
+        raise ConfigError(f"{where} is not a mapping")
     return value
 
 

@@ -129,8 +129,8 @@ class Display:
             self._showing.fail("Topic", "Error subscribing: Empty topic name")
             return
         if not is_topic(self.topic):
-            self._showing.fail("Topic", f"Error subscribing: {self.topic!r:.40} is no name of a "
-                                        "topic")
+            self._showing.fail("Topic", f"Error subscribing: {self.topic!r:.40} is not the name of "
+                                        "a topic")
             return
         topics = [self.topic]
         if "sensor_msgs/CompressedImage" in self._kind.messages:
@@ -163,7 +163,7 @@ class Display:
         try:
             return decode(raw, get_message_class(name)), header.get("callerid", "")
         except Exception as error:  # a publisher with another definition of the type
-            raise Problem(f"this is no {name}: {error}") from None
+            raise Problem(f"this is not a {name}: {error}") from None
 
     async def _run(self) -> None:
         while True:

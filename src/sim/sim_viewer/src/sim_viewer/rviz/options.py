@@ -26,7 +26,7 @@ class Option:
         """The value, as this kind has it; ValueError says why it cannot be."""
         read = getattr(self, f"_{self.kind}")(value)
         if read is None:
-            raise ValueError(f"{self.name} is {value!r:.40}, which is no {self._expected()}")
+            raise ValueError(f"{self.name} is {value!r:.40}, which is not {self._expected()}")
         return read
 
     def as_json(self) -> dict[str, Any]:
@@ -35,11 +35,13 @@ class Option:
 
     def _expected(self) -> str:
         if self.kind == "choice":
-            return f"choice; there are {', '.join(self.choices)}"
+            return f"a choice; there are {', '.join(self.choices)}"
         if self.kind in ("number", "integer"):
-            return f"{self.kind} from {self.low:g} to {self.high:g}"
-        return {"color": "colour such as 255; 0; 0", "switch": "true or false"}.get(
-            self.kind, self.kind)
+            article = "an" if self.kind == "integer" else "a"
+            return f"{article} {self.kind} from {self.low:g} to {self.high:g}"
+        return {"color": "a colour such as 255; 0; 0", "switch": "true or false",
+                "namespaces": "a mapping to true or false"}.get(
+            self.kind, f"a {self.kind}")
 
     def _number(self, value: Any) -> float | None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -78,7 +78,7 @@ class Publishers:
     def open_topic(self, use: str, topic: str, kind: type) -> rospy.Publisher:
         """Get ready to publish messages of a class for a use; Refused for what is no topic."""
         if not is_topic(topic):
-            raise Refused(f"{topic[:40]!r} is no name of a topic; /goal is one")
+            raise Refused(f"{topic[:40]!r} is not the name of a topic; /goal is one")
         key = use, rospy.resolve_name(topic)
         with self._lock:
             if not self._publishers:

@@ -22,7 +22,7 @@ def bag_folder(wanted: str) -> Path:
 def bag_path(folder: Path, name: str) -> Path:
     """The file of a bag, inside the folder and nowhere else; Refused for other names."""
     if not NAME.fullmatch(name):
-        raise Refused(f"{name!r:.60} is no name for a bag: letters, digits, _ - and . only, "
+        raise Refused(f"{name!r:.60} is not a name for a bag: letters, digits, _ - and . only, "
                       "80 at most")
     path = folder / (name if name.endswith(".bag") else name + ".bag")
     if path.resolve().parent != folder.resolve():

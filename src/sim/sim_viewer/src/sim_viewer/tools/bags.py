@@ -159,7 +159,7 @@ def check_topic(topic: Any) -> None:
     """Refused unless it is a full name, which also is no option of rosbag."""
     if not isinstance(topic, str) or not topic.startswith("/") \
             or not rosgraph.names.is_legal_name(topic):
-        raise Refused(f"{topic!r:.60} is no topic's full name")
+        raise Refused(f"{topic!r:.60} is not a topic's full name")
 
 
 @watchable("bags")

@@ -41,7 +41,8 @@ def parse_steps(path: str) -> list[Step]:
             continue
         match = ELEMENT.match(part)
         if not match:
-            raise Refused(f"{path}: '{part}' is no field; write /topic/field/0 or /topic/field[0]")
+            raise Refused(f"{path}: '{part}' is not a field; "
+                          "write /topic/field/0 or /topic/field[0]")
         steps.append(match[1])
         steps.extend(int(index) for index in re.findall(r"\d+", match[2]))
     return steps

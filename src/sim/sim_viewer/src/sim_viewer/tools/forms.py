@@ -110,7 +110,7 @@ def _check_value(kind: str, value: Any, path: str) -> None:
             raise Refused(f"{path} is {value!r:.40}; {kind} is {{field: value, ...}}")
         _check(inner, value, path + ".")
     elif not _fits(kind, value):
-        raise Refused(f"{path} is {value!r:.40}, which is no {kind}")
+        raise Refused(f"{path} is {value!r:.40}, which is not of type {kind}")
 
 
 def _fits(kind: str, value: Any) -> bool:

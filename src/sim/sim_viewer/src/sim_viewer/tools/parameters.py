@@ -94,7 +94,7 @@ def _check_value(value: Any) -> None:
     if isinstance(value, dict):
         for key, below in value.items():
             if not isinstance(key, str) or not rosgraph.names.is_legal_name(key):
-                raise Refused(f"{key!r:.40} is no name of a parameter")
+                raise Refused(f"{key!r:.40} is not the name of a parameter")
             _check_value(below)
     elif isinstance(value, list):
         for one in value:
@@ -114,7 +114,7 @@ def _check_value(value: Any) -> None:
 def check_name(name: str) -> None:
     """Refused unless it is a full name of one parameter."""
     if not name.startswith("/") or name == "/" or not rosgraph.names.is_legal_name(name):
-        raise Refused(f"{name!r:.60} is no full name of a parameter; begin with a slash")
+        raise Refused(f"{name!r:.60} is not a full name of a parameter; begin with a slash")
 
 
 def master_call(ask: Callable[[rosgraph.Master], Any]) -> Any:

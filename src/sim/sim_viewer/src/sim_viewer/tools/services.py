@@ -46,7 +46,7 @@ async def call_service(context: Any, name: str, request: str) -> str:
 def service_class(name: str) -> type:
     """The class of a running service; Refused where it does not run or is not built here."""
     if not rosgraph.names.is_legal_name(name):
-        raise Refused(f"{name!r:.60} is no name of a service")
+        raise Refused(f"{name!r:.60} is not the name of a service")
     try:
         kind = rosservice.get_service_type(name)
     except (rosservice.ROSServiceException, OSError) as error:

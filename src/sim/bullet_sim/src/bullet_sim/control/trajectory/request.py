@@ -73,7 +73,7 @@ def _check_values(number: int, point: RequestedPoint, count: int) -> None:
         if len(values) != count and (len(values) or name == "positions"):
             raise InvalidTrajectory(f"point {number} has {len(values)} {name} for {count} joints")
         if not all(math.isfinite(value) for value in values):
-            raise InvalidTrajectory(f"point {number} has {name} that are no finite numbers")
+            raise InvalidTrajectory(f"point {number} has {name} that are not finite numbers")
 
 
 def join(request: TrajectoryRequest, joints: Sequence[str], continuous: Sequence[bool],

@@ -29,7 +29,7 @@ def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks
     """
     robot = parse_xml(text, "the robot description")
     if robot.tag != "robot":
-        raise FormatError(f"the robot description is no URDF: its root is <{robot.tag}>")
+        raise FormatError(f"the robot description is not URDF: its root is <{robot.tag}>")
     tree = read_tree(robot)
     source = Source(resources)
     named = {element.get("name", ""): element for element in robot.findall("material")}

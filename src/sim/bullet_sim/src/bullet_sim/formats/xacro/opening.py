@@ -51,7 +51,7 @@ def load_yaml(filename: str) -> Any:
 
 
 def _check(filename: str) -> None:
-    """OSError for what exists and is no regular file: reading a pipe would block."""
+    """OSError for what exists and is not a regular file: reading a pipe would block."""
     if os.path.exists(filename):
         try:
             check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")

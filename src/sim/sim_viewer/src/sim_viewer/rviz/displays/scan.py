@@ -17,7 +17,7 @@ def scan_points(message: Any, options: dict[str, Any], most: int,
     """Of all beams with a range within the laser's own limits. Problem for angles that are none."""
     ranges = np.asarray(message.ranges, float)
     if not np.isfinite([message.angle_min, message.angle_increment]).all():
-        raise Problem("The scan's angles are no numbers")
+        raise Problem("The scan's angles are not numbers")
     hit = np.flatnonzero((ranges >= message.range_min) & (ranges <= message.range_max)
                          & np.isfinite(ranges))
     chosen = hit[evenly(len(hit), most)]
