@@ -369,10 +369,10 @@ def test_a_weightless_link_floats_when_gravity_changes(counted):
 
 # --- heaps
 
-def crowd(world: World, count: int = 9) -> list:
+def crowd(world: World, count: int = 9, surface: Surface = Surface()) -> list:
     """Barrels on wide feet, put closer than their feet allow, as a saved world has them."""
-    foot = Collision("foot", Cylinder(0.5, 0.03), Pose((0.0, 0.0, 0.015)))
-    drum = Collision("drum", Cylinder(0.3, 1.0), Pose((0.0, 0.0, 0.53)))
+    foot = Collision("foot", Cylinder(0.5, 0.03), Pose((0.0, 0.0, 0.015)), surface)
+    drum = Collision("drum", Cylinder(0.3, 1.0), Pose((0.0, 0.0, 0.53)), surface)
     link = replace(body("link", Sphere(0.1)), collisions=(foot, drum), inertial=Inertial(
         1.0, Pose((0.0, 0.0, 0.5)), inertia(1.0, 0.8)))
     barrel = ModelDescription("barrel", links=(link,))
@@ -440,6 +440,21 @@ def test_what_slides_into_a_disabled_heap_moves_it(counted):
     counted.run(1.0)
     assert all(barrel.pose.position[0] > x + 0.02
                for barrel, x in zip(barrels, before, strict=True))
+
+
+def test_what_is_knocked_out_of_a_disabled_heap_flies_on(counted):
+    world = counted.world
+    world.spawn(ground(1.0))
+    barrels = crowd(world, 2, Surface(mu=0.1, restitution=0.9))
+    link = body("link", Sphere(0.2), 5.0, gravity=False)
+    rubber = replace(link.collisions[0], surface=Surface(restitution=0.9))
+    ball = world.spawn(ModelDescription("ball", links=(replace(link, collisions=(rubber,)),)),
+                       Pose((-1.5, 0.0, 0.5)))
+    counted.run(4.0)
+    assert counted.run(1.0) == 0
+    ball.set_velocity(Twist((4.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(0.6)
+    assert all(barrel.twist.linear[0] > 3.0 for barrel in barrels)
 
 
 def test_what_a_disabled_heap_stands_on_can_be_taken_away(counted):

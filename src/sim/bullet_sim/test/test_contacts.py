@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from bullet_sim.description import Box, Collision, Cylinder, Plane, Sphere, Surface
@@ -206,6 +207,12 @@ def test_bit_masks_say_who_collides(world, lower, upper, meet):
     model = world.spawn(read(link(box(surface=mask(upper)))), Pose((0, 0, 0.05)))
     run(world, 0.5)
     assert (model.pose.position[2] > 0) == meet
+
+
+def test_rays_meet_what_collides_with_some_only(world):
+    world.spawn(ground(mask("2")))
+    hit = world.cast_rays(np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, -1.0]]))
+    assert hit.fraction == pytest.approx([0.5])
 
 
 def test_collide_without_contact_lets_things_pass(world):

@@ -8,6 +8,7 @@ from bullet_sim.description import (
     Box,
     Collision,
     Inertial,
+    JointDescription,
     LinkDescription,
     ModelDescription,
     Plane,
@@ -90,6 +91,17 @@ def test_a_moved_body_does_so_too(world):
     cube.set_pose(Pose((0, 0, 0.03)))
     assert max(heights(world, cube, 2.0)) < HALF + 0.005
     assert abs(cube.pose.rpy()[0]) < 0.01
+
+
+def test_beside_what_is_held_deep_a_body_leaves_as_slowly(world):
+    """The part that all correct stays the same then."""
+    arm = LinkDescription("arm", collisions=CUBE.links[0].collisions)
+    world.spawn(ModelDescription("robot", links=(LinkDescription("base"), arm), joints=(
+        JointDescription("base", "fixed", "world", "base"),
+        JointDescription("arm", "fixed", "base", "arm"))), Pose((1.0, 0.0, 0.0)))
+    world.step(100)
+    rising = heights(world, world.spawn(CUBE, Pose((0, 0, HALF - 0.06))), 2.0)
+    assert max(b - a for a, b in itertools.pairwise(rising)) / 0.01 < 1.1 * FASTEST
 
 
 def test_what_is_deep_for_good_is_left_to_the_engine_in_the_end(world, monkeypatch):

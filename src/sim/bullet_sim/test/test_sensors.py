@@ -19,7 +19,7 @@ from bullet_sim.description import (
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.sensors.ground_truth import GroundTruth
 from bullet_sim.sensors.imu import ImuReading, ImuSensor
-from bullet_sim.sensors.laser import Laser, LaserReading
+from bullet_sim.sensors.laser import Laser
 from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
@@ -175,8 +175,3 @@ def test_ground_truth_seen_from_another_link_is_in_its_axes():
     assert reading.twist.linear == pytest.approx((0.75, -2.0, 0.0), abs=1e-6)
     assert reading.twist.angular == pytest.approx((0.0, 0.0, -1.0), abs=1e-6)
     world.close()
-
-
-def test_a_sweep_is_one_row_unless_it_says_more():
-    flat = LaserReading(0.0, np.ones(4), np.zeros(4), -1.0, 1.0, 0.1, 9.0)
-    assert flat.rows == 1

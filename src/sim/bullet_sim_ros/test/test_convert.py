@@ -50,7 +50,7 @@ def test_numbers_that_no_engine_can_take_are_found_at_any_depth(value, sane):
 def test_laser_keeps_infinities_and_spreads_the_angles():
     ranges = np.array([math.inf, 1.5, -math.inf], np.float32)
     msg = convert.laser_to_msg(
-        LaserReading(2.0, ranges, np.zeros(3, np.float32), 0.0, 6.28319, 0.12, 3.5))
+        LaserReading(2.0, ranges, np.zeros(3, np.float32), 0.0, 6.28319, 0.12, 3.5, 1))
     assert msg.ranges == [math.inf, 1.5, -math.inf]
     assert msg.angle_increment == pytest.approx(6.28319 / 2)
     assert (msg.time_increment, msg.intensities) == (0, [0, 0, 0])

@@ -237,10 +237,10 @@ def test_a_broken_marker_is_told_of_and_the_others_are_shown(message, said):
 def test_a_pose_that_is_none_is_told_of_and_the_others_are_followed():
     made, _ = shown(init(0, handle("a"), handle("b")))
     with pytest.raises(Problem, match="a: Message contained invalid"):
-        made.take(update(1, poses=[moved("a", at(math.nan, 0)), moved("b", at(3.0, 0.0))]),
-                  None, 0.0)
+        made.take(update(1, [handle("c", pose=at(5.0, 0.0))], [
+            moved("a", at(math.nan, 0)), moved("b", at(3.0, 0.0))]), None, 0.0)
     poses = [one["pose"][0] for one in made.draw(MadeUpView())[0].fields["markers"]]
-    assert poses == [0.0, 3.0]
+    assert poses == [0.0, 3.0, 5.0]
 
 
 def test_orientations_of_any_length_are_taken():
@@ -269,7 +269,11 @@ def test_more_than_there_is_room_for_is_refused(monkeypatch):
         made.take(init(0, *map(handle, "abc")), None, 0.0)
     assert names(made.draw(MadeUpView())) == ["a", "b"]
     with pytest.raises(Problem, match="longer than 200"):
-        made.take(init(1, handle("x" * 201)), None, 0.0)
+        made.take(init(1, handle("a"), handle("x" * 201), handle("b")), None, 0.0)
+    assert names(made.draw(MadeUpView())) == ["a", "b"]
+    with pytest.raises(Problem, match="showing 2 markers"):
+        made.take(update(2, [handle("c"), handle("b", pose=at(5.0, 0.0))]), None, 0.0)
+    assert made.find("s\nb").message.pose.position.x == 5.0
     with pytest.raises(Problem, match="longer than 200"):
         made.take(init(1, server="x" * 201), None, 0.0)
     monkeypatch.setattr(interactive, "MOST_SERVERS", 1)

@@ -11,7 +11,7 @@ STEP = 0.5  # cells, as navfn goes
 
 @compiled("void(f8[:,::1], i8, i8, f8[::1])")
 def _slope(potential, row, column, found):
-    """Unit vector (along columns, along rows) downhill in one cell; 0, 0 where there is none."""
+    """Unit vector (along columns, along rows) downhill in a cell that was reached, or 0, 0."""
     rows, columns = potential.shape
     here = potential[row, column]
     for axis in range(2):
@@ -28,14 +28,12 @@ def _slope(potential, row, column, found):
                 after = potential[row + 1, column]
         # The upwind side only: it alone is downhill for sure, next to a wall and in a valley.
         side = before if before <= after else after
-        down = max(here - side, 0.0) if side < np.inf else 0.0
+        down = max(here - side, 0.0)
         found[axis] = -down if before <= after else down
     length = np.hypot(found[0], found[1])
-    if length > 0.0 and here < np.inf:
+    if length > 0.0:
         found[0] /= length
         found[1] /= length
-    else:
-        found[0] = found[1] = 0.0
 
 
 @compiled("b1(f8[:,::1], f8, f8, f8[::1])")

@@ -118,7 +118,7 @@ class BodyJoints(EngineHandle):
         row = self.read(pybullet.getJointState, self.joint_index[joint])
         return row[0], row[1]
 
-    def reset_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
+    def reset_joint(self, joint: str, position: float, velocity: float) -> None:
         """Put a joint somewhere at once."""
         if not self._is_number("joint position", position, velocity):
             return

@@ -79,7 +79,7 @@ class BodyLinks(EngineHandle):
         self.change_without_waking(pybullet.applyExternalForce, index, force,
                                    self._com_position(index), pybullet.WORLD_FRAME)
 
-    def apply_force(self, link: str, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
+    def apply_force(self, link: str, force: Vector3, torque: Vector3) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
         if not self._is_number("force", *force, *torque):
             return

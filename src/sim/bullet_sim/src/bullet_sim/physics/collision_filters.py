@@ -12,8 +12,8 @@ from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.quiet import pybullet
 
 ALL_BITS = 0xFFFF  # SDF's default of collide_bitmask
-SHIFT = 8  # of these bits in the engine's masks, whose lowest ones say what moves
-MOVING, STILL = 1, 2  # the engine's own groups
+SHIFT = 8  # of these bits in the engine's masks, past its own groups
+RAYS = 1  # the engine's group of rays, and of what moves
 # Body, engine's number of a link with collisions, described link.
 FilteredLink = tuple[Body, int, str]
 
@@ -61,7 +61,7 @@ class CollisionFilters:
             return
         self._masked = True
         group = bits << SHIFT
-        others = 0 if bits == 0 else group | MOVING | (0 if body.tree.fixed else STILL)
+        others = group | RAYS if bits else 0
         self._client.change(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
 
     def _needs_filter(self, one: FilteredLink, other: FilteredLink) -> bool:

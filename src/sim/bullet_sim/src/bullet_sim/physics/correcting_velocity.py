@@ -14,7 +14,6 @@ from bullet_sim.physics.quiet import pybullet
 CORRECTED = 0.08  # part of the depth in each step; PyBullet's own, of rigid contacts
 ALL = 1.0  # of it: what is no deeper separates at the engine's own velocity
 FASTEST = 0.2  # m/s at which it separates
-DEEPEST = 1.0  # m, that is reckoned with
 LONGEST = 5.0  # s, simulated, after which the engine has its own way again
 DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
 
@@ -28,24 +27,17 @@ class CorrectingVelocityLimit:
     def __init__(self, run: Callable, bodies: Sequence[SimulatedBody]):
         self._run = run
         self._bodies = bodies
-        self._part = ALL
+        self._part: float | None = ALL  # that all bodies correct; None: one has come since
         self._left = 0.0  # s, for which to look on
-        self._placed = False  # since the last step
 
     def watch(self) -> None:
         """A body was placed."""
-        self._left = LONGEST
-        self._placed = True
+        self._left, self._part = LONGEST, None
 
     def before_step(self, timestep: float) -> None:
         """Choose the part of the depth that the next step, of `timestep` (s), corrects."""
         if not self._left:
             return
-        if self._placed:
-            # Contacts keep what their bodies were like when they were found: find them when these
-            # hardly push.
-            self._placed = False
-            self._limit(FASTEST * timestep / DEEPEST, timestep)
         self._left = max(0.0, self._left - timestep)
         deepest = self._deepest() if self._left else 0.0
         part = min(ALL, FASTEST * timestep / deepest) if deepest > 0.0 else ALL

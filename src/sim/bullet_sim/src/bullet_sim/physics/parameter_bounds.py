@@ -15,8 +15,8 @@ SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and with it an answe
 LONGEST_STEP = 0.1  # s; with longer ones things pass through each other
 MOST_ITERATIONS = 10_000  # a step; the bound in gazebo_ros' cfg/Physics.cfg
 HIGHEST_RATE = 1e6  # Hz
-# Fields of PhysicsDescription that no engine's number follows, and their names in messages: from
-# 0 on.
+# Fields of PhysicsDescription that no parameter of the engine follows, and their names in messages;
+# none may be below 0.
 KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
         "contact_surface_layer": "contact_surface_layer",
         "contact_max_correcting_vel": "contact_max_correcting_vel"}

@@ -58,4 +58,4 @@ def _place(collision: Collision, frame: Pose) -> Place:
     surface = collision.surface
     # More than 1 counts as 1 on what never moves, see contact_parameters._friction.
     alike = (min(surface.mu, 1.0), surface.restitution, collision.laser_retro)
-    return tuple(round(value, 6) + 0.0 for value in (*normal, distance, *alike))
+    return tuple(round(value, 6) for value in (*normal, distance, *alike))

@@ -27,7 +27,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
         along = tuple(effort * part for part in link.joint.axis)
         if link.joint.type == "prismatic":
             force = add(force, along)
-        elif link.joint.type != "ball":
+        else:  # a ball's effort is 0
             torque = add(torque, along)
     anchor = (0.0, 0.0, 0.0) if moves or joint is None else joint.pose.position
     arm = tuple(c - a for c, a in zip(com.position, anchor, strict=True))

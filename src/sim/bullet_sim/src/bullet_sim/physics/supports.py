@@ -61,7 +61,7 @@ def find_supports(tree: Tree) -> Iterator[Support]:
         if link.parent not in swivels:
             continue
         swivel = swivels[link.parent]
-        if link.joint is None or link.joint.type in ("ball", "fixed"):
+        if link.joint is None or link.joint.type == "ball":
             swivels[link.name] = swivel
         elif swivel is None and _is_swivel(link, frame):
             swivels[link.name] = frame

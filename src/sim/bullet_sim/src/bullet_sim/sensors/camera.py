@@ -134,7 +134,7 @@ def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> Came
 
 
 def _mistake(camera: CameraDescription, renderer: Renderer, wide_angle: bool) -> str | None:
-    """Why a camera cannot be drawn; empty if it can."""
+    """Why a camera cannot be drawn; None if it can."""
     if min(camera.width, camera.height) < 1:
         return f"an image of {camera.width}x{camera.height} px"
     side_px = min(renderer.largest_px, LARGEST_SQUARE_PX)

@@ -5,7 +5,7 @@ import numpy as np
 
 from bullet_sim.description import Noise
 
-_PLACES = 65_521  # where a sheet can be laid; prime, so that places share no row length
+_PLACES = 65_521  # where a sheet can be laid
 
 
 class ImageNoise:

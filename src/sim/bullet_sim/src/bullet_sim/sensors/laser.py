@@ -22,7 +22,7 @@ class LaserReading:
     angle_max: float  # rad, direction of the last beam
     range_min: float  # m
     range_max: float  # m
-    rows: int = 1  # of n / rows beams each, the lowest first
+    rows: int  # of n / rows beams each, the lowest first
 
 
 class Laser:

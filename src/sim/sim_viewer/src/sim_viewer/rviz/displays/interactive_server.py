@@ -55,8 +55,10 @@ class Server:
         self._number, self._missed, self._followed = update.seq_num, False, True
         for name in update.erases:
             self.markers.pop(name, None)
-        self._move(update.poses)
-        _insert(update.markers, self.markers)
+        try:
+            self._move(update.poses)
+        finally:
+            _insert(update.markers, self.markers)
         return True
 
     def status(self, wall: float) -> tuple[str, str]:
@@ -84,9 +86,13 @@ class Server:
 
 
 def _insert(messages: list[Any], markers: dict[str, InteractiveMarker]) -> None:
+    problem = None
     for message in messages:
         if len(message.name) > LONGEST_NAME:
-            raise Problem(f"the name {message.name:.40} is longer than {LONGEST_NAME}")
-        if message.name not in markers and len(markers) >= MOST_MARKERS:
-            raise Problem(f"showing {MOST_MARKERS} markers: more are left out")
-        markers[message.name] = InteractiveMarker(message)
+            problem = Problem(f"the name {message.name:.40} is longer than {LONGEST_NAME}")
+        elif message.name not in markers and len(markers) >= MOST_MARKERS:
+            problem = Problem(f"showing {MOST_MARKERS} markers: more are left out")
+        else:
+            markers[message.name] = InteractiveMarker(message)
+    if problem:
+        raise problem
