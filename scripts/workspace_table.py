@@ -47,10 +47,10 @@ def table(tables: Tables, installed: set[str]) -> str:
     there = sorted(tables.ours | {key for key, names in ros.items() if installed.issuperset(names)})
     later = sorted(set(ros) - set(there))
     lines = ["| | packages |", "|---|---|",
-             f"| there, by this repository or by setup ({len(there)}) | {_names(there)} |",
+             f"| included, or installed by setup ({len(there)}) | {_names(there)} |",
              f"| Debian has it, `make deps` installs it ({len(later)}, "
              "and several hundred keys of plain libraries and Python modules) | "
-             f"{_names(later)} |", "", "| not to be had | such as | why |", "|---|---|---|"]
+             f"{_names(later)} |", "", "| not available | such as | why |", "|---|---|---|"]
     lines += [f"| {row.what} | {_names(row.keys[:8])} | {row.why} |" for row in tables.absences]
     return "\n".join(lines) + "\n"
 

@@ -17,7 +17,7 @@ def warnings(caplog) -> list[str]:
 
 
 def test_a_mistyped_tag_is_one_warning_with_a_hint(bench, caplog):
-    # conforms: tag that nobody reads
+    # conforms: unknown tag
     bench.spawn(PLUGIN.format("libgazebo_ros_p3d.so", P3D + "<updaterate>5</updaterate>"))
     assert warnings(caplog) == [
         "model bot: plugin p (libgazebo_ros_p3d.so): <updaterate> is ignored, as by Gazebo: the "
@@ -28,7 +28,7 @@ def test_a_mistyped_tag_is_one_warning_with_a_hint(bench, caplog):
 
 
 def test_each_such_tag_is_named_once(bench, caplog):
-    # conforms: tag that nobody reads
+    # conforms: unknown tag
     twice = "<colour>red</colour><frameNam>x</frameNam><colour>blue</colour>"
     bench.spawn(PLUGIN.format("libgazebo_ros_p3d.so", P3D + twice))
     lines = warnings(caplog)
@@ -54,14 +54,14 @@ def test_each_such_tag_is_named_once(bench, caplog):
     PLUGIN.format("libgazebo_ros_template.so", "<updateRate>3</updateRate>"),
 ])
 def test_tags_that_public_robots_carry_are_no_warning(bench, caplog, model):
-    # conforms: tag that nobody reads
+    # conforms: unknown tag
     bench.spawn(model, namespace="/bot_1")
     assert warnings(caplog) == []
     bench.delete("bot")  # ends the thread that waits for the robot's description
 
 
 def test_a_plugin_that_cannot_load_says_only_that(bench, caplog):
-    # conforms: tag that nobody reads
+    # conforms: unknown tag
     bench.spawn(PLUGIN.format("libgazebo_ros_p3d.so", "<bodyname>a</bodyname>"))
     assert warnings(caplog) == ["model bot: plugin p (libgazebo_ros_p3d.so) is not loaded: it "
                                 "needs a <bodyName>"]
@@ -77,7 +77,7 @@ ARMS = """<arm><palm_link>a</palm_link><gripper_link>a</gripper_link><arm_nam>x<
     ("libgazebo_ros_harness.so", HARNESS, ("<winch><pos_pd>", "<winch><pos_pid>")),
     ("libgazebo_grasp_fix.so", ARMS, ("<arm><arm_nam>", "<arm><arm_name>"))])
 def test_so_is_one_within_a_plugins_element(bench, caplog, library, tags, named):
-    # conforms: tag that nobody reads
+    # conforms: unknown tag
     bench.spawn(PLUGIN.format(library, tags))
     (line,) = warnings(caplog)
     assert f"{named[0]} is ignored" in line and line.endswith(f"did you mean {named[1]}?")

@@ -35,13 +35,11 @@ class Option:
 
     def _expected(self) -> str:
         if self.kind == "choice":
-            return f"a choice; there are {', '.join(self.choices)}"
-        if self.kind in ("number", "integer"):
-            article = "an" if self.kind == "integer" else "a"
-            return f"{article} {self.kind} from {self.low:g} to {self.high:g}"
+            return f"one of {', '.join(self.choices)}"
+        span = f"from {self.low:g} to {self.high:g}"
         return {"color": "a colour such as 255; 0; 0", "switch": "true or false",
-                "namespaces": "a mapping to true or false"}.get(
-            self.kind, f"a {self.kind}")
+                "namespaces": "a mapping to true or false", "integer": f"an integer {span}",
+                "number": f"a number {span}"}.get(self.kind, f"a {self.kind}")
 
     def _number(self, value: Any) -> float | None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
