@@ -159,7 +159,7 @@ class Client:
                        lambda data, keep=False: self._outbox.post(number, data, keep))
         self._watches[number] = watched
         self._outbox.open(number)
-        # Before the first event, so that the browser knows whose it is.
+        # Answers overtake queued events; the page keeps events that come before this answer.
         answer = {"watch": number}
         try:
             await self._run(watched.start)
