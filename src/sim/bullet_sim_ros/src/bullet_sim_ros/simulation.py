@@ -67,7 +67,7 @@ class Simulation:
                     function()
                 if not self.world.paused and not self._stopped():
                     left -= self._advance(left)
-            except EngineError as error:  # from a pose set by topic or service
+            except EngineError as error:  # from a topic that publishes poses
                 self.world.delete_lost_models(error)
 
     def stop(self) -> None:

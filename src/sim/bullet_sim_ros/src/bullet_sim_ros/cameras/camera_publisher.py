@@ -88,7 +88,7 @@ class CameraPublisher:
 
 
 def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
-    """Log how long this camera takes to render; the drawing thread measures it before all else.
+    """Log how long this camera takes to render; measured in the drawing thread, before any image.
 
     A camera that was deleted meanwhile is not rendered.
     """

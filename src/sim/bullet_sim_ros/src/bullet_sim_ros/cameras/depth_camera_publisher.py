@@ -12,7 +12,7 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.plugin_host import PluginContext
 
-FARTHEST = float(np.finfo(np.float32).max)  # m; beyond, the ray met nothing
+FARTHEST = float(np.finfo(np.float32).max)  # m; beyond (infinity): nothing there
 
 
 class DepthCameraPublisher(CameraPublisher):

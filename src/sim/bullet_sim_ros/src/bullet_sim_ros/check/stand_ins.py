@@ -82,7 +82,7 @@ class Publisher:
         return self._topic.listeners
 
     def unregister(self) -> None:
-        """Not any more."""
+        """Close the publisher."""
         if self in self._topic.publishers:
             self._topic.publishers.remove(self)
 
@@ -111,7 +111,7 @@ class Subscriber:
         return 1
 
     def unregister(self) -> None:
-        """Not any more."""
+        """End the subscription."""
         if self in self._topic.subscribers:
             self._topic.subscribers.remove(self)
 

@@ -64,7 +64,10 @@ class OdometryOutput:
 def open_odometry(context: PluginContext, namespace: str, base_frame: str = "base_footprint",
                   tags: LoggedParameters | PluginParameters | None = None,
                   **options) -> OdometryOutput:
-    """With topic and frames of `<odometryTopic>`, `<odometryFrame>` and `<robotBaseFrame>`."""
+    """Open the output of `<odometryTopic>`, `<odometryFrame>` and `<robotBaseFrame>`.
+
+    `options` are those of OdometryOutput.
+    """
     p, prefix = tags or context.parameters, params.tf_prefix(namespace)
     return OdometryOutput(
         context, names.join(namespace, p.text("odometryTopic", "odom")),

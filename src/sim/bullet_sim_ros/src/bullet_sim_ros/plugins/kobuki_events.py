@@ -65,7 +65,7 @@ class WheelDropTopic(BaseTopic):
         self._dropped: set[str] = set()
 
     def dropped(self) -> set[str]:
-        """Those of `left` and `right` that have no contact."""
+        """Those of `left` and `right` that have dropped."""
         world = self._context.world
         return self._drop.dropped(world.contacts(), world.time)
 
