@@ -134,7 +134,7 @@ class Drive:
 def driven_topics() -> dict[str, str]:
     """Topics with a subscriber and a type that the page can publish, with that type, sorted.
 
-    Refused where the master is gone.
+    Refused if the master is gone.
     """
     types, (_, subscribers, _) = asked(lambda: (dict(connect().getTopicTypes()),
                                                 connect().getSystemState()))

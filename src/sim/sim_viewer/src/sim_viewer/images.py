@@ -22,7 +22,7 @@ LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old image waits in t
 
 @operation("image_topics")
 async def image_topics(context: Context) -> list[str]:
-    """Image topics with a publisher; compressed ones only where there is no raw one."""
+    """Image topics with a publisher; compressed ones only if there is no raw one."""
     return await context.run_in_thread(_offered, context.node.shared(MasterView))
 
 
@@ -73,7 +73,7 @@ class Stream:
             self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)
         except Refused as error:
             self._send_to_all({"error": str(error)})
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             rospy.logwarn_throttle(10, f"{self._subscriber.resolved_name}: {error}")
             self._send_to_all({"error": f"{type(error).__name__}: {error}"})
         else:

@@ -60,7 +60,7 @@ _watchables: dict[str, type] = {}
 def operation(name: str, control: bool = False) -> Callable:
     """Registers a coroutine function `f(context, **args)` under the name that browsers use.
 
-    ValueError where the name is taken.
+    ValueError if the name is taken.
     """
     def register(function: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
         if name in _operations:
@@ -76,7 +76,7 @@ def watchable(name: str) -> Callable[[type], type]:
     `send(data)` may be called from any thread: data for JSON, or bytes. A browser that is slow gets
     the newest only; `send(data, keep=True)` is for what must not be left out, such as log lines.
 
-    ValueError where the name is taken.
+    ValueError if the name is taken.
     """
     def register(kind: type) -> type:
         if name in _watchables:

@@ -103,7 +103,7 @@ class SceneBroadcast:
             news = await self._node.run_in_thread(source.poses)
         except OSError:
             return  # the master is gone
-        except Exception as error:  # of a file or message that somebody else made
+        except Exception as error:  # caused by a file, or a message of another node
             rospy.logwarn_throttle(10, f"the scene cannot be shown: {error}")
             return
         if news is not None:

@@ -15,7 +15,7 @@ def find_display(context: Context, number: int) -> Display:
 
 @operation("rviz_drawn")
 async def rviz_drawn(context: Context, display: int, frame: int) -> None:
-    """The page has drawn this frame of a display; Refused where there is no such display."""
+    """The page has drawn this frame of a display; Refused if there is no such display."""
     find_display(context, display).drawn(frame)
 
 

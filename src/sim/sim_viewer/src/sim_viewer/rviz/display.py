@@ -178,7 +178,7 @@ class Display:
     async def _draw(self) -> None:
         try:
             data = await self._context.run_in_thread(self._look)
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self._showing.stumble(error)
             return
         if data:
@@ -188,7 +188,7 @@ class Display:
         """A frame, if there is something new."""
         self._view.most_points = self._pace.most_points
         self._showing.change(*self._wanted)
-        with np.errstate(all="ignore"):  # of numbers that somebody else made
+        with np.errstate(all="ignore"):  # caused by numbers of another node
             parts = self._showing.look()
             if parts is None:
                 return None

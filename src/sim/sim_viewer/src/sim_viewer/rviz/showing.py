@@ -100,7 +100,7 @@ class Showing:
             self._problem = {"Transform": (ERROR, str(problem))}
         except (Problem, SimulationError) as problem:
             self._problem = {"Error": (ERROR, str(problem))}
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self.stumble(error)
         else:
             if parts is not None:
@@ -132,7 +132,7 @@ class Showing:
             work()
         except (Problem, SimulationError) as problem:
             self.fail("Topic", str(problem))
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self.fail("Topic", f"{type(error).__name__}: {error}")
 
     def _take_newest(self) -> None:
