@@ -1,1 +1,1 @@
-"""The ROS side of bullet_sim: one node that answers where Gazebo would."""
+"""The ROS side of bullet_sim: a node that offers Gazebo's ROS interface."""

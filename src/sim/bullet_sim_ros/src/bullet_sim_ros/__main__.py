@@ -1,11 +1,11 @@
-"""The process of the node; a Ctrl-C while its modules load, or at its end, prints nothing."""
+"""The node's entry point; a Ctrl-C while modules load, or at the end, prints no traceback."""
 
 import signal
 import sys
 
 
 def main() -> int:
-    """The exit code; 130 after a Ctrl-C before there is a loop."""
+    """Run the node; returns the exit code, 130 after a Ctrl-C before the loop runs."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from bullet_sim_ros import node
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,8 +1,8 @@
-"""Messages of sensor_msgs whose data stay in their array until the socket takes them.
+"""Messages of sensor_msgs whose data stay in a NumPy array until the socket takes them.
 
-The generated classes want `bytes` and pack them once more, and rospy copies those: 6 MB for each
-picture of 1920x1080 and 33 MB for its points, with Python's lock held. On the wire all are the
-same.
+The generated classes need `bytes` and pack them once more, and rospy copies those: 6 MB for each
+image of 1920x1080 and 33 MB for its points, while holding Python's GIL. The serialized messages
+are the same.
 """
 
 import struct
@@ -16,7 +16,7 @@ from bullet_sim_ros.message_buffer import write_array
 
 
 class ArrayImage(Image):
-    """An Image of an array's pixels."""
+    """An Image whose pixels are an array."""
 
     def __init__(self, pixels: np.ndarray, **fields):
         """`pixels`: (h, w) or (h, w, channels), C-contiguous; `fields` are those of Image."""
@@ -32,7 +32,7 @@ class ArrayImage(Image):
 
     @data.setter
     def data(self, _value: bytes) -> None:
-        """The generated constructor sets every field; pixels come by the array alone."""
+        """Ignored: the generated constructor sets every field, but pixels are in the array."""
 
     def serialize(self, buff: BytesIO) -> None:
         """Write the message as ROS sends it."""

@@ -12,11 +12,11 @@ BALL = 0.03  # m, diameter
 METRES_PER_NEWTON = 0.02
 LONGEST = 0.5  # m, of an arrow
 LIFETIME = rospy.Duration(0.3)  # s; DELETEALL would take other bumpers' markers with it
-COLOUR = ColorRGBA(1.0, 0.0, 1.0, 1.0)  # that of no robot, laser or path here
+COLOUR = ColorRGBA(1.0, 0.0, 1.0, 1.0)  # a colour that no robot, laser or path here has
 
 
 def to_markers(contacts: ContactsState, namespace: str) -> MarkerArray:
-    """All markers of one message; they go away by themselves when no more messages follow."""
+    """All markers of one message; they expire by themselves when no more messages follow."""
     markers: list[Marker] = []
     for state in contacts.states:
         for point, normal, wrench in zip(state.contact_positions, state.contact_normals,

@@ -1,4 +1,4 @@
-"""From the core's readings to ROS messages and back: pure functions, nothing is published here."""
+"""Conversion between the core's readings and ROS messages: pure functions, nothing is published."""
 
 import math
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ from bullet_sim_ros.cameras.encodings import encode
 
 Message = TypeVar("Message")  # with a header
 UNKNOWN_VARIANCE = 1e12
-# m, m/s or rad/s; the engine makes NaN of much larger numbers, and a body never recovers from it.
+# m, m/s or rad/s; much larger numbers become NaN in the engine, and a body never recovers from it.
 LARGEST = 1e6
 
 
@@ -43,7 +43,7 @@ def stamped(message: Message, time: float, frame: str = "") -> Message:
 
 
 def diagonal(values: Sequence[float]) -> list[float]:
-    """A matrix with these on its diagonal and zeros elsewhere, row by row."""
+    """A matrix with these values on its diagonal and zeros elsewhere, row by row."""
     return np.diag(values).ravel().tolist()
 
 
@@ -58,7 +58,7 @@ def pose_from_msg(msg: PoseMsg) -> Pose:
 
 
 def quaternion_from_msg(msg: QuaternionMsg) -> Quaternion:
-    """Of unit length; (0, 0, 0, 0) becomes no rotation."""
+    """A unit quaternion; (0, 0, 0, 0) becomes no rotation."""
     return normalised((msg.x, msg.y, msg.z, msg.w))
 
 
@@ -91,7 +91,7 @@ def _numbers(value: Any) -> list[float]:
 
 
 def transform_to_msg(pose: Pose, time: float, parent: str, child: str) -> TransformStamped:
-    """`child` seen from `parent`."""
+    """The transform from `parent` to `child`, whose pose in `parent` is given; time in s."""
     msg = stamped(TransformStamped(child_frame_id=child), time, parent)
     msg.transform.translation = Vector3(*pose.position)
     msg.transform.rotation = QuaternionMsg(*pose.orientation)
@@ -110,7 +110,7 @@ def odometry_to_msg(reading: OdometryReading, frame: str, child: str) -> Odometr
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> list[float]:
-    """6x6, row by row, of x, y (m^2) and yaw (rad^2); nothing is known of z, roll and pitch."""
+    """6x6, row by row, from x, y (m^2) and yaw (rad^2); z, roll and pitch are unknown."""
     return diagonal((x, y, *(UNKNOWN_VARIANCE,) * 3, yaw))
 
 
@@ -140,7 +140,7 @@ def laser_to_msg(reading: LaserReading) -> LaserScan:
 
 def imu_to_msg(orientation: Sequence[float], angular_velocity: Sequence[float],
                linear_acceleration: Sequence[float], variance: float = 0.0) -> Imu:
-    """sensor_msgs/Imu without header: quaternion, rad/s, m/s^2, and one variance for them all."""
+    """sensor_msgs/Imu without header: quaternion, rad/s, m/s^2, and one variance for all."""
     covariance = diagonal([variance] * 3)
     return Imu(orientation=QuaternionMsg(*orientation),
                angular_velocity=Vector3(*angular_velocity),
@@ -150,19 +150,19 @@ def imu_to_msg(orientation: Sequence[float], angular_velocity: Sequence[float],
 
 
 def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8") -> ArrayImage:
-    """sensor_msgs/Image of an (h, w, 3) uint8 RGB picture in any encoding of cameras."""
+    """sensor_msgs/Image of an (h, w, 3) uint8 RGB image, in one of cameras.encodings."""
     return _image(encode(rgb, encoding), time, frame, encoding)
 
 
 def remove_outside(depth: np.ndarray, near: float, far: float) -> None:
-    """Make NaN of what of an (h, w) float32 depth in m is not from `near` to `far`."""
+    """Set values of an (h, w) float32 depth in m that are not in `near` to `far` to NaN."""
     for rows in strips(len(depth)):
         part = depth[rows]
         np.copyto(part, np.float32(math.nan), where=(part < near) | (part > far))
 
 
 def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:
-    """32FC1 in m with NaN for no value, or 16UC1 in mm with 0."""
+    """A depth image: 32FC1 in m with NaN for no value, or 16UC1 in mm with 0 for no value."""
     if not millimetres:
         return _image(depth.astype(np.float32, copy=False), time, frame, "32FC1")
     scaled = np.nan_to_num(depth * 1000.0, nan=0.0, posinf=0.0)

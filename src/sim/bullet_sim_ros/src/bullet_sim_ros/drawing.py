@@ -1,9 +1,9 @@
-"""Pictures are drawn, made into messages and sent beside the physics, by threads of their own.
+"""Camera images are rendered, converted to messages and published in two threads of their own.
 
-One draws. What a depth camera's picture becomes takes longer than that (33 MB of points at
-1920x1080): the other one does it while the next is drawn. Threads are enough, they need not be
-processes: llvmpipe, OpenCV and the network work without Python's lock, and what a picture is made
-from never changes while it is drawn.
+The first renders. Converting a depth camera's image takes longer than that (33 MB of points at
+1920x1080): the second thread does it while the next image is rendered. Processes are not needed:
+llvmpipe, OpenCV and the network release Python's GIL, and the data that an image is rendered from
+never changes meanwhile.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ PATIENCE = 1.0  # s, wall
 
 
 class DrawingThread:
-    """Opens the renderer at once, while the world is still being loaded; then does jobs in turn."""
+    """Opens the renderer at once, while the world is still loading; then runs jobs in order."""
 
     def __init__(self, profiler: Profiler):
         self._executor = ThreadPoolExecutor(1, "drawing")
@@ -29,10 +29,10 @@ class DrawingThread:
         self._reported = False
 
     def renderer(self) -> Renderer:
-        """The renderer, or the SimulationError that opening it ended with. For the loop's thread.
+        """The renderer; SimulationError if opening it failed. To be called in the loop's thread.
 
-        Only that one logs: when it loads a body, it keeps PyBullet's chatter from the terminal, and
-        with it what another thread logs.
+        Only that thread may log: while it loads a body, it silences the terminal because of
+        PyBullet's output, and would swallow the log lines of another thread, too.
         """
         renderer = self._renderer.result()
         if not self._reported:
@@ -41,38 +41,39 @@ class DrawingThread:
         return renderer
 
     def submit(self, job: Callable[[], None]) -> Future:
-        """Have something done after all that was submitted before."""
+        """Run a job after all that were submitted before."""
         self._last = self._executor.submit(job)
         return self._last
 
     def hand_on(self, job: Callable[[], None]) -> Future:
-        """From a job: have its rest done while the next one draws, after the rest before it, for
-        which this waits.
+        """From a job: run its second part in the second thread, while the next job renders.
+
+        Waits for the second part of the job before it.
         """
         self.settle_rest()
         self._handed_on = self._after.submit(job)
         return self._handed_on
 
     def trim(self) -> None:
-        """Give back the memory of pictures, now; only a renderer that is very slow does so later.
+        """Release the memory of images now; only a very slow renderer does so later.
 
         The simulation waits meanwhile, so the wait has a limit.
         """
         wait([self.submit(self.renderer().trim)], PATIENCE)
 
     def settle(self) -> None:
-        """Wait until nothing is being drawn, nor made of what was drawn."""
+        """Wait until both threads have done all their jobs."""
         if self._last is not None:
             self._last.exception()
         self.settle_rest()
 
     def settle_rest(self) -> None:
-        """Wait for what was handed on."""
+        """Wait for the part that was handed on last."""
         if self._handed_on is not None:
             self._handed_on.exception()
 
     def close(self) -> None:
-        """End the threads; what has not begun is dropped."""
+        """End the threads; jobs that have not begun are dropped."""
         self._executor.shutdown(cancel_futures=True)
         self._after.shutdown(cancel_futures=True)
         if not self._renderer.cancelled() and self._renderer.exception() is None:

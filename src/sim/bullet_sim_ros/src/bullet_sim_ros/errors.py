@@ -8,6 +8,6 @@ class PluginError(SimulationError):
 
 
 def format_error(error: Exception) -> str:
-    """One line for the terminal; the kind of error where it is none of ours."""
+    """One line for the terminal, with the error's type if it is not a SimulationError."""
     text = " ".join(str(error).split())
     return text if isinstance(error, SimulationError) else f"{type(error).__name__}: {text}"

@@ -1,6 +1,6 @@
-"""What of Gazebo's interface works here, as data: the files of the folder interface/.
+"""The support table of Gazebo's interface, as data: the files of the folder interface/.
 
-One file a section. A row is a plugin, service, topic, parameter, program flag, launch file or
+One file per section. A row is a plugin, service, topic, parameter, program flag, launch file or
 element of a format; its tags are what can be written inside. The README's table, `check` and the
 tests all read these files.
 """
@@ -19,12 +19,12 @@ KINDS = ("sensor", "actuator", "world", "visual")  # what a plugin is for
 
 
 class InterfaceError(ValueError):
-    """A file of the table is not as it should be; the message names file and key."""
+    """A file of the table is invalid; the message names file and key."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """How one thing is supported; `how` describes it unless it simply works."""
+    """How one element of the interface is supported; `how` describes it unless it simply works."""
 
     name: str
     status: str
@@ -73,7 +73,7 @@ def read_interface(folder: Path | None = None) -> list[Section]:
 
 
 def rows_by_name(sections: list[Section]) -> dict[str, Row]:
-    """Every row."""
+    """All rows, by name."""
     return {row.name: row for section in sections for row in section.rows}
 
 

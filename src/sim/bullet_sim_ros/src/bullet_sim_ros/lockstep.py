@@ -1,4 +1,4 @@
-"""After each camera frame, or message of a sensor, the world waits for the answer to it."""
+"""Lockstep: after each camera frame or sensor message, the world waits for the answer to it."""
 
 import time
 from collections.abc import Callable
@@ -8,32 +8,32 @@ import rospy
 from bullet_sim_ros.mailbox import Mailbox
 
 WARNING_PERIOD = 10.0  # s, wall
-LOOK = 0.1  # s, wall: how often to see whether the simulation is to stop
+LOOK = 0.1  # s, wall clock: how often to check whether the simulation is to stop
 
 
 class Lockstep:
     """Waits for one message on each of its topics; without topics it never waits.
 
-    A message is received in the loop, behind the command that it carries: where a plugin takes the
-    same topic, its own subscription calls `receive` after it has posted its command in the mailbox.
+    A message counts as received after the loop has run its command: if a plugin subscribes to the
+    topic, its subscription calls `receive` after it has posted its command in the mailbox.
     """
 
     def __init__(self, topics: str, timeout: float, mailbox: Mailbox, sensor: str = ""):
         """`sensor`: the topic after whose messages it waits; empty: after each camera frame."""
         self._sensor = rospy.resolve_name(sensor) if sensor else ""
         self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
-        self.unanswered = 0  # frames that the world has gone on without an answer to
+        self.unanswered = 0  # frames after which the world went on without an answer
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
         self._expected: set[str] = set()  # topics whose message is still to come
-        self._asker: object = None  # who sent what is to be answered
+        self._asker: object = None  # the plugin whose frame or message is to be answered
         self._next_warning = 0.0  # s, wall
-        # Of each topic the plugins that call `receive`, in the order in which they subscribed.
+        # By topic, the plugins that call `receive`, in the order in which they subscribed.
         self._plugins: dict[str, list[object]] = {topic: [] for topic in self.topics}
         self._subscribers: dict[str, rospy.Subscriber] = {}  # where no plugin does
 
     def listen(self) -> None:
-        """Subscribe to topics that no plugin takes, before time begins: no answer may be lost."""
+        """Subscribe to topics without a plugin, before time begins, so that no answer is lost."""
         for topic, plugins in self._plugins.items():
             if not plugins and topic not in self._subscribers:
                 self._subscribers[topic] = rospy.Subscriber(
@@ -41,7 +41,7 @@ class Lockstep:
                     callback_args=topic, tcp_nodelay=True)
 
     def expect(self, asker: object = None, sensor: str = "") -> None:
-        """`asker` took a frame, or a message on this topic, for somebody.
+        """`asker` publishes a frame, or a message on the topic `sensor`.
 
         The world waits for the answer before the next step.
         """
@@ -51,9 +51,9 @@ class Lockstep:
     def subscribe(self, topic: str, plugin: object) -> None:
         """A plugin is about to subscribe; it will call `receive` after each message."""
         self._plugins[topic].append(plugin)
-        if topic in self._subscribers:  # of another message type, and there is one per topic
+        if topic in self._subscribers:  # has another message type; rospy allows one per topic
             self._subscribers.pop(topic).unregister()
-            # An answer on its way may reach neither: it must not be waited for.
+            # A message in transit may reach neither subscriber: it must not be waited for.
             self._mailbox.post(lambda: self._expected.discard(topic))
 
     def unsubscribe(self, topic: str, plugin: object) -> None:
@@ -65,18 +65,18 @@ class Lockstep:
         """From any thread: a message came, to a plugin or to our own subscriber.
 
         A robot may have two drives on one topic. rospy calls them in the order in which they
-        subscribed, so with the last one all have left their commands.
+        subscribed, so after the last one all have posted their commands.
         """
         if plugin is None or self._plugins[topic][-1:] == [plugin]:
             self._mailbox.post(lambda: self._expected.discard(topic))
 
     def cancel(self, asker: object = None) -> None:
-        """Wait no longer; with an `asker`, only if it is the one that is waited for."""
+        """Stop waiting; with an `asker`, only if the wait is for an answer to it."""
         if asker is None or asker is self._asker:
             self._expected.clear()
 
     def wait(self, stopped: Callable[[], bool]) -> None:
-        """Run what comes into the mailbox until the answer is there or the time is over."""
+        """Run the mailbox's calls until the answer is there or the time-out is over."""
         until = time.monotonic() + self._timeout
         while self._expected and not stopped():
             left = until - time.monotonic()
@@ -88,7 +88,7 @@ class Lockstep:
             self._mailbox.run_pending(min(left, LOOK))
 
     def _warn(self) -> None:
-        """By the wall clock: rospy's own throttle goes by simulated time, which hardly passes."""
+        """Warn, limited by wall time: rospy's throttle uses simulated time, which hardly passes."""
         now = time.monotonic()
         if now < self._next_warning:
             return
@@ -100,5 +100,5 @@ class Lockstep:
 
 
 def split(topics: str) -> list[str]:
-    """Topic names as they are given, with spaces or commas between them."""
+    """The topic names in a text, in which spaces or commas separate them."""
     return topics.replace(",", " ").split()

@@ -1,4 +1,4 @@
-"""Carries the core's log to rosout, so that one console shows all."""
+"""Forwards the core's log to rosout, so that one console shows everything."""
 
 import logging
 
@@ -9,7 +9,7 @@ class _ToRosout(logging.Handler):
 
 
 def forward_core_log(verbose: bool) -> None:
-    """Call once, after init_node."""
+    """Forward it; to be called once, after init_node."""
     core = logging.getLogger("bullet_sim")
     core.setLevel(logging.INFO if verbose else logging.WARNING)
     core.addHandler(_ToRosout())

@@ -1,4 +1,4 @@
-"""Carries calls from ROS threads to the loop, which alone may touch the physics. The only lock."""
+"""Passes calls from ROS threads to the loop's thread, the only one that may use the physics."""
 
 import logging
 import queue
@@ -19,13 +19,13 @@ class Mailbox:
     """Calls wait here until the loop runs them between two steps."""
 
     def __init__(self):
-        # Not SimpleQueue: interrupted by a slow signal handler, its timed get waits for ever.
+        # Not SimpleQueue: if a slow signal handler interrupts its timed get, that waits for ever.
         self._calls: queue.Queue[tuple[Callable[[], Any], Future | None]] = queue.Queue()
         self._closed = threading.Event()
-        self.each_call: list[Callable[[str, str], None]] = []  # with name and caller
+        self.each_call: list[Callable[[str, str], None]] = []  # called with name and caller
 
     def call(self, function: Callable[[], Any]) -> Any:
-        """From any thread: run `function` in the loop and give back what it returns or raises.
+        """From any thread: run `function` in the loop, and return or raise what it does.
 
         Closed if the simulator ends first.
         """
@@ -52,7 +52,7 @@ class Mailbox:
             self.post(lambda: [observe(name, caller) for observe in self.each_call])
 
     def run_pending(self, wait: float = 0.0) -> None:
-        """From the loop: run what has come in; `wait` for a first one (s, wall)."""
+        """From the loop: run the waiting calls; `wait` for a first one (s, wall)."""
         try:
             item = self._calls.get(timeout=wait) if wait else self._calls.get_nowait()
             while True:
@@ -62,7 +62,7 @@ class Mailbox:
             return
 
     def close(self) -> None:
-        """From the loop: refuse what still waits."""
+        """From the loop: refuse calls that still wait, with Closed."""
         self._closed.set()
 
     @staticmethod

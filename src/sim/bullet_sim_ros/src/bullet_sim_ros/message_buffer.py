@@ -1,4 +1,4 @@
-"""What rospy writes messages into; large arrays are not copied, but sent from where they are."""
+"""A buffer that rospy serializes messages into; large arrays are sent without being copied."""
 
 from io import BytesIO
 
@@ -6,30 +6,30 @@ import numpy as np
 
 
 class MessageBuffer(BytesIO):
-    """In the place of rospy's BytesIO. Positions count the arrays in."""
+    """Replaces rospy's BytesIO. Positions include the arrays."""
 
     def __init__(self):
         super().__init__()
-        self._arrays: list[tuple[int, int, memoryview]] = []  # after so many bytes, of them own
+        self._arrays: list[tuple[int, int, memoryview]] = []  # start, bytes of our own before it
 
     def append(self, array: np.ndarray) -> None:
-        """At the end, a C-contiguous array, which must not change any more."""
+        """Append a C-contiguous array, which must not change any more."""
         own = super().tell()
         self._arrays.append((self.tell(), own, array.reshape(-1).view(np.uint8).data))
 
     def tell(self) -> int:
-        """Bytes before the position."""
+        """The number of bytes before the position."""
         place = super().tell()
         return place + sum(array.nbytes for _, own, array in self._arrays if own <= place)
 
     def seek(self, position: int) -> int:
-        """To that many bytes from the start, none of them inside an array."""
+        """Go to a position in bytes from the start, which is not inside an array."""
         super().seek(position - sum(
             array.nbytes for start, _, array in self._arrays if start < position))
         return position
 
     def truncate(self, size: int) -> int:
-        """Forget what comes after so many bytes, and all arrays."""
+        """Drop everything after `size` bytes, and all arrays."""
         self._arrays.clear()
         return super().truncate(size)
 
@@ -45,7 +45,7 @@ class MessageBuffer(BytesIO):
 
 
 def write_array(buff: BytesIO, array: np.ndarray) -> None:
-    """Into a message that is written; copied only where `buff` is not one of ours."""
+    """Write an array into a message; it is copied only if `buff` is not a MessageBuffer."""
     if isinstance(buff, MessageBuffer):
         buff.append(array)
     else:

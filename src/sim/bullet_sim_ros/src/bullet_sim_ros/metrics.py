@@ -15,7 +15,7 @@ NO_FRAMES = -1.0  # gazebo_ros_api_plugin.cpp, onPerformanceMetrics, of a sensor
 
 
 class MetricsTopic:
-    """Published five times a second of wall time, while somebody listens and time runs."""
+    """Published five times a second of wall time, while subscribed to and time runs."""
 
     def __init__(self, simulation: Simulation):
         self._simulation = simulation
@@ -44,7 +44,7 @@ class MetricsTopic:
 
 
 class _Rates:
-    """Updates per simulated and per wall second, of the last window."""
+    """Updates per simulated and per wall second, over the last window."""
 
     def __init__(self):
         self.simulated_hz = self.real_hz = 0.0

@@ -33,7 +33,7 @@ SET_PHYSICS_PROPERTIES = "~set_physics_properties"
 GET_WORLD_PROPERTIES = "~get_world_properties"
 PAUSE_PHYSICS = "~pause_physics"
 UNPAUSE_PHYSICS = "~unpause_physics"
-STEP_PHYSICS = "~step_physics"  # ours: Gazebo steps by its own transport only
+STEP_PHYSICS = "~step_physics"  # an addition: Gazebo steps only by its own transport
 RESET_WORLD = "~reset_world"
 RESET_SIMULATION = "~reset_simulation"
 SET_PARAMETERS = "~set_parameters"
@@ -59,7 +59,7 @@ def join(namespace: str, name: str) -> str:
 
 
 def frame(prefix: str, name: str) -> str:
-    """A tf frame: a leading slash is only stripped, other names get the tf_prefix."""
+    """A tf frame: names with a leading slash only lose that, others get the tf_prefix."""
     if name.startswith("/"):
         return name.lstrip("/")
     prefix = prefix.strip("/")

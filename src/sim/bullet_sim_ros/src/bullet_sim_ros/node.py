@@ -36,7 +36,7 @@ from bullet_sim_ros.state_topics import StateTopics
 
 
 def open_network(simulation: Simulation, resources: Resources, parameters: NodeParameters) -> None:
-    """All of them, unless the parameter `~enable_ros_network` is false."""
+    """Open all topics and services, unless the parameter `~enable_ros_network` is false."""
     if not parameters.enable_ros_network:
         rospy.loginfo("ROS gazebo topics/services are disabled")
         return
@@ -46,22 +46,22 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
     offer_services(simulation, resources)
 
 
-# s: the loop and the thread that draws take turns; the usual 5 ms would be a third of a frame.
+# s: the loop and the drawing thread share the GIL; Python's default, 5 ms, is a third of a frame.
 SWITCH_INTERVAL = 0.0005
-FASTEST = 1000.0  # real-time factor; 0 is for more
-LATEST = 4e9  # s; ROS counts to 2**32
-MASTER_LOST = (ConnectionError, HTTPException)  # of a master that ends while it is asked
-ENGINES = ("ode", "bullet", "dart", "simbody")  # that Gazebo 11 knows
+FASTEST = 1000.0  # largest real-time factor; 0 means no limit
+LATEST = 4e9  # s; ROS times end at 2**32 s
+MASTER_LOST = (ConnectionError, HTTPException)  # raised if the master ends during a call
+ENGINES = ("ode", "bullet", "dart", "simbody")  # those of Gazebo 11
 
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        """One line; the usage is what --help is for."""
+        """Print one line only; --help shows the usage."""
         self.exit(2, f"{self.prog}: error: {message}\n")
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    """Command line without ROS remappings."""
+    """Parse the command line, from which ROS remappings are already removed."""
     parser = _Parser(prog="gzserver", description=__doc__)
     parser.add_argument("--world", default="worlds/empty.world", help="world file")
     parser.add_argument("--paused", action="store_true", help="start with time standing still")
@@ -94,7 +94,7 @@ def _seed(text: str) -> int:
 
 
 def open_world(options: argparse.Namespace, resources) -> World:
-    """The world of the command line. ResourceNotFound and FormatError of its file."""
+    """The world that the command line names; ResourceNotFound or FormatError of its file."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
     description = replace(description, physics=possible_physics(description.physics))
@@ -121,14 +121,14 @@ def wait_for_master() -> None:
 
 
 def check_engine(name: str) -> None:
-    """An engine that is none of Gazebo's four is an error line; the default goes on."""
+    """Log an error if the engine is not one of Gazebo's four; the simulation starts anyway."""
     if name not in ENGINES:
         rospy.logerr("There is no physics engine %r; there are %s; Bullet computes, whichever is "
                      "asked for", name, ", ".join(ENGINES))
 
 
 def start(options: argparse.Namespace) -> Simulation | None:
-    """The simulation with all that others can ask of it; None, after a line that says why not."""
+    """The simulation with its topics and services; None if that fails, after logging why."""
     resources = open_resources()
     try:
         world = open_world(options, resources)
@@ -143,7 +143,7 @@ def start(options: argparse.Namespace) -> Simulation | None:
                            rospy.resolve_name(name), topics)
             return None
     simulation = Simulation(world, parameters)
-    end_by_signals(simulation.stop)  # before anybody can see that it is there
+    end_by_signals(simulation.stop)  # before its topics and services are visible
     open_network(simulation, resources, parameters)
     if parameters.state_log:
         try:
@@ -156,15 +156,15 @@ def start(options: argparse.Namespace) -> Simulation | None:
 
 
 def main() -> int:
-    """Run until shutdown; 1 if the world cannot be opened, or the master ends before it is."""
+    """Run until shutdown; returns 1 if the world cannot be opened or the master ends before."""
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
-    sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too: who waits there sees it
+    sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too
     wait_for_master()
     send_promptly()
     keep_every_publisher()
     # This node publishes /clock: rospy must not wait for a /clock that this very node publishes.
-    # Signals are ours too: rospy's handler would run on top of the loop, with its locks held.
+    # Signals are handled here: rospy's handler would interrupt the loop while it holds locks.
     rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
     rospy.rostime.set_rostime_initialized(True)
     forward_core_log(options.verbose)
@@ -180,7 +180,7 @@ def main() -> int:
         return 1
     if not rospy.is_shutdown():
         rospy.loginfo("World %s (%s) is ready", simulation.world.description.name, options.world)
-    gc.freeze()  # modules and world stay: the collector need not look through them again
+    gc.freeze()  # modules and world are permanent: the collector need not scan them again
     ended = end_before_topics(simulation.stop)
     try:
         simulation.run(options.iters)

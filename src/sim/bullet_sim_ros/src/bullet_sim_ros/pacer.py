@@ -1,10 +1,10 @@
-"""Holds simulated time to real time. The wall clock decides here and nowhere else."""
+"""Holds simulated time to real time. Only here does the wall clock decide."""
 
 import time
 from collections.abc import Callable
 
-SLACK = 0.1  # s, wall: how much lost time is made good; what is beyond is given up
-CATCH_UP = 1.25  # lost time is made good at this many times the wanted speed, not in a burst
+SLACK = 0.1  # s, wall: how much lost time is made up for; more than that is given up
+CATCH_UP = 1.25  # lost time is made up for at this many times the wanted speed, not in a burst
 
 
 class Pacer:
@@ -17,8 +17,8 @@ class Pacer:
 
     def restart(self) -> None:
         """Forget the past: after a pause, a reset or a change of factor."""
-        self._simulated: float | None = None  # s, the moment last asked about
-        self._until = self._fair = 0.0  # s, wall: when it may come, and would have without delays
+        self._simulated: float | None = None  # s, the argument of the last `ahead`
+        self._until = self._fair = 0.0  # s, wall: when that is due, with and without delays
 
     def ahead(self, simulated: float) -> float:
         """Seconds of wall time to wait before going on from this simulated time; 0: go on."""
@@ -31,7 +31,7 @@ class Pacer:
             step = (simulated - self._simulated) / self.factor
             self._simulated = simulated
             self._fair = max(self._fair + step, now - SLACK)
-            if step < 0:  # something came that is due before: no time has been lost by waiting
+            if step < 0:  # something that is due earlier was added: waiting has lost no time
                 self._until += step
             else:
                 self._until = max(self._fair, self._until + step / CATCH_UP, now)

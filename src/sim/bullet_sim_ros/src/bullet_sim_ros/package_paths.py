@@ -1,4 +1,4 @@
-"""Where models, media and packages are: the environment, and what packages export to gazebo_ros."""
+"""Search paths of models, media and packages: the environment, and exports to gazebo_ros."""
 
 import logging
 import os
@@ -16,7 +16,7 @@ from bullet_sim.formats.xml_values import child_text, read_xml_file
 log = logging.getLogger("bullet_sim.packages")
 
 MANIFESTS = ("package.xml", "manifest.xml")
-INSTALLED = "/usr/share/"  # each folder in it is a package or none, and is looked no deeper into
+INSTALLED = "/usr/share/"  # the folders in it are packages or not; they are not searched any deeper
 
 
 class Package(NamedTuple):
@@ -27,9 +27,9 @@ class Package(NamedTuple):
 
 
 def list_packages(ros_paths: Iterable[str]) -> dict[str, Package]:
-    """All packages by name; of two of a name the one that is found first.
+    """All packages by name; of two with one name, the first found.
 
-    A manifest that cannot be read is one warning, and its package goes by the folder's name.
+    A manifest that cannot be read is one warning, and its package is named after the folder.
     """
     found: dict[str, Package] = {}
     for path in dict.fromkeys(os.path.abspath(path) for path in ros_paths):
@@ -45,7 +45,7 @@ def list_packages(ros_paths: Iterable[str]) -> dict[str, Package]:
 
 
 def _manifests(path: str) -> Iterator[Path]:
-    """As rospkg walks: nothing below a package or a CATKIN_IGNORE, and no hidden folders."""
+    """Searches as rospkg: nothing below a package or a CATKIN_IGNORE, and no hidden folders."""
     for folder, below, files in os.walk(path, followlinks=True):
         named = [name for name in MANIFESTS if name in files]
         if "CATKIN_IGNORE" in files:
@@ -78,7 +78,7 @@ def open_resources() -> Resources:
 
 
 def _exports(packages: dict[str, Package], attribute: str) -> list[Path]:
-    """`<export><gazebo_ros ATTRIBUTE="${prefix}/a:${prefix}/b"/>` of every package."""
+    """The paths of `<export><gazebo_ros ATTRIBUTE="${prefix}/a:${prefix}/b"/>` in all packages."""
     found: dict[Path, None] = {}
     for package in packages.values():
         for export in package.manifest.findall("export/gazebo_ros"):

@@ -1,4 +1,4 @@
-"""The only reader of ROS parameters: the node's own, and what plugins look for."""
+"""Reads ROS parameters: the node's own, and those that plugins look for."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +25,7 @@ class NodeParameters:
 
 
 def read_node_parameters() -> NodeParameters:
-    """What the launch file set, else the defaults; switches simulated time on unless decided."""
+    """The parameters, or their defaults; sets use_sim_time to true unless it is set already."""
     if not rospy.has_param(names.USE_SIM_TIME):
         rospy.set_param(names.USE_SIM_TIME, True)
     defaults = NodeParameters()
@@ -57,7 +57,10 @@ def below(namespace: str) -> Any:
 
 
 def find_upwards(namespace: str, name: str) -> str | None:
-    """Full name of the first such parameter from a namespace upwards; absolute names stay."""
+    """Full name of the first such parameter from a namespace upwards; absolute names stay.
+
+    None if there is none.
+    """
     parts = [part for part in names.join(namespace, "").split("/") if part]
     for depth in range(len(parts), -1, -1):
         candidate = names.join("/" + "/".join(parts[:depth]), name)
@@ -67,11 +70,11 @@ def find_upwards(namespace: str, name: str) -> str | None:
 
 
 def own_tf_prefix(namespace: str) -> str:
-    """`tf_prefix` exactly in a plugin's namespace, else empty."""
+    """The parameter `tf_prefix` exactly in a plugin's namespace, else empty."""
     return str(below(names.join(namespace, "tf_prefix")) or "")
 
 
 def tf_prefix(namespace: str) -> str:
-    """`tf_prefix` as found from a plugin's namespace upwards, else empty."""
+    """The parameter `tf_prefix` as found from a plugin's namespace upwards, else empty."""
     name = find_upwards(namespace, "tf_prefix")
     return str(rospy.get_param(name)) if name else ""

@@ -1,8 +1,8 @@
-"""Sends messages at once where the socket takes them; a subscriber that hangs still delays nobody.
+"""Sends messages at once if the socket takes them; a subscriber that hangs still delays nobody.
 
-rospy hands every message to a thread of the connection. At the rates of a simulator these switches
+rospy passes every message to a thread of the connection. At a simulator's rates these switches
 between threads cost more than the rest of publishing: 0.25 ms for each small message (measured), a
-third of the time for a frame when time runs at four times its usual pace.
+third of the time for a frame when time runs four times as fast as usual.
 """
 
 import socket
@@ -17,22 +17,22 @@ from bullet_sim_ros.message_buffer import MessageBuffer
 
 
 def send_promptly() -> None:
-    """Have every publisher of this process send this way; all have a queue. Before the first one.
+    """Make all publishers of this process, which need a queue, send so; before the first is made.
     """
     rospy.topics.QueuedConnection = PromptConnection
     rospy.topics.BytesIO = MessageBuffer
 
 
 class PromptConnection:
-    """In the place of rospy's QueuedConnection: what the socket does not take waits in a queue."""
+    """Replaces rospy's QueuedConnection: messages that the socket does not take wait in a queue."""
 
     def __init__(self, connection: Transport, queue_size: int):
-        """A queue of `queue_size` messages, 0: without limit; when full, the oldest one goes."""
+        """The queue has `queue_size` messages, 0: no limit; when full, it drops the oldest one."""
         self._connection = connection
         self._queue_size = queue_size
         self._changed = threading.Condition()
         self._queue: deque[list[memoryview]] = deque()  # of messages, in pieces
-        self._sending: list[memoryview] | None = None  # begun, so it has to be sent to its end
+        self._sending: list[memoryview] | None = None  # sent in part, so it must be completed
         self._error: Exception | None = None
         self._thread: threading.Thread | None = None
         connection.set_cleanup_callback(self._closed)
@@ -49,8 +49,8 @@ class PromptConnection:
             with self._changed:
                 self._take(data if isinstance(data, list) else [memoryview(data)])
         except OSError as error:
-            # Not under our lock: closing takes rospy's lock of the topic, and who holds that one
-            # to close a connection comes here for ours.
+            # Not under our lock: closing takes rospy's lock of the topic, and a thread that holds
+            # that one to close a connection waits for ours.
             self._connection.close()
             raise TransportTerminated(str(error)) from error
         return True
@@ -72,7 +72,7 @@ class PromptConnection:
         self._changed.notify()
 
     def _send(self, data: list[memoryview]) -> list[memoryview]:
-        """Give the socket what it takes without waiting; returns the rest."""
+        """Give the socket as much as it takes without waiting; returns the rest."""
         connection = self._connection
         if connection.done or not connection.socket:
             raise TransportTerminated("connection closed")
@@ -91,7 +91,7 @@ class PromptConnection:
             self._thread.start()
 
     def _work_off(self) -> None:
-        """In the connection's thread: send what waits, however long the subscriber takes."""
+        """In the connection's thread: send the queue, however long the subscriber takes."""
         while not self._connection.done:
             with self._changed:
                 while self._sending is None and not self._queue and not self._connection.done:
@@ -106,10 +106,10 @@ class PromptConnection:
                     self._connection.write_data(piece)
                 self._connection.stat_num_msg -= len(data) - 1  # it was one message
                 error = None
-            except Exception as failure:  # raised where the next message is published
-                error = failure.with_traceback(None)  # it would keep the message, as its cause's
+            except Exception as failure:  # raised when the next message is published
+                error = failure.with_traceback(None)  # which would keep the message in memory
                 error.__context__ = None
-            data = piece = None  # else a message is kept until the next one
+            data = piece = None  # else the message stays in memory until the next one
             with self._changed:
                 self._sending, self._error = None, error
 
@@ -119,7 +119,7 @@ class PromptConnection:
 
 
 def _without(pieces: list[memoryview], size: int) -> list[memoryview]:
-    """What is left after so many bytes."""
+    """The pieces without their first `size` bytes."""
     rest = []
     for piece in pieces:
         if size < piece.nbytes:

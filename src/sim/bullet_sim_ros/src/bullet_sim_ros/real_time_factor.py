@@ -1,4 +1,4 @@
-"""How fast simulated time runs, what holds it up, and telling people so."""
+"""Measures how fast simulated time runs and what slows it down, and logs that."""
 
 import time
 
@@ -9,12 +9,12 @@ from bullet_sim.profiler import Profiler
 WINDOW = 1.0  # s, wall, over which the real-time factor is taken
 REPORT_PERIOD = 10.0  # s, wall
 SLOW = 0.95  # of the wanted speed; below it there is a warning
-BUSY = 0.5  # of wall time; where all stages together took less, the simulator was kept waiting
-WAITING = "wait"  # for the picture before: what that costs is counted under drawing
+BUSY = 0.5  # of wall time; if all stages together took less, other programs had the processor
+WAITING = "wait"  # for the previous image, the cost of which is counted under drawing
 
 
 class RealTimeFactorMonitor:
-    """Fed by the loop after every batch of steps."""
+    """Updated by the loop after every batch of steps."""
 
     def __init__(self, profiler: Profiler, profile: bool):
         self.measured = 0.0
@@ -30,7 +30,7 @@ class RealTimeFactorMonitor:
         self._totals = self._profiler.totals()
 
     def update(self, simulated: float, wanted: float) -> None:
-        """`wanted` is the real-time factor aimed at; 0: as fast as it goes."""
+        """`simulated` in s; `wanted` is the real-time factor aimed at, 0: as fast as possible."""
         now = time.monotonic()
         if now - self._window[0] >= WINDOW:
             self.measured = _factor(self._window, (now, simulated))
@@ -40,7 +40,7 @@ class RealTimeFactorMonitor:
             self._report, self._totals = (now, simulated), self._profiler.totals()
 
     def close(self) -> None:
-        """At the end."""
+        """Log the profile at the end, if that is wanted."""
         if self._profile:
             self._log_stages()
 
@@ -60,7 +60,7 @@ class RealTimeFactorMonitor:
         rospy.loginfo("stages of the work in %.0f s\n%s", elapsed, self._profiler.table(elapsed))
 
     def _costliest(self) -> tuple[str, float, float]:
-        """Its name and share of wall time since the last report, and the share of all stages."""
+        """The costliest stage and its share of wall time since the last report; that of all."""
         spent = {name: total - self._totals.get(name, 0.0)
                  for name, total in self._profiler.totals().items()}
         spent.pop(WAITING, None)

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure for some values with ranges, without a generated configuration."""
+"""dynamic_reconfigure for values with ranges, without a generated configuration."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -17,7 +17,7 @@ KINDS = {float: "double", bool: "bool", int: "int", str: "str"}
 
 @dataclass(frozen=True)
 class Value:
-    """A value as it is now, and what it may become."""
+    """A value and its range."""
 
     now: float | bool
     least: float | bool
@@ -26,18 +26,18 @@ class Value:
 
 
 class Owner(Protocol):
-    """What a server lives as long as: the context of a plugin or of a controller."""
+    """The owner of a server, which ends with it: the context of a plugin or of a controller."""
 
     def describe(self) -> str:
-        """Whose log line it is."""
+        """The owner's name in log lines."""
 
     def on_close(self, action: Callable[[], None]) -> None:
-        """Call `action` at its end."""
+        """Call `action` when the owner ends."""
 
 
 def offer_values(owner: Owner, namespace: str, values: Mapping[str, Value],
                  change: Callable[[dict[str, float | bool]], None]) -> None:
-    """Let values be changed as long as `owner` lives; a name that is taken is a warning."""
+    """Let values be changed until `owner` ends; a name that is taken is a warning."""
     try:
         server = ValueServer(namespace, values, change)
     except rospy.ServiceException as error:
@@ -48,11 +48,11 @@ def offer_values(owner: Owner, namespace: str, values: Mapping[str, Value],
 
 def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, Value],
                   change: Callable[[dict[str, float | bool]], None]) -> None:
-    """As `offer_values`; `change(values)` is called in the loop, and not for those that are now."""
+    """As `offer_values`; `change(values)` is called in the loop, and not with the first values."""
     begun: list[bool] = []
 
     def changed(new: dict[str, float | bool]) -> None:
-        """In a ROS thread; at once for the first time."""
+        """Called in a ROS thread; the first time at once."""
         if begun:
             context.services.mailbox.post(lambda: change(new))
         begun.append(True)
@@ -61,7 +61,7 @@ def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, V
 
 
 class ValueServer(Server):
-    """`change(values)` is called in a ROS thread, at once and whenever somebody changes one."""
+    """Calls `change(values)` at once, and in a ROS thread whenever somebody changes one."""
 
     def __init__(self, namespace: str, values: Mapping[str, Value],
                  change: Callable[[dict[str, float | bool]], None]):
@@ -76,7 +76,7 @@ class ValueServer(Server):
             raise
 
     def _copy_from_parameter_server(self) -> None:
-        """They were read already; here a whole number would turn into another type."""
+        """Not done: parameters were read already, and an integer would get another type here."""
 
     def close(self) -> None:
         """End topics and service."""
@@ -89,7 +89,7 @@ class ValueServer(Server):
 
 
 class _Type:
-    """What dynamic_reconfigure's generator would have written."""
+    """The type description that dynamic_reconfigure's generator would have written."""
 
     def __init__(self, values: Mapping[str, Value]):
         self.defaults = {name: value.now for name, value in values.items()}

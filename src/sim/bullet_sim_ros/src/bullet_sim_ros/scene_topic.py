@@ -1,4 +1,4 @@
-"""~scene: the scene, as text, for the page in the browser and others that draw."""
+"""~scene: the scene as text, for the web page and other programs that draw."""
 
 import rospy
 from std_msgs.msg import String
@@ -10,9 +10,9 @@ from bullet_sim_ros import names
 
 
 class SceneTopic:
-    """Latched; made while somebody subscribes, and anew when links, visuals or lights change.
+    """Latched; sent while subscribed to, and again when links, visuals or lights change.
 
-    How things move is in link_states; in a paused world, which publishes none, a new text has it.
+    Motion is in link_states; in a paused world, which publishes none, a new text is sent instead.
     """
 
     def __init__(self, world: World):
@@ -22,7 +22,7 @@ class SceneTopic:
         self._still: tuple[Pose, ...] = ()  # of all links, while paused
 
     def update(self) -> None:
-        """Called again and again, paused or not: costs next to nothing while nothing changes."""
+        """Called in each turn of the loop, paused or not: costs little while nothing changes."""
         if not self._publisher.get_num_connections():
             return
         still = self._poses() if self._world.paused else self._still

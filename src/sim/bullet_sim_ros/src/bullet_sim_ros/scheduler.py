@@ -1,23 +1,22 @@
-"""What is done at rates of simulated time, and when the next of it is due."""
+"""Runs tasks at rates of simulated time, and says when the next one is due."""
 
 from collections.abc import Callable
 
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 
-# s, wall: at the wanted pace nothing is looked at less often, so that new listeners and commands
-# need not wait.
+# s, wall: at the wanted pace the loop checks for new subscribers and commands at least this often.
 LONGEST = 0.01
-UNPACED = 0.05  # s, simulated: nor less often than this, however fast time is to run
+UNPACED = 0.05  # s, simulated: and at least this often, however fast time is to run
 
 
 def always() -> bool:
-    """For what is done whether or not anybody listens."""
+    """For tasks that run with and without subscribers."""
     return True
 
 
 class PeriodicTask:
-    """One thing to be done again and again, while it is wanted."""
+    """A task that is repeated at a rate, while it is wanted."""
 
     def __init__(self, tick_rate: TickRate, tick: int, action: Callable[[], None],
                  wanted: Callable[[], bool]):
@@ -25,7 +24,7 @@ class PeriodicTask:
         self.action = action
         self.wanted = wanted
         self.next_tick = tick_rate.next_tick(tick)
-        self.count = 0  # how often it has been done
+        self.count = 0  # how often it has run
 
 
 class Scheduler:
@@ -37,16 +36,16 @@ class Scheduler:
         self._longest = LONGEST
 
     def set_pace(self, factor: float) -> None:
-        """The real-time factor aimed at; 0: as fast as it goes."""
+        """Set the real-time factor aimed at; 0: as fast as possible."""
         self._longest = min(factor * LONGEST, UNPACED) if factor > 0 else UNPACED
 
     def add(self, rate_hz: float, action: Callable[[], None],
             wanted: Callable[[], bool] = always, whole_steps: bool = False) -> PeriodicTask:
-        """Do something `rate_hz` times a simulated second from now on; 0: every step.
+        """Run `action` `rate_hz` times per simulated second from now on; 0: every step.
 
-        `whole_steps` as a `TickRate` has it.
+        For `whole_steps` see `TickRate`.
 
-        SimulationError of a rate that is negative or not finite.
+        SimulationError if the rate is negative or not finite.
         """
         tick = self._world.tick
         tick_rate = TickRate(rate_hz, self._world.timestep, tick, whole_steps)
@@ -54,16 +53,16 @@ class Scheduler:
         return self._tasks[-1]
 
     def change_rate(self, task: PeriodicTask, rate_hz: float) -> None:
-        """Do it at another rate, counted from now on.
+        """Run a task at another rate, counted from now on.
 
-        SimulationError of a rate that is negative or not finite.
+        SimulationError if the rate is negative or not finite.
         """
         tick = self._world.tick
         task.tick_rate = TickRate(rate_hz, self._world.timestep, tick, task.tick_rate.whole_steps)
         task.next_tick = task.tick_rate.next_tick(tick)
 
     def remove(self, task: PeriodicTask) -> None:
-        """Not any more."""
+        """Stop running a task."""
         self._tasks = [other for other in self._tasks if other is not task]
 
     def restart(self) -> None:
@@ -74,7 +73,7 @@ class Scheduler:
             task.next_tick = task.tick_rate.next_tick(tick)
 
     def next_tick(self) -> int:
-        """When to look again: the first tick at which something is due that is wanted now."""
+        """The first tick at which a task that is wanted now is due, or the loop has to check."""
         now = self._world.tick
         first = now + max(1, round(self._longest / self._world.timestep))
         for task in self._tasks:
@@ -85,7 +84,7 @@ class Scheduler:
         return first
 
     def run(self) -> None:
-        """Do what is due at this tick."""
+        """Run the tasks that are due at this tick."""
         now = self._world.tick
         for task in self._tasks:
             if task.next_tick == now and task.wanted():

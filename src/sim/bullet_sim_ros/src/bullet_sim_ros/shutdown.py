@@ -1,4 +1,4 @@
-"""Ends of the node: by a signal, by the master, by itself."""
+"""Shutdown of the node: by a signal, by the master, by itself."""
 
 import signal
 import threading
@@ -13,8 +13,8 @@ SHUTDOWN_LIMIT = 2.0  # s, wall; a master that hangs answers nobody
 
 
 def end_by_signals(stop: Callable[[], None]) -> None:
-    """Ctrl-C and SIGTERM end the loop. Where it has not begun rospy may wait for a master that is
-    gone, and hears of nothing but a shutdown."""
+    """Make Ctrl-C and SIGTERM end the loop. If that has not begun, rospy may be waiting for a
+    master that is gone, which only a shutdown ends; so that follows after LOOP_END."""
     def end(_number: int, _frame: object) -> None:
         stop()
         last = threading.Timer(LOOP_END, shut_down)
@@ -26,9 +26,9 @@ def end_by_signals(stop: Callable[[], None]) -> None:
 
 
 def end_before_topics(stop: Callable[[], None]) -> threading.Event:
-    """Have a shutdown from outside (`rosnode kill`, a second /gazebo) wait for the event, which is
-    the loop's end, before it closes topics: rospy says only afterwards that it shuts down, and what
-    is published meanwhile is an exception."""
+    """Make a shutdown from outside (`rosnode kill`, a second /gazebo) wait for the returned event,
+    the loop's end, before it closes topics: rospy reports a shutdown only afterwards, and until
+    then publishing raises an exception."""
     ended = threading.Event()
 
     def wait_for_the_end() -> None:
@@ -41,10 +41,10 @@ def end_before_topics(stop: Callable[[], None]) -> threading.Event:
 
 
 def shut_down() -> None:
-    """Returns when the master knows, whichever thread tells it, or has not answered for a while.
+    """Shut rospy down; returns once that is done, by whichever thread, or after SHUTDOWN_LIMIT.
 
-    rospy tells it before it says that it shuts down, and for a list of services asks for a lock;
-    that is held while one is registered, again and again until rospy says so.
+    rospy unregisters at the master before it reports the shutdown, and for that needs the lock of
+    its list of services; a thread that keeps trying to register a service holds that lock.
     """
     own = threading.Thread(
         target=rospy.signal_shutdown, args=("the simulation has ended",), daemon=True)

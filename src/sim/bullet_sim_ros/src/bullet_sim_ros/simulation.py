@@ -23,7 +23,7 @@ from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.scheduler import Scheduler
 
-IDLE = 0.05  # s, wall: how long to wait for a call before looking whether all is to end
+IDLE = 0.05  # s, wall clock: how long to wait for a call before checking for shutdown
 
 
 class Simulation:
@@ -48,7 +48,7 @@ class Simulation:
         self.scheduler.add(parameters.pub_clock_frequency, self._publish_clock)
         self.set_pace()
         self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
-        self.state_calls: Counter[str] = Counter()  # of get_model_state, by model: its header's seq
+        self.state_calls: Counter[str] = Counter()  # get_model_state calls by model: header.seq
         for model in world.models.values():
             self._load_plugins(model)
         self._world_plugins = load_world_plugins(self._services)
@@ -57,7 +57,7 @@ class Simulation:
     # --- the loop
 
     def run(self, iterations: int = 0) -> None:
-        """Step until `stop` or until ROS shuts down, or for so many steps."""
+        """Step until `stop` or ROS shutdown, or for `iterations` steps (0: no limit)."""
         self._publish_clock()
         left = iterations or float("inf")
         while left and not self._stopped():
@@ -67,18 +67,18 @@ class Simulation:
                     function()
                 if not self.world.paused and not self._stopped():
                     left -= self._advance(left)
-            except EngineError as error:  # of a topic with poses
+            except EngineError as error:  # from a topic that publishes poses
                 self.world.delete_lost_models(error)
 
     def stop(self) -> None:
-        """From a signal handler: end the loop soon."""
+        """End the loop soon; may be called by a signal handler."""
         self._stop_requested = True
 
     def _stopped(self) -> bool:
         return self._stop_requested or rospy.is_shutdown()
 
     def _wait(self) -> None:
-        """Answer calls until what comes next is due by the wall clock; at least those that wait."""
+        """Answer calls until the next tick is due by the wall clock; at least the pending calls."""
         if self.world.paused:
             self.mailbox.run_pending(IDLE)
             self._restart_pace()
@@ -90,11 +90,11 @@ class Simulation:
         self.mailbox.run_pending()
 
     def _due(self) -> float:
-        """Simulated time, s, of what is to be done next."""
+        """Simulated time, s, of the next scheduled job."""
         return self.scheduler.next_tick() * self.world.timestep
 
     def _advance(self, most: float) -> int:
-        """Step up to what is due next, and do it; returns how many steps that took."""
+        """Step to the next scheduled jobs and run them; returns the number of steps taken."""
         world = self.world
         steps = int(min(self.scheduler.next_tick() - world.tick, most))
         world.step(steps)
@@ -106,7 +106,7 @@ class Simulation:
         return steps
 
     def step(self) -> None:
-        """One step and what is due then; afterwards the world is paused, /clock published."""
+        """Take one step and run the jobs due then; afterwards pause and publish /clock."""
         self.world.paused = False
         try:
             self._advance(1)
@@ -116,14 +116,14 @@ class Simulation:
 
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
-        # This node needs no /clock: its log stamps get the time directly. Nobody here sleeps by it.
+        # This node does not subscribe to /clock: log stamps use this time. No thread sleeps by it.
         rospy.rostime._rostime_current = now
         self._clock.publish(Clock(now))
 
     # --- pace
 
     def set_pace(self) -> None:
-        """Real-time factor as the world's physics says: step times real_time_update_rate."""
+        """Set the real-time factor to the world's step size times real_time_update_rate."""
         physics = self.world.description.physics
         self.pacer.factor = physics.max_step_size * physics.real_time_update_rate
         self.scheduler.set_pace(self.pacer.factor)
@@ -142,7 +142,7 @@ class Simulation:
     # --- contents
 
     def spawn(self, description: ModelDescription, pose: Pose, name: str) -> Model:
-        """Put a model in and load its plugins."""
+        """Add a model and load its plugins."""
         model = self.world.spawn(description, pose, name)
         try:
             self._load_plugins(model)
@@ -153,13 +153,13 @@ class Simulation:
         return model
 
     def delete(self, name: str) -> None:
-        """Take a model out; its topics disappear."""
+        """Delete a model; its topics disappear."""
         self.world.delete(name)
         self.lockstep.listen()
 
     def reset(self) -> None:
-        """Time and models back to the start; plugins are reset."""
-        self._drawing.settle()  # no picture of the time before comes after it
+        """Set time and models back to the start; reset the plugins."""
+        self._drawing.settle()  # so that no image from before the reset is published after it
         self.lockstep.cancel()
         self.world.reset_simulation()
         self.scheduler.restart()
@@ -170,12 +170,12 @@ class Simulation:
         self._restart_pace()
 
     def sensors(self) -> list[PluginContext]:
-        """The plugins that work for a sensor."""
+        """The plugins of sensors."""
         return [context for contexts in self._plugins.values() for context in contexts
                 if context.kind == "sensor"]
 
     def close(self) -> None:
-        """Answer calls that still wait; release renderer and engine."""
+        """Refuse pending calls; release renderer and engine."""
         self.mailbox.close()
         self._drawing.close()
         self.real_time_factor.close()

@@ -1,13 +1,13 @@
-"""The true states, and who called what, as lines of JSON in a file that only this process writes.
+"""A log of true states and calls, as lines of JSON in a file that only this process writes.
 
-What Gazebo's state log (`gzserver --record`) is for: looking back at a run without trusting a node.
-A line is one of
+Its purpose is that of Gazebo's state log (`gzserver --record`): to examine a run without trusting
+any node. A line is one of
     {"time": s, "poses": {MODEL: [x, y, z, qx, qy, qz, qw]}, "contacts": [[MODEL, MODEL], ...],
      "unanswered": N}
     {"call": SERVICE or TOPIC, "caller": NODE}
     {"shutdown": REASON}
-Poses are those of models that can move, in the world frame, m; a contact is a pair of models;
-N camera frames so far had no answer in lockstep.
+Poses are those of models that can move, in the world frame, m; a contact is a pair of models; N is
+the number of camera frames so far that had no answer in lockstep.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class StateLog:
                      "unanswered": self._lockstep.unanswered})
 
     def _write(self, values: dict) -> None:
-        """A judge would believe a log with a hole in it: where it cannot be written, all ends."""
+        """A log with a gap would be misleading, so if it cannot be written, the simulation ends."""
         if self._file.closed:
             return
         try:
@@ -54,7 +54,7 @@ class StateLog:
             rospy.logfatal("state log %s: %s: the simulation ends; make room there, or name another"
                            " file by %s", self._file.name, error.strerror,
                            rospy.resolve_name(names.STATE_LOG))
-            with contextlib.suppress(OSError):  # of what is not written yet
+            with contextlib.suppress(OSError):  # from flushing the rest
                 self._file.close()
             self._stop()
 

@@ -1,4 +1,4 @@
-"""model_states and link_states out, set_model_state and set_link_state in."""
+"""Publishes model_states and link_states; subscribes to set_model_state and set_link_state."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ from bullet_sim_ros.simulation import Simulation
 
 
 class StateTopics:
-    """Built only while somebody subscribes."""
+    """The states are published only while they have subscribers."""
 
     def __init__(self, simulation: Simulation, rate_hz: float):
         self._simulation = simulation
@@ -38,7 +38,7 @@ class StateTopics:
             LinkStates(), ((link.scoped_name, link.pose, link.twist) for link in links)))
 
     def _obey(self, topic: str, kind: type, put: Callable[[World, Any], None]) -> None:
-        """Have `put(world, message)` run in the loop for each message; errors are logged."""
+        """Subscribe, and run `put(world, message)` in the loop; errors are logged."""
         def take(msg) -> None:
             try:
                 put(self._simulation.world, msg)

@@ -1,1 +1,1 @@
-"""The page in the browser: a server between ROS and the modules in web/."""
+"""The web page's server, which connects ROS with the browser's modules in web/."""

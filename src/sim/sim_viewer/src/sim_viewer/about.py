@@ -1,4 +1,4 @@
-"""What the page asks first."""
+"""The operation that the page calls first."""
 
 import rospy
 
@@ -8,5 +8,5 @@ from sim_viewer.registry import operation
 
 @operation("about")
 async def about(context: Context) -> dict:
-    """Whether this page may change anything, and who serves it."""
+    """Whether this page may change anything, and the name of the node that serves it."""
     return {"control": context.control, "node": rospy.get_name()}

@@ -1,7 +1,7 @@
 """Who may connect to the server: by a token, and by host names that no other site can use.
 
-A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding) or open a WebSocket here
-from its own origin. Browsers say so in the headers Host and Origin, so both are checked.
+Another site can let its host name resolve to 127.0.0.1 (DNS rebinding), or open a WebSocket here
+from its own origin. Browsers report that in the headers Host and Origin, so both are checked.
 """
 
 import hmac
@@ -45,7 +45,7 @@ class Access:
         except web.HTTPException as refused:  # 404 and its like are answers, too
             refused.headers.update(HEADERS)
             raise
-        except (OSError, ValueError):  # names of files that no system has
+        except (OSError, ValueError):  # an impossible file name
             return web.Response(status=404, text="no such file\n", headers=HEADERS)
         if not answer.prepared:
             answer.headers.update(HEADERS)
@@ -75,7 +75,7 @@ class Access:
         if name in self._names:
             return True
         try:
-            ipaddress.ip_address(name)  # a number is nobody's name, so nobody can borrow it
+            ipaddress.ip_address(name)  # an address, which DNS rebinding cannot fake
         except ValueError:
             return False
         return True
@@ -86,12 +86,12 @@ class Access:
 
 
 def _cookie(request: web.Request) -> str:
-    """Browsers keep one set of cookies for all ports of a machine, and a page runs on each."""
+    """The cookie's name, with the port: browsers share cookies between all ports of a host."""
     return f"sim_viewer_{request.transport.get_extra_info('sockname')[1]}"
 
 
 def _place(origin: str) -> str | None:
-    """Host and port; None where there is none."""
+    """Host and port of an origin; None if it cannot be parsed."""
     try:
         return urlsplit(origin).netloc.lower()
     except ValueError:

@@ -1,4 +1,4 @@
-"""What operations and watchables are given: one browser's connection, and the node behind it."""
+"""The context of operations and watchables: one browser's connection, and the node behind it."""
 
 import asyncio
 from collections.abc import Callable
@@ -13,7 +13,7 @@ WORKERS = 16  # threads for what may block: services, the master, slow encoders
 
 
 class Node:
-    """Shared by all browsers: options, the loop, worker threads, and what modules keep for all."""
+    """Shared by all browsers: options, the loop, worker threads and the modules' shared objects."""
 
     def __init__(self, options: Options, loop: asyncio.AbstractEventLoop):
         self.options = options
@@ -29,7 +29,7 @@ class Node:
         return self._shared[kind]
 
     async def run_in_thread(self, function: Callable, *args: Any) -> Any:
-        """The result of what may block, worked out beside the loop."""
+        """Call a function that may block in a worker thread, and return its result."""
         return await self.loop.run_in_executor(self._workers, function, *args)
 
     def close(self) -> None:
@@ -45,7 +45,7 @@ class Context:
 
     def __init__(self, node: Node, client: int):
         self.node = node
-        self.client = client  # its number, of its own
+        self.client = client  # a unique number
         self.loop = node.loop
         self._on_close: list[Callable[[], None]] = []
 
@@ -55,7 +55,7 @@ class Context:
         return self.node.options.control
 
     async def run_in_thread(self, function: Callable, *args: Any) -> Any:
-        """The result of what may block, worked out beside the loop."""
+        """Call a function that may block in a worker thread, and return its result."""
         return await self.node.run_in_thread(function, *args)
 
     def on_close(self, function: Callable[[], None]) -> None:
@@ -63,7 +63,7 @@ class Context:
         self._on_close.append(function)
 
     def closed(self) -> None:
-        """The connection has ended: call those who asked for it, also where one of them fails."""
+        """The connection has ended: call all functions of `on_close`, even if one of them fails."""
         for function in self._on_close:
             try:
                 function()

@@ -1,6 +1,6 @@
 """The dead man's switch of one command topic: who holds it, until when, and what to publish.
 
-No ROS, no thread and no clock: `now` is handed in, in seconds of a clock that never jumps.
+No ROS, no thread and no clock: `now` is passed in, in seconds of a monotonic clock.
 """
 
 import math
@@ -12,7 +12,7 @@ HOLD = 0.25  # s that a command lasts; the page repeats a held key at 10 Hz
 
 @dataclass(frozen=True)
 class Command:
-    """What a held key asks for. Positive: forwards, and to the left."""
+    """The command of a held key. Positive: forwards, and to the left."""
 
     linear: float  # m/s
     angular: float  # rad/s; for a car the steering angle in rad
@@ -22,25 +22,25 @@ STOP = Command(0.0, 0.0)
 
 
 class DrivenByAnother(Exception):
-    """Another client drives now; this one must let go of its keys before it may drive again."""
+    """Another client drives now; this one must release its keys before it may drive again."""
 
 
 class DeadMan:
-    """One handle, one driver. Each method returns what to publish now, oldest first."""
+    """One topic with one driver. Each method returns the commands to publish now, oldest first."""
 
     def __init__(self, hold: float = HOLD) -> None:
         self._hold = hold
         self.driver: Hashable | None = None
         # When `expire` has a command to publish, s; infinite while nobody drives.
         self.until = math.inf
-        self._moving = False  # the last command that was published is no stop
-        self._ousted: dict[Hashable, float] = {}  # who still presses in vain, and when last
+        self._moving = False  # whether the last published command was not a stop
+        self._ousted: dict[Hashable, float] = {}  # replaced clients, and when they last pressed, s
 
     def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
-        """A command of a client. Who comes last gets the handle, and its first command is a stop.
+        """A command of a client. The latest client becomes the driver, beginning with a stop.
 
-        So two people never pull at one robot in turn: the earlier one gets DrivenByAnother until
-        nothing came from it for the length of a command, or it released.
+        So two people never drive one robot in turn: the earlier driver gets DrivenByAnother until
+        it has sent nothing for the length of a command (`hold`), or has released its keys.
         """
         if now - self._ousted.get(client, -math.inf) < self._hold:
             self._ousted[client] = now
@@ -59,7 +59,7 @@ class DeadMan:
         return self._let_go() if client == self.driver else []
 
     def expire(self, now: float) -> list[Command]:
-        """Nothing came from the driver for the length of a command."""
+        """Stop if the driver has sent nothing for the length of a command."""
         return self._let_go() if now >= self.until else []
 
     def _let_go(self) -> list[Command]:

@@ -1,4 +1,4 @@
-"""Driving from browsers: what they may ask for. The process drive_guard.py publishes and stops."""
+"""Driving from browsers: the operations. The process drive_guard.py publishes and stops."""
 
 import asyncio
 import json
@@ -16,21 +16,21 @@ from sim_viewer.drive_guard import MESSAGES
 from sim_viewer.registry import Refused, operation
 from sim_viewer.tools.master import asked, connect
 
-FASTEST = 20.0  # m/s and rad/s; more is a slip of the hand, whatever the robot
-TIMEOUT = 15.0  # s until the guard has begun and opened a topic, on a busy machine
-GUARD = "_drive"  # what its node's name has more than this one's
+FASTEST = 20.0  # m/s and rad/s; more is a mistake, whatever the robot
+TIMEOUT = 15.0  # s until the guard has started and opened a topic, on a busy machine
+GUARD = "_drive"  # appended to this node's name for that of the guard
 
 
 class Drive:
-    """The guard's process, begun with the first topic that somebody drives; all in the loop."""
+    """The guard's process, started with the first topic driven; all methods run in the loop."""
 
     def __init__(self, node: Node) -> None:
         self._loop = node.loop
         self._guard: subprocess.Popen | None = None
-        self._topics: dict[str, str] = {}  # that the guard has opened, with their types
+        self._topics: dict[str, str] = {}  # opened by the guard, with their types
         self._number = 0
         self._answers: dict[int, asyncio.Future] = {}
-        self._known: set[int] = set()  # clients whose end is watched
+        self._known: set[int] = set()  # clients whose disconnection is handled
 
     def is_open(self, topic: str) -> bool:
         return topic in self._topics
@@ -59,7 +59,7 @@ class Drive:
             self._send_to_guard({"do": "release", "client": client})
 
     def close(self) -> None:
-        """The node ends, and the guard with its input: nothing is left driving."""
+        """To be called when the node ends; the guard then stops all robots and ends, too."""
         if self._guard is not None:
             self._guard.stdin.close()
 
@@ -68,7 +68,7 @@ class Drive:
         self.release(client)
 
     def _begin(self) -> None:
-        # A session of its own: Ctrl-C in the terminal must not end it before all is stopped.
+        # A session of its own: Ctrl-C in the terminal must not end it before all robots stop.
         self._guard = subprocess.Popen(
             [sys.executable, "-m", "sim_viewer.drive_guard", f"__name:={_name()}",
              f"__ns:={rospy.get_namespace()}"],
@@ -77,7 +77,7 @@ class Drive:
         threading.Thread(target=self._listen, args=(self._guard,), daemon=True).start()
 
     def _listen(self, guard: subprocess.Popen) -> None:
-        """In a thread of its own."""
+        """Receive answers, in a thread of its own."""
         try:
             for line in guard.stdout:
                 self._loop.call_soon_threadsafe(self._take, json.loads(line))
@@ -128,13 +128,13 @@ class Drive:
             if self._guard.stdin.write(line) is None:
                 raise Refused("the process that drives does not listen; press again")
         except (OSError, ValueError):
-            pass  # it has ended, which `_listen` finds out
+            pass  # it has ended, which `_listen` notices
 
 
 def driven_topics() -> dict[str, str]:
     """Topics with a subscriber and a type that the page can publish, with that type, sorted.
 
-    Refused where the master is gone.
+    Refused if the master is gone.
     """
     types, (_, subscribers, _) = asked(lambda: (dict(connect().getTopicTypes()),
                                                 connect().getSystemState()))
@@ -153,7 +153,7 @@ async def drive_topics(context: Context) -> list[dict[str, str]]:
 async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]:
     """Get ready to drive, so that the first key is not lost while connections are made.
 
-    Refused where no robot listens.
+    Refused if no robot subscribes to the topic.
     """
     name = _legal(topic)
     found = await context.run_in_thread(driven_topics)
@@ -165,8 +165,8 @@ async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]
 
 @operation("drive", control=True)
 async def drive(context: Context, linear: float, angular: float, topic: str = "cmd_vel") -> None:
-    """A key is held. The first message on a topic only opens it: what waits may be overtaken by a
-    release, and must not drive after that. Refused: too fast, no such topic, another drives."""
+    """A key is held. The first message on a topic only opens it: while it waits, the key may be
+    released, and then it must not drive. Refused: too fast, no such topic, another drives."""
     if max(abs(linear), abs(angular)) > FASTEST:
         raise Refused(f"drive: {linear:g} m/s and {angular:g} rad/s are more than {FASTEST:g}")
     driven, name = context.node.shared(Drive), _legal(topic)
@@ -183,7 +183,7 @@ async def drive_release(context: Context) -> None:
 
 
 def _legal(topic: str) -> str:
-    """Its full name."""
+    """The topic's full name; Refused if it is illegal."""
     if len(topic) > 256 or not rosgraph.names.is_legal_name(topic) or topic.startswith("~"):
         raise Refused(f"{topic[:40]!r} is not the name of a topic; cmd_vel is one")
     return rospy.resolve_name(topic)

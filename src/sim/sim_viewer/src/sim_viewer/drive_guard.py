@@ -1,7 +1,7 @@
-"""The process that publishes what browsers drive, and the zero when they no longer do.
+"""The process that publishes commands of browsers, and a zero command when they stop coming.
 
 A process of its own: the page's server may be busy with a large message, be stopped or be killed,
-and then, too, the robot must stop in time. It takes commands as lines of JSON on its standard
+and then, too, the robot must stop in time. It reads commands as lines of JSON from its standard
 input, and when that ends, it stops everything and ends as well:
 
     {"do": "open", "number": 1, "topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
@@ -9,7 +9,7 @@ input, and when that ends, it stops everything and ends as well:
     {"do": "release", "client": 7}
     {"do": "stop", "topic": "/cmd_vel"}
 
-What has a number is answered on its standard output by {"number": 2, "taken": false}; `taken`:
+A line with a number is answered on its standard output by {"number": 2, "taken": false}; `taken`:
 another client drives now (see dead_man.py).
 """
 
@@ -29,8 +29,8 @@ from sim_viewer.dead_man import STOP, Command, DrivenByAnother
 from sim_viewer.handles import Handles
 
 FLUSH = 0.1  # s in which rospy's threads send what was published last
-CONNECTING = 1.0  # s that the robot is waited for, so that the first key is not lost
-URGENT = -10  # niceness: it does next to nothing, but that in time; only root may have it
+CONNECTING = 1.0  # s to wait for the robot to connect, so that the first key is not lost
+URGENT = -10  # niceness: it does little, but must be in time; only root may set it
 
 
 def twist(command: Command) -> Twist:
@@ -61,7 +61,7 @@ class Guard:
         self._handles = Handles(self._publish)
 
     def do(self, line: str) -> None:
-        """One line of the server."""
+        """Execute one line from the server."""
         order = json.loads(line)
         if order["do"] == "open":  # takes a while; others drive meanwhile
             threading.Thread(target=self._open, args=(order,), daemon=True).start()
@@ -73,7 +73,7 @@ class Guard:
             self._handles.release(order["client"])
 
     def close(self) -> None:
-        """Nothing may be left driving."""
+        """Stop all robots that are driven."""
         self._handles.close()
         time.sleep(FLUSH)
 
@@ -105,13 +105,13 @@ class Guard:
 
 
 def main() -> None:
-    """Until the standard input ends."""
+    """Run until the standard input ends."""
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1)
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # rospy's log lines are no answers
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # keeps rospy's log lines out of the answers
     try:
         os.nice(URGENT)
     except OSError:
-        pass  # then with the others
+        pass  # then at normal priority
     rospy.init_node("sim_viewer_drive", disable_signals=True)
     writing = threading.Lock()
 

@@ -1,4 +1,4 @@
-"""Who drives which topic, and a thread that stops what nobody holds. Without ROS."""
+"""Which client drives which topic, and a thread that stops those left alone. Without ROS."""
 
 import threading
 import time
@@ -8,7 +8,7 @@ from sim_viewer.dead_man import Command, DeadMan
 
 
 class Handles:
-    """A handle for each topic. All methods may be called from any thread."""
+    """A DeadMan for each topic. All methods may be called from any thread."""
 
     def __init__(self, publish: Callable[[str, Command], None],
                  clock: Callable[[], float] = time.monotonic) -> None:

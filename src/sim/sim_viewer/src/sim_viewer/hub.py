@@ -1,4 +1,4 @@
-"""The browsers that are connected: their messages in, answers and what they watch out."""
+"""The connected browsers: their requests in, answers and events of their watches out."""
 
 import asyncio
 import inspect
@@ -16,7 +16,7 @@ from sim_viewer.registry import Refused
 
 LARGEST_MESSAGE = 1 << 20  # bytes; more closes the connection
 MOST_BROWSERS = 100
-MOST_AT_ONCE = 64  # operations of one browser under way, and things it watches
+MOST_AT_ONCE = 64  # operations in progress, and watches, of one browser
 LONGEST_ID = 64  # characters of a message's number, which is sent back
 GOODBYE = 1.0  # s for all browsers together, when the node ends
 PING_PERIOD = 15.0  # s; a browser that does not answer is disconnected
@@ -55,7 +55,7 @@ class Hub:
             await client.close()
 
     async def close(self) -> None:
-        """Say goodbye to all who listen; the others are not waited for."""
+        """Close all connections; browsers that do not answer in time are not waited for."""
         goodbyes = [asyncio.ensure_future(socket.close()) for socket in self._sockets]
         if goodbyes:
             _, deaf = await asyncio.wait(goodbyes, timeout=GOODBYE)
@@ -75,7 +75,7 @@ class Client:
         self._numbers = itertools.count(1)
 
     async def serve(self) -> None:
-        """Until the connection ends."""
+        """Handle messages until the connection ends."""
         sender = asyncio.create_task(self._send_all())
         try:
             async for message in self._socket:
@@ -86,7 +86,7 @@ class Client:
             sender.cancel()
 
     async def close(self) -> None:
-        """End what it asked for and watched."""
+        """End its operations and watches."""
         self._context.closed()
         for task in self._tasks:
             task.cancel()
@@ -103,7 +103,7 @@ class Client:
                 else:
                     await self._socket.send_str(message)
         except ConnectionError:
-            pass  # the browser went away in the middle
+            pass  # the browser disconnected
         finally:
             self._outbox.end()
 
@@ -159,7 +159,7 @@ class Client:
                        lambda data, keep=False: self._outbox.post(number, data, keep))
         self._watches[number] = watched
         self._outbox.open(number)
-        # Before the first event, so that the browser knows whose it is.
+        # Answers overtake queued events; the page keeps events that come before this answer.
         answer = {"watch": number}
         try:
             await self._run(watched.start)
@@ -184,7 +184,7 @@ class Client:
             rospy.logwarn("end of a watch: %s: %s", type(error).__name__, error)
 
     async def _run(self, function: Any) -> None:
-        """Coroutines in the loop, plain functions beside it."""
+        """Run coroutines in the loop, plain functions in a worker thread."""
         if inspect.iscoroutinefunction(function):
             await function()
         else:
@@ -192,7 +192,7 @@ class Client:
 
 
 def _decode(text: str) -> dict[str, Any]:
-    """A message's object; Refused where it is none."""
+    """The object in a message; Refused if there is none."""
     try:
         request = json.loads(text, parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
@@ -203,7 +203,7 @@ def _decode(text: str) -> dict[str, Any]:
 
 
 def _number(given: Any) -> int | float | str | None:
-    """A message's number; Refused where it is none that can be sent back."""
+    """A message's id; Refused if it is not one that can be sent back."""
     if given is None or (isinstance(given, (int, float, str)) and len(str(given)) <= LONGEST_ID):
         return given
     raise Refused(f"id is a number, or at most {LONGEST_ID} characters")

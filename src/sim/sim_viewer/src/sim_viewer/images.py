@@ -1,4 +1,4 @@
-"""Any image topic, and any cv2 window that is one, as JPEG pictures while somebody watches."""
+"""Image topics, among them those of cv2 windows, as JPEG images while somebody watches."""
 
 import time
 from collections.abc import Callable
@@ -17,12 +17,12 @@ WIDTHS_PX = range(16, 961)
 WIDTH_PX = 640
 KINDS = {"sensor_msgs/Image": Image, "sensor_msgs/CompressedImage": CompressedImage}
 COMPRESSED = "/compressed"
-LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old picture waits in the socket
+LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old image waits in the socket
 
 
 @operation("image_topics")
 async def image_topics(context: Context) -> list[str]:
-    """Image topics with a publisher; a compressed one comes after the raw one of its name."""
+    """Image topics with a publisher; compressed ones only if there is no raw one."""
     return await context.run_in_thread(_offered, context.node.shared(MasterView))
 
 
@@ -38,8 +38,8 @@ def _is_twin(topic: str, topics: set[str]) -> bool:
 
 
 class Stream:
-    """One topic at one width, shared by all who watch it. Messages come in rospy's thread, where
-    those that come too fast are dropped unread."""
+    """One topic at one width, shared by all its watchers. Messages arrive in rospy's thread, which
+    drops those that come too fast without reading them."""
 
     def __init__(self, topic: str, kind: type, width: int):
         self._kind = kind
@@ -51,13 +51,13 @@ class Stream:
                                             buff_size=LARGEST_MESSAGE)
 
     def add(self, send: Callable[..., None]) -> None:
-        """Who comes late sees the last picture."""
+        """Add a watcher, and send it the last image."""
         if self._last is not None:
             send(self._last)
         self._watchers = [*self._watchers, send]
 
     def remove(self, send: Callable[..., None]) -> bool:
-        """Whether that was the last one; then the topic is unsubscribed."""
+        """Remove a watcher; returns whether it was the last, after which nothing is subscribed."""
         self._watchers = [other for other in self._watchers if other is not send]
         if not self._watchers:
             self._subscriber.unregister()
@@ -67,13 +67,13 @@ class Stream:
         now = time.monotonic()
         if now < self._due:
             return
-        # The rate holds on the average: of 30 pictures a second 20 are sent, not 15.
+        # The rate holds on average: of 30 images a second 20 are sent, not 15.
         self._due = max(self._due + 1 / RATE_HZ, now - 1 / RATE_HZ)
         try:
             self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)
         except Refused as error:
             self._send_to_all({"error": str(error)})
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             rospy.logwarn_throttle(10, f"{self._subscriber.resolved_name}: {error}")
             self._send_to_all({"error": f"{type(error).__name__}: {error}"})
         else:
@@ -85,20 +85,20 @@ class Stream:
 
 
 class Streams:
-    """All that are watched."""
+    """All streams that have watchers."""
 
     def __init__(self, node: Node):
         self._streams: dict[tuple[str, int], Stream] = {}
 
     def add(self, topic: str, kind: type, width: int, send: Callable[..., None]) -> None:
-        """In the loop's thread, as all here."""
+        """Add a watcher; in the loop's thread, as all methods here."""
         key = (topic, width)
         if key not in self._streams:
             self._streams[key] = Stream(topic, kind, width)
         self._streams[key].add(send)
 
     def remove(self, topic: str, width: int, send: Callable[..., None]) -> None:
-        """Whoever watches no more."""
+        """Remove a watcher."""
         stream = self._streams.get((topic, width))
         if stream is not None and stream.remove(send):
             del self._streams[topic, width]
@@ -106,8 +106,8 @@ class Streams:
 
 @watchable("image")
 class ImageWatch:
-    """Arguments: `topic`, and `width` in px that is enough. Events are JPEG files, or an object
-    with an `error` where a picture cannot be shown."""
+    """Arguments: `topic`, and the largest `width` needed, px. Events are JPEG files, or an object
+    with an `error` if an image cannot be shown."""
 
     def __init__(self, context: Context, args: dict[str, Any], send: Callable[..., None]):
         self._context, self._send = context, send
@@ -118,7 +118,7 @@ class ImageWatch:
         self._topic: str | None = None
 
     async def start(self) -> None:
-        """The compressed topic serves where there is one."""
+        """Subscribe to the compressed topic if there is one, else to the raw one."""
         master = self._context.node.shared(MasterView)
         topic, kind = await self._context.run_in_thread(_find, master, self._requested)
         self._topic = topic
@@ -130,8 +130,8 @@ class ImageWatch:
 
 
 def sources(master: MasterView, wished: str) -> list[str]:
-    """The topics that serve for an image topic: the compressed one where somebody publishes it,
-    else itself; both where nobody publishes either yet."""
+    """The topics to subscribe to for an image topic: the compressed one if it is published, else
+    the topic itself; both if neither is published yet."""
     published, types = master.state().publishers, master.types()
     offered = [topic for topic in (wished + COMPRESSED, wished)
                if topic in published and types.get(topic) in KINDS]

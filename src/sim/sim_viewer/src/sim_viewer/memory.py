@@ -1,4 +1,4 @@
-"""Memory of large messages goes back to the system."""
+"""Returns the memory of large messages to the operating system."""
 
 import ctypes
 
@@ -7,9 +7,9 @@ LARGE = 1 << 20  # bytes
 
 
 def give_back_large_blocks() -> None:
-    """From now on, as soon as they are free.
+    """From now on, return large blocks to the system as soon as they are freed.
 
-    glibc itself raises this threshold to 32 MB when such a block is freed. Then each worker thread
-    keeps the clouds and maps that it has had: 0.8 GB after some minutes.
+    By default glibc raises this threshold to 32 MB when such a block is freed. Then each worker
+    thread keeps the memory of its clouds and maps: 0.8 GB after some minutes.
     """
     ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, LARGE)

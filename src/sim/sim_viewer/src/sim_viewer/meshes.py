@@ -1,4 +1,4 @@
-"""Triangles and textures of the scene, for the page: numbered, so that only they can be asked for.
+"""Triangles and textures of the scene, for the page: numbered, so that it can load nothing else.
 
 GET /mesh/N is one binary, little-endian: four uint32 (corners n, triangles m, 1 if there is uv, 0),
 then float32 positions (n, 3) in m, normals (n, 3), uv (n, 2) with (0, 0) at the lower left, then
@@ -25,12 +25,12 @@ SHOWN_AS_IS = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp")  # files that b
 
 
 class Meshes:
-    """What the present scenes need; shapes stay as long as one of them has them. Thread safe."""
+    """The shapes of the present scenes, kept as long as one of them uses them. Thread safe."""
 
     def __init__(self, node: Node):
         self._node = node
         self._lock = threading.Lock()
-        self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by who shows them
+        self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by owner
         self._shapes: dict[tuple[Visual, ...], LinkShape] = {}
         self._numbers: dict[MeshPart, int] = {}
         self._parts: dict[int, MeshPart] = {}
@@ -38,8 +38,8 @@ class Meshes:
         self._next = itertools.count(1)
 
     def shapes(self, links: list[tuple[Visual, ...]], owner: Hashable = None) -> list[LinkShape]:
-        """What links with these visuals look like; those that this owner had before and nobody
-        else has are forgotten.
+        """The shapes of links with these visuals; shapes that this owner had before and that no
+        owner has now are forgotten.
 
         Reads files, so it may take a while.
         """
@@ -52,7 +52,7 @@ class Meshes:
             return [self._shapes[visuals] for visuals in links]
 
     def forget(self, owner: Hashable) -> None:
-        """It shows nothing any more."""
+        """This owner shows nothing any more."""
         self.shapes([], owner)
         del self._wanted[owner]
 
@@ -65,15 +65,15 @@ class Meshes:
         self._textures = {known.get(path) or next(self._next): path for path in sorted(paths)}
 
     def mesh_number(self, part: MeshPart) -> int:
-        """By which the page asks for a part of a present shape."""
+        """The number by which the page asks for a part of a present shape."""
         return self._numbers[part]
 
     def texture_numbers(self) -> dict[str, int]:
-        """By which the page asks for image files."""
+        """The numbers by which the page asks for image files, by path."""
         return {path: number for number, path in self._textures.items() if Path(path).is_file()}
 
     async def serve_mesh(self, request: web.Request) -> web.Response:
-        """The handler of /mesh/N; HTTPNotFound for what the scene has no more."""
+        """The handler of /mesh/N; HTTPNotFound if the scene does not have that part any more."""
         part = self._parts.get(int(request.match_info["number"]))
         if part is None:
             raise web.HTTPNotFound(text="no such mesh in the present scene\n")
@@ -92,7 +92,7 @@ class Meshes:
 
 
 def mesh_bytes(part: MeshPart) -> bytes:
-    """As /mesh/N gives it."""
+    """The binary that /mesh/N returns."""
     uv = part.uv if part.uv is not None else np.empty((0, 2))
     head = np.array([len(part.vertices), len(part.faces), part.uv is not None, 0], "<u4")
     arrays = [(part.vertices, "<f4"), (part.normals, "<f4"), (uv, "<f4"), (part.faces, "<u4")]

@@ -20,10 +20,10 @@ from sim_viewer.server import NoPort, Server, further_urls, page_url
 
 
 def main(name: str = "sim_viewer", rviz: str = "") -> None:
-    """Until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file."""
+    """Run until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file."""
     give_back_large_blocks()
     try:
-        # The loop takes the signals; roslaunch and Ctrl-C end this node with SIGINT.
+        # The loop handles the signals; roslaunch and Ctrl-C end this node with SIGINT.
         rospy.init_node(name, disable_signals=True)
         registry.load_all()
         asyncio.run(_serve(rviz))
@@ -31,7 +31,7 @@ def main(name: str = "sim_viewer", rviz: str = "") -> None:
         rospy.signal_shutdown(str(error))
         sys.exit(f"{name}: {error}")
     except (KeyboardInterrupt, rospy.ROSInterruptException):
-        pass  # before the loop took the signals
+        pass  # before the loop handled the signals
     rospy.signal_shutdown("the page has ended")
 
 
@@ -66,7 +66,7 @@ async def _serve(rviz: str) -> None:
 
 
 async def _announce(node: Node, port: int) -> None:
-    """Say where the page is."""
+    """Print the page's address, set it as the parameter `~url`, and open it if that is wanted."""
     tab = "#rviz" if node.options.rviz else ""
     if port != node.options.port:
         print(f"viewer: port {node.options.port} is taken, so it is {port}")
@@ -74,7 +74,7 @@ async def _announce(node: Node, port: int) -> None:
     print(f"viewer: {url}", flush=True)
     for further in further_urls(node.options, port, get_local_addresses()):
         print(f"viewer, from other machines: {further}{tab}", flush=True)
-    # For who did not see the line; without the token, since everybody may ask a master.
+    # For those who missed the line; without the token, since anybody can read parameters.
     public = page_url(replace(node.options, token=""), port)
     await node.run_in_thread(rospy.set_param, "~url", public)
     if node.options.open:

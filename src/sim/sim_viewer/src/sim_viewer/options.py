@@ -12,19 +12,19 @@ TOKEN = "SIM_VIEWER_TOKEN"  # environment variable: `ps` and the master show it 
 
 
 class OptionError(ValueError):
-    """A parameter of which nothing can be made."""
+    """A parameter whose value cannot be used."""
 
 
 @dataclass(frozen=True)
 class Options:
-    """As viewer.launch has them."""
+    """The node's options, named as the arguments of viewer.launch."""
 
     port: int = 8080
     address: str = "127.0.0.1"
     control: bool = False
-    token: str = ""  # empty: nobody is asked for one
+    token: str = ""  # empty: none is asked for
     hosts: tuple[str, ...] = ()  # further names by which browsers reach this machine
-    bags: str = ""  # folder of what is recorded; empty: ~/bags
+    bags: str = ""  # folder of recorded bags; empty: ~/bags
     open: bool = False
     rviz: str = ""  # a .rviz file, whose displays the tab RViz shows
 
@@ -40,9 +40,9 @@ class Options:
 
 
 def read_options() -> Options:
-    """From the node's private parameters; where a token is needed and none is set, one is made.
+    """Read the node's private parameters; if a token is needed and none is set, one is generated.
 
-    OptionError: a value of another type, or a port that is none.
+    OptionError if a value is of another type, or the port is invalid.
     """
     options = Options(
         port=_read("port", int, Options.port),

@@ -1,4 +1,4 @@
-"""What is still to be sent to one browser, so that a slow one costs no memory."""
+"""Queues of messages to one browser, limited so that a slow browser costs no memory."""
 
 import asyncio
 import json
@@ -6,9 +6,9 @@ import struct
 from collections import deque
 from typing import Any
 
-MOST_ANSWERS = 100  # that a browser may leave unread before nothing more is read from it
+MOST_ANSWERS = 100  # unread ones, after which nothing more is read from the browser
 MOST_KEPT = 500  # messages of one watchable; the oldest is dropped first
-MOST_BYTES = 4 << 20  # of one thing watched, likewise
+MOST_BYTES = 4 << 20  # of one watch, likewise
 
 
 class Outbox:
@@ -24,7 +24,7 @@ class Outbox:
         self._ended = False
 
     def answer(self, message: dict[str, Any]) -> None:
-        """In the loop's thread."""
+        """Queue an answer; in the loop's thread."""
         self._answers.append(encode(message))
         self._something.set()
         if len(self._answers) >= MOST_ANSWERS and not self._ended:
@@ -40,15 +40,15 @@ class Outbox:
         self._has_space.set()
 
     def open(self, watch: int) -> None:
-        """From now on there is mail of this watch."""
+        """Accept messages of this watch from now on."""
         self._watched[watch] = deque(maxlen=MOST_KEPT)
 
     def close(self, watch: int) -> None:
-        """Throw away what is left of it, and what still comes."""
+        """Drop this watch's queued messages, and those that still come."""
         self._watched.pop(watch, None)
 
     def post(self, watch: int, data: Any, keep: bool) -> None:
-        """From any thread. Bytes go as they are, behind the watch's number."""
+        """Queue a watch's message; from any thread. Bytes are sent after the watch's number."""
         message = (struct.pack("<I", watch) + data if isinstance(data, bytes)
                    else encode({"watch": watch, "data": data}))
         try:
@@ -77,14 +77,14 @@ class Outbox:
             for watch, mail in self._watched.items():
                 if mail:
                     message = mail.popleft()[1]
-                    self._watched[watch] = self._watched.pop(watch)  # to the end of the line
+                    self._watched[watch] = self._watched.pop(watch)  # to the end of the queue
                     return message
             self._something.clear()
             await self._something.wait()
 
 
 def encode(data: Any) -> str:
-    """JSON that every browser reads: numbers that are none, or infinite, become null."""
+    """JSON that every browser reads: NaN and infinity become null."""
     try:
         return json.dumps(data, allow_nan=False, separators=(",", ":"))
     except ValueError:

@@ -1,4 +1,4 @@
-"""A scene as the page's 3D view wants it: links, each with numbered meshes and plain numbers."""
+"""A scene in the form that the page's 3D view needs: links with numbered meshes and poses."""
 
 from collections.abc import Hashable
 from typing import Any
@@ -13,8 +13,8 @@ NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": 
 
 
 def page_scene(content: SceneContent, meshes: Meshes, owner: Hashable = None) -> dict[str, Any]:
-    """JSON data; may take a while, since files are read. Links go by `model::link`, and by their
-    own name where they belong to no model. `owner`: who shows it."""
+    """The scene as JSON data; may take a while, since files are read. Links are called
+    `model::link`, or by their own name if they belong to no model. `owner`: see Meshes.shapes."""
     shapes = meshes.shapes([visuals for _, visuals in content.links.values()], owner)
     textures = meshes.texture_numbers()
     sizes = sorted({shape.plane_size for shape in shapes} - {0.0})
@@ -25,7 +25,7 @@ def page_scene(content: SceneContent, meshes: Meshes, owner: Hashable = None) ->
             "name": f"{model}::{link}" if model else link,
             "model": model,
             "pose": pose_row(pose),
-            # Where planes meet, the larger gives way, as in the camera's pictures.
+            # Where planes coincide, the larger one is hidden, as in camera images.
             "plane": sizes.index(shape.plane_size) if shape.plane_size else None,
             "parts": _parts(shape, meshes, textures),
         })

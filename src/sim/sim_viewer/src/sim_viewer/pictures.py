@@ -1,4 +1,4 @@
-"""Image messages as JPEG for the page: small enough, and in colours that people can see."""
+"""Image messages as JPEG for the page: scaled down, and in visible colours."""
 
 import cv2
 import numpy as np
@@ -14,8 +14,8 @@ _bridge = CvBridge()
 
 
 def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
-    """At most `width` px wide. A JPEG that is small enough goes as it is; else Refused says why
-    the picture cannot be shown."""
+    """A JPEG file, at most `width` px wide; a JPEG that is small enough is returned as it is.
+    Refused says why an image cannot be shown."""
     if hasattr(msg, "format"):
         data = bytes(msg.data)
         if 0 < _jpeg_width(data) <= width:
@@ -32,9 +32,9 @@ def to_jpeg(msg: Image | CompressedImage, width: int) -> bytes:
 
 
 def visible(msg: Image) -> np.ndarray:
-    """(h, w) or (h, w, 3) uint8, grey or BGR. Depths and 16 bit are spread from black to white
-    between the least and the largest in the picture; what is not finite is black. Pictures that
-    only say how many numbers a pixel has (8UC3) are BGR, as OpenCV's are. Refused: no picture."""
+    """(h, w) or (h, w, 3) uint8, grey or BGR. Depths and 16-bit values are scaled from black to
+    white between the image's least and largest; values that are not finite are black. Encodings
+    that only name the number of channels (8UC3) mean BGR, as in OpenCV. Refused: no image."""
     if not msg.width or not msg.height:
         raise Refused("the picture has no pixels")
     try:
@@ -69,7 +69,7 @@ def _spread(values: np.ndarray) -> np.ndarray:
 
 
 def _decode(data: bytes, width: int) -> np.ndarray:
-    """A compressed picture; JPEGs of twice the width and more are read at half the size."""
+    """Decode a compressed image; JPEGs at least twice as wide as `width` are read at half size."""
     large = _jpeg_width(data) >= 2 * width
     mode = cv2.IMREAD_REDUCED_COLOR_2 if large else cv2.IMREAD_COLOR
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), mode) if data else None
@@ -79,6 +79,6 @@ def _decode(data: bytes, width: int) -> np.ndarray:
 
 
 def _jpeg_width(data: bytes) -> int:
-    """In px; 0 of what is no JPEG."""
+    """The width in px; 0 if the data are not a JPEG."""
     size = image_size(data) if data.startswith(JPEG) else None
     return size[0] if size else 0

@@ -1,5 +1,5 @@
-"""What a browser may ask for by name: operations, answered once, and things to watch, sent until
-the browser has enough.
+"""What a browser may request by name: operations, answered once, and watchables, whose events are
+sent until the browser ends the watch.
 
 A module of this package registers its own by decorators; `load_all` imports them all:
 
@@ -36,7 +36,7 @@ class Operation:
     """`function` is a coroutine function of a context and keyword arguments."""
 
     name: str
-    control: bool  # whether it changes anything, which a page without control must not
+    control: bool  # whether it changes anything, which only a page with control may
     function: Callable[..., Awaitable[Any]]
 
     def arguments(self, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -60,7 +60,7 @@ _watchables: dict[str, type] = {}
 def operation(name: str, control: bool = False) -> Callable:
     """Registers a coroutine function `f(context, **args)` under the name that browsers use.
 
-    ValueError where the name is taken.
+    ValueError if the name is taken.
     """
     def register(function: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
         if name in _operations:
@@ -76,7 +76,7 @@ def watchable(name: str) -> Callable[[type], type]:
     `send(data)` may be called from any thread: data for JSON, or bytes. A browser that is slow gets
     the newest only; `send(data, keep=True)` is for what must not be left out, such as log lines.
 
-    ValueError where the name is taken.
+    ValueError if the name is taken.
     """
     def register(kind: type) -> type:
         if name in _watchables:
@@ -87,12 +87,12 @@ def watchable(name: str) -> Callable[[type], type]:
 
 
 def find_operation(name: Any) -> Operation:
-    """By name; Refused if there is none."""
+    """The operation of this name; Refused if there is none."""
     return _find(_operations, name, "operation")
 
 
 def find_watchable(name: Any) -> type:
-    """By name; Refused if there is none."""
+    """The watchable of this name; Refused if there is none."""
     return _find(_watchables, name, "thing to watch")
 
 
@@ -107,7 +107,7 @@ def argument(args: Mapping[str, Any], name: str, kind: Any, default: Any = ...) 
 
 
 def load_all() -> None:
-    """Import every module of the package, so that all have registered what they offer."""
+    """Import every module of the package, each of which registers its operations and watchables."""
     for module in pkgutil.walk_packages(sim_viewer.__path__, "sim_viewer."):
         importlib.import_module(module.name)
 

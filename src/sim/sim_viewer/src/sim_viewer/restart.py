@@ -1,8 +1,8 @@
-"""Starts the node anew when the ROS master is another one.
+"""Restarts the node when there is a new ROS master.
 
-A learner leaves the page open and starts the course again: that is a new master, which knows
-nothing of this node. rospy cannot change masters, so the process begins again, with the parameters
-that the old master had; browsers connect again by themselves.
+A learner leaves the page open and starts the course again: that is a new master, which does not
+know this node. rospy cannot change masters, so the process restarts, with the parameters that the
+old master had; browsers reconnect by themselves.
 """
 
 import asyncio
@@ -16,12 +16,12 @@ import rosgraph
 from sim_viewer.context import Node
 from sim_viewer.options import TOKEN, Options
 
-PERIOD = 2.0  # s between looks
-RUN_ID = "/run_id"  # roslaunch gives each master another one
+PERIOD = 2.0  # s between checks
+RUN_ID = "/run_id"  # roslaunch gives each master a new one
 
 
 async def wait_for_other_master(node: Node) -> None:
-    """Returns when there is one; while there is none it waits."""
+    """Return when there is another master than at first; waits while there is none at all."""
     first = await node.run_in_thread(_run_id)
     while True:
         await asyncio.sleep(PERIOD)
@@ -33,7 +33,7 @@ async def wait_for_other_master(node: Node) -> None:
 
 
 def restart(options: Options, port: int) -> None:
-    """Does not return. Page and token stay where they are."""
+    """Replace this process; does not return. The page's address and token stay the same."""
     words = parameter_words(replace(options, port=port, open=False))
     kept = [word for word in sys.argv if not word.startswith("_") or word.startswith("__")]
     os.execve(sys.executable, [sys.executable, *kept, *words],

@@ -22,12 +22,12 @@ LIGHT = LightDescription("sun", type="directional", direction=(-0.5, 0.3, -1.0),
 
 
 def workspace_files() -> Resources:
-    """Where `package://` and the like lead in this workspace."""
+    """Resolves `package://` and similar URIs in this workspace."""
     return Resources.from_environment(find_package=rospkg.RosPack().get_path)
 
 
 class RobotSource:
-    """Poses are in the frame at the root of tf's tree; tf is subscribed to once they are wanted."""
+    """Poses are in the root frame of tf's tree; tf is subscribed to at the first `poses`."""
 
     def __init__(self, transforms: Transforms):
         self._transforms = transforms
@@ -39,28 +39,28 @@ class RobotSource:
         self._looked = -POLL_PERIOD
 
     def close(self) -> None:
-        """Let tf go."""
+        """Unsubscribe from tf."""
         if self._held is not None:
             self._held.close()
         self._held, self._text = None, None
 
     def scene(self, known: bool) -> SceneContent | None:
-        """If there is another one than at the last call, or if that one is not `known`.
+        """The scene, if it has changed since the last call or the caller does not know that one.
 
-        FormatError of a description that cannot be read.
+        FormatError if the description cannot be read.
         """
         if known and time.monotonic() - self._looked < POLL_PERIOD:
             return None
         self._looked = time.monotonic()
         text = str(rospy.get_param(DESCRIPTION, ""))
-        self._root = ""  # sought again
+        self._root = ""  # to be searched for again
         if known and text == self._text:
             return None
         self._text = text
         return self._read(text)
 
     def poses(self) -> tuple[tuple[str, ...], np.ndarray] | None:
-        """Names and (n, 7) of links that tf has."""
+        """Names and poses (n, 7), x, y, z in m and the quaternion, of links that tf has."""
         if self._held is None:
             self._held = contextlib.ExitStack()
             self._held.enter_context(self._transforms.held())
@@ -78,7 +78,7 @@ class RobotSource:
             (self._name, link): shown for link, shown in links.items()})
 
     def _find_root(self) -> str:
-        """Up tf's tree from the robot's first link."""
+        """The root of tf's tree above the robot's first link."""
         frames = self._transforms.frames()
         root, seen = next(iter(self._links), ""), set()
         while frames.get(root) and root not in seen:

@@ -1,6 +1,6 @@
-"""What the 3D view watches: `scene` (what there is to see) and `poses` (where it is now).
+"""What the 3D view watches: `scene` (what links look like) and `poses` (where they are now).
 
-Events of `poses` are JSON {"names": [...]} whenever there are other links, then bytes: float32
+Events of `poses` are JSON {"names": [...]} whenever the set of links changes, then bytes: float32
 (n, 7) little-endian, x, y, z in m and the quaternion x, y, z, w of each, in the order of the names.
 """
 
@@ -22,10 +22,10 @@ from sim_viewer.transforms import Transforms
 
 RATE_HZ = 20.0  # of poses, at most
 SMALLEST_MOTION = 1e-5  # m, and of quaternions: less is not sent; a robot at rest moves less
-TIMEOUT = 1.0  # s without a simulator before the robot's own description counts
+TIMEOUT = 1.0  # s without a simulator before robot_description is shown
 
 Send = Callable[..., None]
-Source = SimulatorSource | RobotSource  # of a scene; plain calls, in a worker thread
+Source = SimulatorSource | RobotSource  # of a scene; called in a worker thread
 
 
 class SceneBroadcast:
@@ -44,7 +44,7 @@ class SceneBroadcast:
         self._task: asyncio.Task | None = None
 
     def add(self, send: Send, what: str) -> None:
-        """Tell it what is known, and all that comes: of `scene` or of `poses`."""
+        """Send a watcher of `scene` or `poses` the present state and all changes."""
         self._watchers[send] = what
         if what == "scene":
             send(self._scene)
@@ -54,13 +54,13 @@ class SceneBroadcast:
             self._task = asyncio.create_task(self._run())
 
     def remove(self, send: Send) -> None:
-        """With the last one nothing is subscribed to any more."""
+        """Remove a watcher; with the last one all subscriptions end."""
         self._watchers.pop(send, None)
         if not self._watchers:
             self.close()
 
     def close(self) -> None:
-        """End what runs."""
+        """End the task and its subscriptions."""
         if self._task is not None:
             self._task.cancel()
             self._task = None
@@ -88,7 +88,7 @@ class SceneBroadcast:
         try:
             await self._node.run_in_thread(self._simulator.open)
         except Refused:
-            pass  # the master is gone; what was connected still sends
+            pass  # the master is gone; existing connections still send
 
     async def _show(self, source: Source) -> None:
         known, self._shown = source is self._shown, source
@@ -98,12 +98,12 @@ class SceneBroadcast:
                 self._scene = await self._node.run_in_thread(page_scene, content, self._meshes)
                 for send in self._watching("scene"):
                     send(self._scene)
-                # It has poses of its own, newer than those that were sent.
+                # The scene has poses of its own, newer than those that were sent.
                 self._names, self._rows = (), np.zeros((0, 7), np.float32)
             news = await self._node.run_in_thread(source.poses)
         except OSError:
             return  # the master is gone
-        except Exception as error:  # of a file or message that somebody else made
+        except Exception as error:  # caused by a file, or a message of another node
             rospy.logwarn_throttle(10, f"the scene cannot be shown: {error}")
             return
         if news is not None:
@@ -128,7 +128,7 @@ class SceneBroadcast:
 
 
 class _Watch:
-    """Of the broadcast that all browsers share."""
+    """A watch of the broadcast that all browsers share."""
 
     what = ""
 
@@ -145,13 +145,13 @@ class _Watch:
 
 @watchable("scene")
 class SceneWatch(_Watch):
-    """What there is to see, as `page_scene` has it; anew when that changes."""
+    """The scene, as `page_scene` returns it; sent again when it changes."""
 
     what = "scene"
 
 
 @watchable("poses")
 class PosesWatch(_Watch):
-    """Where the links are."""
+    """The poses of the links, as this module's docstring says."""
 
     what = "poses"

@@ -22,7 +22,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class NoPort(OSError):
-    """Nothing could be bound."""
+    """No port could be bound."""
 
 
 class Server:
@@ -56,7 +56,7 @@ class Server:
         raise NoPort(f"ports {options.port} to {last - 1} are all taken; give another with port:=")
 
     async def close(self) -> None:
-        """Browsers are informed first."""
+        """Close the browsers' connections, then the server."""
         await self._hub.close()
         await self._runner.cleanup()
 
@@ -65,7 +65,7 @@ class Server:
 
 
 def _logger() -> logging.Logger:
-    """Of faults in the server: a malformed request is the client's, which gets status 400."""
+    """Logs errors of the server only: for a malformed request, the client gets status 400."""
     logger = logging.getLogger("sim_viewer.http")
     logger.addFilter(_is_fault_of_server)
     return logger
@@ -76,12 +76,12 @@ def _is_fault_of_server(record: logging.LogRecord) -> bool:
 
 
 def page_url(options: Options, port: int) -> str:
-    """What to type into a browser on this machine."""
+    """The page's address for a browser on this machine."""
     return _url(options, "127.0.0.1" if options.address in EVERYWHERE else options.address, port)
 
 
 def further_urls(options: Options, port: int, addresses: list[str]) -> list[str]:
-    """What to type on other machines, where the page listens at all `addresses` of this one."""
+    """The page's addresses for other machines, if it listens at all `addresses` of this one."""
     if options.address not in EVERYWHERE:
         return []
     return [_url(options, address, port) for address in addresses

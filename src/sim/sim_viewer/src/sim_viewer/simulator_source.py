@@ -13,13 +13,13 @@ from sim_viewer.tools import names
 from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.simulator_name import simulator_name
 
-POLL_PERIOD = 2.0  # s between looks for the simulator's name
+POLL_PERIOD = 2.0  # s between look-ups of the simulator's name
 POSE = np.dtype("<f8")
 _COUNT = struct.Struct("<I")
 
 
 class SimulatorSource:
-    """Messages of link states come faster than anybody looks, so that only the last is read."""
+    """Link states come faster than they are shown, so only the last message is decoded."""
 
     def __init__(self, master: MasterView):
         self._master = master
@@ -33,7 +33,7 @@ class SimulatorSource:
         self._names_bytes = b""
 
     def open(self) -> None:
-        """Subscribe; again and again, since the simulator may come later, under another name."""
+        """Subscribe; to be repeated, since the simulator may start later, under another name."""
         if self._name and time.monotonic() - self._looked < POLL_PERIOD:
             return
         self._looked = time.monotonic()
@@ -49,7 +49,7 @@ class SimulatorSource:
         ]
 
     def close(self) -> None:
-        """Let the topics go."""
+        """Unsubscribe."""
         for subscriber in self._subscribers:
             subscriber.unregister()
         self._subscribers, self._name = [], ""
@@ -65,9 +65,9 @@ class SimulatorSource:
         return any(one.get_num_connections() for one in self._subscribers)
 
     def scene(self, known: bool) -> SceneContent | None:
-        """If there is another one than at the last call, or if that one is not `known`.
+        """The scene, if it has changed since the last call or the caller does not know that one.
 
-        FormatError of a text that is no scene.
+        FormatError if the text is not a scene.
         """
         text = self._text
         if text is None or (known and text is self._read):
@@ -76,7 +76,7 @@ class SimulatorSource:
         return scene_from_text(text)
 
     def poses(self) -> tuple[tuple[str, ...], np.ndarray] | None:
-        """Names and (n, 7) of links, if there is news."""
+        """Names and poses (n, 7) of links, if there is a new message."""
         states, self._states = self._states, None
         if states is None:
             return None

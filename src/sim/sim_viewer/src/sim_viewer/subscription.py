@@ -1,7 +1,7 @@
 """Subscriptions that do not disturb each other, and messages read without unpacking their arrays.
 
-rospy keeps one connection for each topic of a process, and all who subscribe there get messages of
-the class that the first of them named. So everything of this node asks for raw messages.
+rospy keeps one connection per topic and process, and all its subscribers get messages of the class
+that the first of them named. So all subscribers of this node ask for raw messages.
 """
 
 import threading
@@ -17,7 +17,7 @@ import rospy
 def decode(message: Any, kind: type) -> Any:
     """A raw message as one of class `kind`; long arrays of numbers stay numpy views of it.
 
-    Python's own lists of a map with 16 million cells hold up everything else for half a second.
+    Python lists of a map with 16 million cells would block everything else for half a second.
     """
     if not isinstance(message, rospy.AnyMsg):
         return message  # of rospy's own subscription to /clock
@@ -51,7 +51,7 @@ class SharedSubscription(ABC):
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Subscribed meanwhile."""
+        """Subscribed while the context is entered."""
         with self._lock:
             self._holders += 1
             if self._holders == 1:
@@ -66,4 +66,4 @@ class SharedSubscription(ABC):
 
     @abstractmethod
     def subscribe(self) -> Subscription:
-        """Begin anew."""
+        """Make a new subscription."""

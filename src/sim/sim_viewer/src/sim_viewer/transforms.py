@@ -1,8 +1,8 @@
-"""Where frames are: one tf2 buffer for all pages.
+"""Look-up of tf frames: one tf2 buffer for all pages.
 
-It is the server that looks frames up: tf2 interpolates to a message's time and knows why it cannot,
-a browser would have to be sent some hundred transforms a second, and one buffer is enough for any
-number of pages.
+The server looks frames up, not the browser: tf2 interpolates to a message's time or says why it
+cannot, a browser would have to be sent some hundred transforms a second, and one buffer is enough
+for any number of pages.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ from sim_viewer.subscription import SharedSubscription, Subscription
 from sim_viewer.tools import names
 
 NANO = 10**9  # ns
-JUMP = 2.0  # s that a stamp is older than the frame's last when time has begun anew
+JUMP = 2.0  # s; a stamp so much older than the frame's last means that time was reset
 
 
 class NoPose(ValueError):
@@ -24,10 +24,10 @@ class NoPose(ValueError):
 
 
 class Subscriptions(list):
-    """Several that end together."""
+    """Several subscriptions that end together."""
 
     def unregister(self) -> None:
-        """End them all."""
+        """End all of them."""
         for one in self:
             one.unregister()
 
@@ -40,7 +40,7 @@ class Transforms(SharedSubscription):
         self._forget()
 
     def subscribe(self) -> Subscriptions:
-        """Begin anew."""
+        """Subscribe, with an empty buffer."""
         self._forget()
         return Subscriptions(Subscription(topic, TFMessage, self._take, static)
                              for topic, static in ((names.TF, False), (names.TF_STATIC, True)))
@@ -55,13 +55,13 @@ class Transforms(SharedSubscription):
         return self._buffer._frameExists(frame.lstrip("/"))
 
     def pose(self, fixed: str, frame: str, stamp: int = 0) -> Pose:
-        """Of `frame` in the frame `fixed` at a time in ns, 0: the newest. NoPose if unknown."""
+        """The pose of `frame` in `fixed` at a time in ns, 0: the newest. NoPose if unknown."""
         # tf2 has no leading slashes; old tf nodes write them.
         fixed, frame = fixed.lstrip("/"), frame.lstrip("/")
         if frame == fixed:
             return IDENTITY
         try:
-            # Of ns: Time.from_sec(100.3) is 1 ns early, and tf2 extrapolates nothing.
+            # From ns: Time.from_sec(100.3) is 1 ns early, and tf2 does not extrapolate.
             time = rospy.Time(*divmod(stamp, NANO))
             found = self._buffer.lookup_transform_core(fixed, frame, time)
         except (tf2_ros.TransformException, ValueError, TypeError) as error:
@@ -79,7 +79,7 @@ class Transforms(SharedSubscription):
         for one in message.transforms:
             child, stamp = one.child_frame_id.lstrip("/"), one.header.stamp.to_sec()
             if not static and stamp < self._newest.get(child, stamp) - JUMP:
-                buffer.clear()  # a simulator began anew; static transforms stay
+                buffer.clear()  # a simulator was reset or restarted; static transforms stay
                 self._newest.clear()
             self._newest[child] = stamp
             self._parents[child] = one.header.frame_id.lstrip("/")

@@ -1,4 +1,4 @@
 """What all camera plugins share: tags, topics, encodings, CameraInfo.
 
-Files named here are those of gazebo_plugins/src.
+C++ files named here are in gazebo_plugins/src.
 """

@@ -1,4 +1,4 @@
-"""The cameras of a sensor, which take their pictures together, at a rate or on a trigger."""
+"""The cameras of a sensor, which capture their images together, at a rate or on a trigger."""
 
 import logging
 import math
@@ -19,20 +19,20 @@ SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; imager_rate of cfg/GazeboRo
 
 
 class CameraGroup:
-    """Who listens to images of one of the cameras has all drawn.
+    """A subscriber to the images of one camera has all of them rendered.
 
-    So gazebo_ros_camera_utils.cpp, ImageConnect, counts; but for camera_info alone it draws, too.
+    So does gazebo_ros_camera_utils.cpp, ImageConnect, but it also renders for camera_info alone.
     """
 
     def __init__(self, context: PluginContext, cameras: Sequence[CameraPublisher]):
         self._context = context
         self._cameras = cameras
         self._triggered = False
-        self._drawn: Future | None = None  # the last picture
+        self._drawn: Future | None = None  # the last capture's job
         context.on_close(self._close)
 
     def capture_at_rate(self, sensor_hz: float, thinned_hz: float = 0.0) -> None:
-        """At the sensor's rate, thinned to another one (0: not), while somebody listens."""
+        """Capture at the sensor's rate, thinned to another (0: not), while anybody subscribes."""
         context = self._context
         context.every(pictures_rate(sensor_hz, thinned_hz), self._capture, self._wanted)
         for camera in self._cameras:
@@ -40,9 +40,9 @@ class CameraGroup:
                 pictures_rate(rate_hz, thinned_hz)))
 
     def capture_on_trigger(self) -> None:
-        """At the step after a message on a trigger topic, if somebody listens then.
+        """Capture at the step after a message on a trigger topic, if there are subscribers then.
 
-        Several messages before the picture are one. Rates have no effect.
+        Several messages before the capture count as one. Rates have no effect.
         """
         for camera in self._cameras:
             topic = camera.settings.topic("triggerTopicName", "image_trigger")
@@ -62,7 +62,7 @@ class CameraGroup:
         return any(camera.wanted() for camera in self._cameras)
 
     def _capture(self) -> None:
-        """In the loop; pictures are drawn and sent by the drawing thread."""
+        """Runs in the loop; the drawing thread renders and publishes the images."""
         pictures = any(camera.pictures_wanted() for camera in self._cameras)
         if pictures:
             self._context.services.lockstep.expect(self._context)
@@ -75,10 +75,10 @@ class CameraGroup:
         self._draw(publish)
 
     def _draw(self, job: Callable[[], None]) -> None:
-        """Have `job` done by the drawing thread; first waits for this group's job before it.
+        """Run `job` in the drawing thread; first waits for this group's previous job.
 
-        What that one failed with is raised here. In lockstep the world waits for the picture anyway
-        and the job is done at once.
+        An exception of the previous job is raised here. In lockstep the world waits for the image
+        anyway, so the job runs at once in the loop.
         """
         services = self._context.services
         if services.lockstep.topics:
@@ -94,7 +94,7 @@ class CameraGroup:
         self._drawn = services.drawing.submit(job)
 
     def _close(self) -> None:
-        """Before the topics are closed, which the last picture still needs."""
+        """Wait for the last image, before the topics that publish it are closed."""
         if self._drawn is not None:
             self._drawn.exception()
         self._drawn = None
@@ -102,10 +102,9 @@ class CameraGroup:
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
-    """The sensor's `<update_rate>`, thinned to the plugin's `<updateRate>`; 0: there is none.
+    """The sensor's `<update_rate>`, thinned to the plugin's `<updateRate>`, Hz; 0: there is none.
 
-    Only whole pictures can be left out (gazebo_ros_camera.cpp, OnNewFrame): 30 Hz thinned to 20
-    is 15.
+    Only whole frames can be skipped (gazebo_ros_camera.cpp, OnNewFrame): 30 Hz thinned to 20 is 15.
     """
     if sensor_hz > 0 and plugin_hz > 0:
         return sensor_hz / max(1, math.ceil(sensor_hz / plugin_hz - 1e-9))
@@ -116,7 +115,7 @@ def _offer_rate(context: PluginContext, settings: CameraSettings,
                 change: Callable[[float], None]) -> None:
     """dynamic_reconfigure's `imager_rate` (Hz); `change` is called in the loop's thread.
 
-    It begins as 2 whatever the sensor's rate is, and counts from the first change on
+    It starts at 2 whatever the sensor's rate is, and takes effect from the first change on
     (gazebo_ros_camera_utils.cpp, configCallback).
     """
     if not settings.camera_name:

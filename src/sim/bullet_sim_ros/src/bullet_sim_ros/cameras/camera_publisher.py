@@ -1,4 +1,4 @@
-"""One camera of a sensor: draws what somebody listens to and publishes it."""
+"""One camera of a sensor: renders and publishes what has subscribers."""
 
 import copy
 import time
@@ -17,15 +17,15 @@ from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 TRIALS = 3
-LONGEST_TRIAL = 0.2  # s, wall: a slow renderer is tried once
+LONGEST_TRIAL = 0.2  # s, wall clock: a slow renderer is timed only once
 
 
 class CameraPublisher:
     """Image, its compressed twin, CameraInfo and set_camera_info.
 
-    What set_camera_info sets holds as long as the camera; it is not written to a file.
+    A calibration set by set_camera_info lasts as long as the camera; it is not written to a file.
 
-    FormatError of a camera or a tag that cannot be.
+    FormatError if the camera or one of its tags is impossible.
     """
 
     def __init__(self, context: PluginContext, number: int = 0, suffix: str = "",
@@ -54,13 +54,13 @@ class CameraPublisher:
         return self.pictures_wanted() or bool(self._infos.get_num_connections())
 
     def publish(self, state: CaptureState, picture: bool) -> None:
-        """A picture if asked for, and CameraInfo to those who listen; in the drawing thread."""
+        """An image if `picture` is set, CameraInfo if subscribed to; in the drawing thread."""
         if picture:
             self.publish_picture(self.camera.render(state))
         self.publish_info(state.time)
 
     def publish_picture(self, reading: CameraReading) -> None:
-        """Send a picture on the image topic, and compressed if somebody wants that."""
+        """Publish an image, and its compressed form if that has subscribers."""
         settings = self.settings
         with self._profiler.measure("send"):
             self._images.publish(convert.image_to_msg(
@@ -71,12 +71,12 @@ class CameraPublisher:
                                          settings.frame)
 
     def publish_info(self, time: float) -> None:
-        """Send what belongs to a picture of that time (s) to those who listen."""
+        """Publish the CameraInfo of an image of that time (s), if it has subscribers."""
         if self._infos.get_num_connections():
             self._infos.publish(self.info(time))
 
     def info(self, time: float) -> CameraInfo:
-        """The calibration with a stamp."""
+        """The calibration, stamped with a time (s)."""
         info = copy.copy(self._info)
         info.header = copy.copy(info.header)
         return convert.stamped(info, time, self.settings.frame)
@@ -88,9 +88,9 @@ class CameraPublisher:
 
 
 def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
-    """Log what a picture of this camera costs to draw; by the drawing thread, before the first.
+    """Log how long this camera takes to render; measured in the drawing thread, before any image.
 
-    A camera that was deleted meanwhile is not drawn.
+    A camera that was deleted meanwhile is not rendered.
     """
     state = camera.capture()
 
@@ -103,7 +103,7 @@ def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
             camera.render(state)
             took.append(time.perf_counter() - start)
         view = state.view
-        frame_ms = min(took[1:]) * 1e3  # the first one also loads what there is to see
+        frame_ms = min(took[1:]) * 1e3  # the first one also loads the scene
         line = f"camera {topic} ({view.width}x{view.height}): {frame_ms:.1f} ms a frame"
         context.services.mailbox.post(lambda: rospy.loginfo("%s", line))
 
@@ -134,7 +134,7 @@ class CompressedTopic:
         return bool(self._publisher.get_num_connections())
 
     def publish(self, rgb: np.ndarray, encoding: str, time: float, frame: str) -> None:
-        """Send a picture, (h, w, 3) uint8 RGB, as the image topic's `encoding` is compressed."""
+        """Publish an image, (h, w, 3) uint8 RGB; `encoding` is that of the image topic."""
         self._publisher.publish(compressed_to_msg(rgb, encoding, time, frame, **self._settings))
 
     def _parameter(self, name: str, default: str | int) -> str | int:
@@ -147,7 +147,7 @@ class CompressedTopic:
         return default
 
     def _change(self, values: dict) -> None:
-        """At once, and later in a ROS thread."""
+        """Called once by the constructor, later in a ROS thread."""
         if values["format"] not in FORMATS:
             rospy.logwarn("%s/format is %r; there are %s; %s is used", self._topic,
                           values["format"], " and ".join(FORMATS), FORMATS[0])
@@ -158,9 +158,9 @@ class CompressedTopic:
 def compressed_to_msg(rgb: np.ndarray, encoding: str, time: float, frame: str, *,
                       format: str = FORMATS[0], jpeg_quality: int = JPEG_QUALITY,
                       png_level: int = PNG_LEVEL) -> CompressedImage:
-    """sensor_msgs/CompressedImage; its format names what was compressed, how, and as what.
+    """sensor_msgs/CompressedImage; its format gives the source encoding, codec and pixel format.
 
-    Colours are compressed as BGR, grey and mosaics as they are; JPEG has 8 bits a channel.
+    Colours are compressed as BGR, grey and Bayer mosaics as they are; JPEG has 8 bits a channel.
     """
     pixels, inside = encode(rgb, encoding), ""
     if pixels.ndim == 3:

@@ -1,4 +1,4 @@
-"""A depth camera's topics: what a camera has, depth image, its CameraInfo, and points."""
+"""A depth camera's topics: those of a camera, a depth image with CameraInfo, and points."""
 
 import math
 from concurrent.futures import Future
@@ -12,18 +12,18 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
 from bullet_sim_ros.plugin_host import PluginContext
 
-FARTHEST = float(np.finfo(np.float32).max)  # m; beyond is nothing at all
+FARTHEST = float(np.finfo(np.float32).max)  # m; beyond (infinity): nothing there
 
 
 class DepthCameraPublisher(CameraPublisher):
-    """Depth and points are made only for those who subscribe to them.
+    """Depth and points are computed only while they have subscribers.
 
-    Points have the colours of what they are on, whatever the image's format; red and blue of rgb8
-    images are swapped by gazebo_ros_openni_kinect.cpp, FillPointCloudHelper.
+    Points have the true colours, whatever the image's format; gazebo_ros_openni_kinect.cpp,
+    FillPointCloudHelper, swaps red and blue of rgb8 images.
     """
 
     def __init__(self, context: PluginContext, far: float):
-        """`far`: m, what is farther has no depth."""
+        """`far`, m: anything farther away has no depth."""
         super().__init__(context)
         p = context.parameters
         self._context, self._far = context, min(far, FARTHEST)
@@ -37,7 +37,7 @@ class DepthCameraPublisher(CameraPublisher):
         self._depth_infos = advertise("depthImageCameraInfoTopicName", "depth/camera_info",
                                       CameraInfo)
         self._points = advertise("pointCloudTopicName", "points", PointCloud2)
-        self._rest: Future | None = None  # of the last picture
+        self._rest: Future | None = None  # the last image's depth and points
         self._restart()
         context.on_reset(self._restart)
 
@@ -45,13 +45,14 @@ class DepthCameraPublisher(CameraPublisher):
         self._info_time = -math.inf  # s, of the last pair of infos
 
     def pictures_wanted(self) -> bool:
-        """Whether anybody listens to images or points; the depth image's CameraInfo is neither."""
+        """Whether images or points have subscribers; those of depth/camera_info do not count."""
         return super().pictures_wanted() or any(
             publisher.get_num_connections() for publisher in (self._depths, self._points))
 
     def publish(self, state: CaptureState, picture: bool) -> None:
-        """Pictures if asked for, and both CameraInfo; in the drawing thread, depth and points in
-        the one behind it. What those failed with is raised at the next ones.
+        """Images if `picture` is set, and both CameraInfo; in the drawing thread.
+
+        Depth and points are made in the second thread; their exception is raised at the next ones.
         """
         if picture:
             depth = bool(self._depths.get_num_connections())
@@ -62,11 +63,11 @@ class DepthCameraPublisher(CameraPublisher):
                 before, self._rest = self._rest, self._context.services.drawing.hand_on(
                     lambda: self._publish_depth(reading, state.view.focal_length_px, depth, points))
                 if before is not None:
-                    before.result()  # is there: hand_on has waited for it
+                    before.result()  # already done: hand_on has waited for it
         self._publish_infos(state.time)
 
     def _publish_infos(self, time: float) -> None:
-        """At no more than `<updateRate>`, which thins nothing else here."""
+        """Publish both CameraInfo, at `<updateRate>` at most, which thins nothing else here."""
         rate_hz = self.settings.rate_hz
         if rate_hz > 0 and time - self._info_time < 1 / rate_hz - self._context.world.timestep:
             return

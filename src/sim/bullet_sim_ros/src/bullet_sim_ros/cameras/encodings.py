@@ -1,10 +1,10 @@
-"""Pixels as sensor_msgs/Image names them: from RGB, and back."""
+"""Pixels in the encodings of sensor_msgs/Image: from RGB, and back."""
 
 import cv2
 import numpy as np
 from sensor_msgs.msg import Image
 
-ENCODINGS = {  # SDF <format>, and what image consumers call it
+ENCODINGS = {  # SDF <format>: encoding of sensor_msgs/Image
     "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
     "L8": "mono8", "L_INT8": "mono8", "L16": "mono16", "L_INT16": "mono16",
     "R16G16B16": "rgb16", "RGB_INT16": "rgb16",
@@ -26,7 +26,7 @@ _CHANNELS = {"rgb": 3, "bgr": 3, "8UC3": 3, "rgba": 4, "bgra": 4, "8UC4": 4}
 
 
 def encode(rgb: np.ndarray, encoding: str) -> np.ndarray:
-    """(h, w, 3) uint8 RGB to (h, w) or (h, w, 3), uint8 or uint16, of one of ENCODINGS."""
+    """Convert (h, w, 3) uint8 RGB to one of ENCODINGS: (h, w) or (h, w, 3), uint8 or uint16."""
     if encoding == "bgr8":
         return cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR)
     if encoding in ("mono8", "mono16"):  # ITU-R BT.601 luma
@@ -40,7 +40,7 @@ def encode(rgb: np.ndarray, encoding: str) -> np.ndarray:
 
 
 def _mosaic(rgb: np.ndarray, pattern: str) -> np.ndarray:
-    """One colour a pixel; `pattern` names those of the first two rows, as rggb."""
+    """A Bayer mosaic, (h, w); `pattern` names the colours of its first 2 x 2 pixels, as rggb."""
     mosaic = np.empty(rgb.shape[:2], np.uint8)
     for index, colour in enumerate(pattern):
         place = np.s_[index // 2::2, index % 2::2]
@@ -51,8 +51,8 @@ def _mosaic(rgb: np.ndarray, pattern: str) -> np.ndarray:
 def decode(msg: Image) -> np.ndarray:
     """(h, w, 3) uint8 RGB of an Image; ValueError if it cannot be read.
 
-    Not by CvBridge: Debian 12's skews images with padded rows, refuses 8UC1, 8UC3 and 8UC4, and
-    checks no size.
+    CvBridge is not used: Debian 12's skews images with padded rows, refuses 8UC1, 8UC3 and 8UC4,
+    and checks no size.
     """
     shallow = _DEEP.get(msg.encoding, msg.encoding)
     if shallow not in _TO_RGB:

@@ -18,8 +18,8 @@ _SAME_DISTORTION = 1e-6  # many files write 1e-8 for none
 class CameraSettings:
     """The tags of a `<plugin>` about one camera.
 
-    `suffix` is a camera's own part of the namespace in a pair, `baseline` (m) its distance from the
-    other one; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, nor has it in
+    `suffix` is added to the namespace of a camera that is one of a pair, `baseline` (m) is its
+    distance from the other; without it `<hackBaseline>` counts. `<CxPrime>` has no effect, as in
     gazebo_ros_camera_utils.cpp, Init.
     """
 
@@ -54,7 +54,7 @@ class CameraSettings:
         return ENCODINGS.get(format, UNKNOWN_FORMAT)
 
     def _focal_length_px(self) -> float:
-        """As written, 0 for the picture's own."""
+        """`<focalLength>` as written; 0 stands for that of the rendered image."""
         written = self._context.parameters.number("focalLength", 0.0)
         camera = self._description
         drawn = camera.width / (2 * math.tan(camera.horizontal_fov / 2))

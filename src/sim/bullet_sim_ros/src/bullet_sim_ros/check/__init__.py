@@ -1,1 +1,1 @@
-"""`rosrun bullet_sim_ros check`: what of a robot, world or package will work, before it runs."""
+"""`rosrun bullet_sim_ros check`: says which parts of a robot, world or package will work."""

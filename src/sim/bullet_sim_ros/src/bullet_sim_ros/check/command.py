@@ -1,4 +1,4 @@
-"""The command line of check."""
+"""The command-line interface of check."""
 
 import argparse
 import re
@@ -36,7 +36,7 @@ INCLUDED = re.compile(r"<(?:xacro:)?include\b[^>]*filename=[\"']([^\"']+)[\"']")
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Print the table; 0, or 1 if something will be missing, or 2 if there is nothing to check."""
+    """Print the table; 0, 1 if something will be missing, 2 if there is no such file or package."""
     parser = argparse.ArgumentParser(
         prog="check",
         description="Says what of a robot, world, package or workspace will work here.",
@@ -77,7 +77,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 class Check:
-    """What a file or package holds, looked through."""
+    """Checks the contents of a file, package or workspace."""
 
     def __init__(self, arguments: list[str], run_commands: bool):
         self._arguments = arguments
@@ -87,7 +87,7 @@ class Check:
         self._launches = LaunchChecker(rows, self._texts, resources, run_commands)
 
     def run(self, what: str, launch: str | None) -> list[Finding] | None:
-        """None if there is no such thing; WorkspaceError for a folder without packages."""
+        """The findings; None if `what` does not exist; WorkspaceError if it has no packages."""
         path = Path(what).expanduser()
         if path.is_file():
             return self._file(path.resolve())
@@ -104,7 +104,7 @@ class Check:
         return self._one_launch(folder, launch) if launch else self._package(folder)
 
     def _file(self, path: Path, alone: bool = True) -> list[Finding]:
-        """`alone`: it was asked for, and is not only met in a package."""
+        """`alone`: the user named this file, and not only its package."""
         if path.suffix == ".launch":
             return self._launches.launch_file(path, self._arguments, alone)
         if path.suffix == ".world":
@@ -133,14 +133,14 @@ class Check:
 
 
 def _is_robot(path: Path, folder: Path) -> bool:
-    """Whether a xacro file is one to expand by itself: not a part that others include."""
+    """Whether a xacro file is a robot by itself, and not a part that others include."""
     included = {Path(name).name for other in folder.rglob("*.xacro")
                 for name in INCLUDED.findall(other.read_text("utf-8", "replace"))}
     return path.name not in included and "<link" in path.read_text("utf-8", "replace")
 
 
 def workspace_findings(path: Path) -> list[Finding]:
-    """A few lines a package; WorkspaceError where there is none below `path`."""
+    """A few findings per package; WorkspaceError if there is none below `path`."""
     source = source_folder(path)
     try:
         verdicts = judge(source)

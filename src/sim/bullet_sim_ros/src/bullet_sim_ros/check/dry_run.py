@@ -1,4 +1,4 @@
-"""Robots and worlds in a simulation without a master: what the plugins log when they are made."""
+"""Runs robots and worlds in a simulation without a master, to collect what the plugins log."""
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
@@ -19,17 +19,17 @@ from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services.models import with_namespace
 from bullet_sim_ros.simulation import Simulation
 
-STEPS = 10  # enough for what only shows when time passes
+STEPS = 10  # enough for problems that only show when time passes
 LOGGERS = ("bullet_sim", "rosout")
 NOT_CAPTURED = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
-# Their warnings are about what works otherwise; others' are about what is missing.
+# Their warnings are about things that work differently; those of others, about missing things.
 GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.sensors",
          "bullet_sim.meshes.loading", "bullet_sim.formats.urdf.transmission")
 
 
 @dataclass(frozen=True)
 class LogLine:
-    """A line of the log, and what it means for the one who checks."""
+    """A line of the log, and its status as a finding."""
 
     line: str
     status: str
@@ -52,7 +52,7 @@ def _status(record: logging.LogRecord) -> str:
 
 @contextmanager
 def listening() -> Iterator[list[LogLine]]:
-    """What core and plugins warn of meanwhile; it does not reach the terminal."""
+    """Collects the warnings of core and plugins meanwhile, and keeps them from the terminal."""
     listener, loggers = _Listener(), [logging.getLogger(name) for name in LOGGERS]
     propagated = [logger.propagate for logger in loggers]
     for logger in loggers:
@@ -68,7 +68,8 @@ def listening() -> Iterator[list[LogLine]]:
 
 def try_model(description: ModelDescription, parameters: Mapping[str, object],
               namespace: str = "") -> None:
-    """Spawn a model into an empty world, as with -robot_namespace; SimulationError if it cannot."""
+    """Spawn a model into an empty world, as with -robot_namespace; SimulationError if that fails.
+    """
     if namespace.strip("/"):
         description = with_namespace(description, namespace)
     _try(World(), parameters,
@@ -76,13 +77,13 @@ def try_model(description: ModelDescription, parameters: Mapping[str, object],
 
 
 def try_world(description: WorldDescription, parameters: Mapping[str, object]) -> None:
-    """A world with all that is in it."""
+    """Load a world with all its models and plugins, and take a few steps."""
     _try(World(description), parameters, lambda _simulation: None)
 
 
 def _try(world: World, parameters: Mapping[str, object],
          fill: Callable[[Simulation], object]) -> None:
-    """`parameters` are what the parameter server would have, by full name."""
+    """`parameters` are those that the parameter server would have, by full name."""
     register_plugins()
     with without_master() as graph:
         graph.parameters.update(parameters)
@@ -100,7 +101,7 @@ def _try(world: World, parameters: Mapping[str, object],
 
 
 def _textures(world: World) -> list[str]:
-    """The image files that its surfaces show."""
+    """The texture files of the world's surfaces."""
     parts = [part for node in world.scene.nodes.values() for part in node.shape.parts]
     named = {part.material.texture for part in parts if part.uv is not None} - {None}
     return sorted(named - world.scene.images.keys())

@@ -1,4 +1,4 @@
-"""Looks up what a text uses in the table of what works: plugins with their tags, elements."""
+"""Looks up a text's plugins, with their tags, and elements in the support table."""
 
 from collections.abc import Iterator
 from pathlib import PurePosixPath
@@ -13,7 +13,7 @@ LIGHTS = ("point", "spot", "directional")
 
 
 class Lookup:
-    """Findings of one text."""
+    """Looks up the findings of one text."""
 
     def __init__(self, rows: dict[str, Row], where: str):
         self._where = where
@@ -26,7 +26,7 @@ class Lookup:
                     self._elements[(language, *path.split("/"))] = entry
 
     def findings(self, root: Element) -> Iterator[Finding]:
-        """Of all plugins, and of the elements that do not simply work."""
+        """The findings of all plugins, and of elements that do not simply work."""
         language = "urdf" if root.tag == "robot" else "sdf"
         joints = {joint.get("name") for joint in root.iter("joint")}
         yield from self._walk(root, (), language, joints)
@@ -49,7 +49,7 @@ class Lookup:
                 yield from self._walk(child, here, language, joints)
 
     def _entry(self, language: str, path: tuple[str, ...]) -> Entry | None:
-        """That of the longest end of the path; a lone last name must not fit by accident."""
+        """The entry of the longest end of the path; the last name alone must not match."""
         for first in range(len(path) - 1):
             if entry := self._elements.get((language, *path[first:])):
                 return entry

@@ -11,12 +11,12 @@ UNCHECKED = "unchecked"
 ORDER = (PROBLEM, ABSENT, UNCHECKED, APPROXIMATED, ACCEPTED, WORKS)
 WORDS = {PROBLEM: "PROBLEM", ABSENT: "NOT THERE", UNCHECKED: "not checked",
          APPROXIMATED: "approximated", ACCEPTED: "ignored", WORKS: "works"}
-SERIOUS = (PROBLEM, ABSENT)  # what makes the exit code 1
+SERIOUS = (PROBLEM, ABSENT)  # these make the exit code 1
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One part of what was checked."""
+    """The result of checking one part."""
 
     where: str  # file, and robot or world in it
     part: str  # plugin, element, node …
@@ -39,7 +39,7 @@ def table(findings: Iterable[Finding]) -> str:
 
 
 def problem(where: str, part: str, error: object) -> Finding:
-    """Something that stops it."""
+    """A finding that something prevents a part from working."""
     return Finding(where, part, PROBLEM, " ".join(str(error).split()))
 
 

@@ -38,7 +38,7 @@ LARGEST_FILE = 32 * 2**20  # bytes of a parameter's file
 LONGEST_LINE = 500  # characters of an error
 TOO_MUCH = (f"to read it takes more than {LONGEST:g} s or 1 GiB; look at its $(eval …), and how "
             "many files it reads")
-REPEATED = 20  # a file this often in the stack of includes includes itself
+REPEATED = 20  # a file that is this often in the stack of includes includes itself
 NOT_UTF8 = re.compile(r"'utf-8' codec can't decode .*?: "
                       "(?:invalid (?:start|continuation) byte|unexpected end of data)")
 TOO_DEEP = re.compile(r"maximum recursion depth exceeded(?: (?:while|in) [a-z ]*Python object)?")
@@ -57,7 +57,7 @@ class LaunchedNode:
 
 @dataclass(frozen=True)
 class Launch:
-    """What a launch file comes to."""
+    """The nodes and parameters of a launch file."""
 
     nodes: tuple[LaunchedNode, ...]
     parameters: dict[str, object]  # by full name; NotRun for the output of an unknown command
@@ -65,10 +65,10 @@ class Launch:
 
 def read_launch(path: Path, arguments: list[str], find_package: FindPackage,
                 run_commands: bool = False) -> Launch:
-    """As roslaunch reads it; SimulationError says in one line why it cannot.
+    """Read a launch file as roslaunch does; SimulationError says in one line why it fails.
 
-    In a process of its own: `$(eval …)` may want any time or memory, and commands may wait. They
-    are run only with `run_commands`: else xacro and cat are done here, and others are NotRun.
+    Done in a process of its own: `$(eval …)` may take any time or memory, and commands may hang.
+    They are run only with `run_commands`: else xacro and cat are done here, and others are NotRun.
     """
     output = None if run_commands else partial(output_of, find_package=find_package)
     receiver, sender = multiprocessing.Pipe(duplex=False)
@@ -86,7 +86,7 @@ def read_launch(path: Path, arguments: list[str], find_package: FindPackage,
         result = _why_ended(reader.exitcode, running)
     finally:
         with suppress(ProcessLookupError):
-            os.killpg(reader.pid, signal.SIGKILL)  # a command that waits
+            os.killpg(reader.pid, signal.SIGKILL)  # a command that hangs
     if isinstance(result, str):
         raise SimulationError(result)
     return result
@@ -134,7 +134,7 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
 
 
 def _error_line(error: Exception) -> str:
-    """roslaunch's words as one line, without the files on the way to the one that is wrong."""
+    """roslaunch's message as one line, without the files that include the faulty one."""
     if isinstance(error, MemoryError):
         return TOO_MUCH
     text = " ".join(str(error).split()) or type(error).__name__
@@ -145,7 +145,7 @@ def _error_line(error: Exception) -> str:
 
 
 def _watch_includes(loader: type) -> None:
-    """Has roslaunch's reader end where files include each other without end."""
+    """Make roslaunch's reader fail if files include each other without end."""
     parse_launch, include_tag = loader._parse_launch, loader._include_tag
     files: list[str] = []
 
@@ -169,9 +169,9 @@ def _watch_includes(loader: type) -> None:
 
 def _remembered(param_value: Callable, output: Callable[[str], str] | None,
                 sender: Connection) -> Callable:
-    """roslaunch's, which reads each file once and has each command once, however many ask for it.
+    """roslaunch's function with a cache: each file is read, and each command run, only once.
 
-    `output` gives what a command prints; None: it is run.
+    `output` returns what a command prints; None: the command is run.
     """
     values: dict[tuple, object] = {}
 
@@ -196,7 +196,7 @@ def _remembered(param_value: Callable, output: Callable[[str], str] | None,
 
 
 def missing_arguments(path: Path, given: Collection[str]) -> list[str]:
-    """The names of those `<arg>` that have no value; `given` are words NAME:=VALUE."""
+    """The names of each `<arg>` without a value; `given` are words NAME:=VALUE."""
     try:
         root = parse(path).getroot()
     except (ParseError, OSError, LookupError, ValueError):  # of files and of their encodings

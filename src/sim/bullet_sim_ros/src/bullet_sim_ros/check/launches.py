@@ -33,7 +33,7 @@ _find_node = cache(roslib.packages.find_node)  # which looks through a whole pac
 
 
 def _words(node: LaunchedNode) -> list[str]:
-    """Its arguments as roslaunch takes them apart; an open quotation mark ends nowhere."""
+    """Its arguments, split as by roslaunch; at spaces alone if a quotation mark is not closed."""
     try:
         return shlex.split(node.args)
     except ValueError:
@@ -41,7 +41,7 @@ def _words(node: LaunchedNode) -> list[str]:
 
 
 class LaunchChecker:
-    """One launch file at a time."""
+    """Checks one launch file at a time."""
 
     def __init__(self, rows: dict[str, Row], texts: TextChecker, resources: Resources,
                  run_commands: bool):
@@ -51,9 +51,9 @@ class LaunchChecker:
         self._resources = resources
 
     def launch_file(self, path: Path, arguments: list[str], alone: bool = True) -> list[Finding]:
-        """Nodes that cannot be found, and what its simulator and its spawners will load.
+        """Findings about its nodes, and about what its simulator and its spawners will load.
 
-        One that needs arguments may be a part of others, if it is not `alone` what is asked about.
+        A file that needs arguments may be included by others, unless the user named it (`alone`).
         """
         where = str(path)
         if missing := missing_arguments(path, arguments):
@@ -143,10 +143,10 @@ PACKAGE = re.compile(r"\w*controllers?(_\w+)?/")
 
 def controller_findings(parameters: Mapping[str, object], spawned: Collection[str],
                         rows: Mapping[str, Row], where: str) -> Iterator[Finding]:
-    """One for each controller.
+    """A finding for each controller.
 
-    Other things have types as well. A type of a package that is not named after controllers only
-    counts where a spawner was given the name, one of `spawned`.
+    Other parameters are called `type` as well. If the type's package is not named after
+    controllers, it only counts if a spawner was given the controller's name, one of `spawned`.
     """
     known = rows["controllers"].tags
     for name, kind in parameters.items():

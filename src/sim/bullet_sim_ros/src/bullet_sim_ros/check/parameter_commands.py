@@ -1,4 +1,4 @@
-"""What the `command` of a `<param>` prints, without running it: xacro and cat are done here."""
+"""The output of a `<param>`'s `command`, without running it: xacro and cat are done here."""
 
 import shlex
 import tempfile
@@ -20,15 +20,15 @@ OF_ROSLAUNCH = "rosversion"  # in roslaunch's own roscore.xml; it changes nothin
 
 
 class NotRun(str):
-    """In place of the output of a command that is not run."""
+    """Stands for the output of a command that is not run."""
 
     __slots__ = ()
 
 
 def output_of(command: str, find_package: FindPackage) -> str:
-    """What it would print; NotRun of a command that is neither xacro nor cat.
+    """What a command would print; NotRun if it is neither xacro nor cat.
 
-    FormatError of a file that cannot be read or expanded.
+    FormatError if a file cannot be read or expanded.
     """
     try:
         program, *words = _without_launcher(shlex.split(command))
@@ -48,9 +48,9 @@ def output_of(command: str, find_package: FindPackage) -> str:
 
 
 def expanded(path: Path, mappings: dict[str, str], find_package: FindPackage) -> str:
-    """The URDF of a xacro file; its expressions may want any time or memory.
+    """The URDF of a xacro file; time and memory are limited, as expressions may take any amount.
 
-    FormatError of a file that cannot be expanded.
+    FormatError if the file cannot be expanded.
     """
     with tempfile.TemporaryDirectory(prefix="check-") as folder:
         result = Path(folder) / "result"
@@ -73,7 +73,7 @@ def expanded(path: Path, mappings: dict[str, str], find_package: FindPackage) ->
 
 
 def _without_launcher(words: Sequence[str]) -> Sequence[str]:
-    """The words from xacro's name on, where rosrun or Python start it."""
+    """The words from xacro's name on, if rosrun or Python start it."""
     for launcher in LAUNCHERS:
         after = words[len(launcher):]
         if [Path(words[0]).name, *words[1:len(launcher)]] == launcher and after and (

@@ -1,6 +1,6 @@
 """A ROS graph within one process, in place of rospy's: to try plugins without a master.
 
-What rospy would carry between processes is kept in lists and dictionaries.
+Messages, services and parameters are kept in lists and dictionaries.
 """
 
 import io
@@ -14,13 +14,13 @@ import rospy
 
 @dataclass
 class Topic:
-    """One topic as the graph has it; `messages` are what was published while it was open."""
+    """One topic of the graph; `messages` are those published while their publisher was open."""
 
     kind: type | None = None
     messages: list = field(default_factory=list)
     publishers: list = field(default_factory=list)
     subscribers: list = field(default_factory=list)
-    listeners: int = 0  # how many others listen, what get_num_connections returns
+    listeners: int = 0  # other subscribers: what get_num_connections returns
 
 
 class Graph:
@@ -70,19 +70,19 @@ class Publisher:
         self._topic.publishers.append(self)
 
     def publish(self, *args, **fields) -> None:
-        """A message, or the fields of one."""
+        """Publish a message, given itself or by its fields."""
         made = args and isinstance(args[0], self._topic.kind)
         message = args[0] if made else self._topic.kind(*args, **fields)
-        message.serialize(io.BytesIO())  # what cannot be sent is an error here, too
+        message.serialize(io.BytesIO())  # an error if it cannot be sent
         if self in self._topic.publishers:
             self._topic.messages.append(message)
 
     def get_num_connections(self) -> int:
-        """How many others listen."""
+        """The number of other subscribers."""
         return self._topic.listeners
 
     def unregister(self) -> None:
-        """Not any more."""
+        """Close the publisher."""
         if self in self._topic.publishers:
             self._topic.publishers.remove(self)
 
@@ -102,22 +102,22 @@ class Subscriber:
         self._topic.subscribers.append(self)
 
     def take(self, message) -> None:
-        """Call the callback with it."""
+        """Call the callback with a message."""
         if self.callback is not None:
             self.callback(message, *([] if self.args is None else [self.args]))
 
     def get_num_connections(self) -> int:
-        """One, as if somebody published."""
+        """One, as if there were a publisher."""
         return 1
 
     def unregister(self) -> None:
-        """Not any more."""
+        """End the subscription."""
         if self in self._topic.subscribers:
             self._topic.subscribers.remove(self)
 
 
 class Service:
-    """In place of rospy.Service; rospy.ServiceException of a name that is taken."""
+    """In place of rospy.Service; rospy.ServiceException if the name is taken."""
 
     graph: Graph  # of a subclass
 
@@ -128,12 +128,12 @@ class Service:
         self.graph.services[self.resolved_name] = (service_class, handler)
 
     def shutdown(self, _reason: str = "") -> None:
-        """Offer it no longer."""
+        """Remove the service."""
         self.graph.services.pop(self.resolved_name, None)
 
 
 def stand_ins(graph: Graph) -> dict[str, object]:
-    """What replaces rospy's own: they write into `graph`."""
+    """The replacements of rospy's own by name, which use `graph`."""
     return {**{kind.__name__: type(kind.__name__, (kind,), {"graph": graph})
                for kind in (Publisher, Subscriber, Service)},
             **{name: getattr(graph, name) for name in ("get_param", "has_param", "set_param")}}
@@ -141,7 +141,7 @@ def stand_ins(graph: Graph) -> dict[str, object]:
 
 @contextmanager
 def without_master(caller: str = "/gazebo") -> Iterator[Graph]:
-    """An empty graph in rospy's place meanwhile; `caller` is the name that ~ is replaced by."""
+    """Replaces rospy by an empty graph meanwhile; `caller` is the node name that ~ stands for."""
     graph = Graph()
     places = [(rospy, name, stand_in) for name, stand_in in stand_ins(graph).items()]
     places += [(rospy.rostime, "_rostime_initialized", True),

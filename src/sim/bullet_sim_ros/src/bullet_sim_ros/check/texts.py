@@ -1,4 +1,4 @@
-"""Checks robot and world texts: reads and spawns them as the simulator would, and listens."""
+"""Checks robot and world texts: reads and spawns them as the simulator would, with its log."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -16,11 +16,11 @@ from bullet_sim_ros.check.findings import Finding, problem
 from bullet_sim_ros.check.parameter_commands import expanded
 from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
 
-NEEDS_MASS = "an <inertial>"  # the end of what a robot without any is refused with
+NEEDS_MASS = "an <inertial>"  # the end of the error for a robot without any
 
 
 class TextChecker:
-    """Robots and worlds, with the resources of this environment."""
+    """Checks robots and worlds, with the resources of this environment."""
 
     def __init__(self, rows: dict[str, Row], resources: Resources):
         self._rows = rows
@@ -30,7 +30,7 @@ class TextChecker:
                    ) -> list[Finding]:
         """A .urdf, .xacro or .sdf file; xacro is expanded first.
 
-        `shown_only`: nothing asks for it to be spawned.
+        `shown_only`: nobody asked to spawn it.
         """
         where = str(path)
         try:
@@ -52,14 +52,14 @@ class TextChecker:
                    namespace: str = "") -> list[Finding]:
         """A robot or model, spawned into an empty world with its plugins.
 
-        `parameters` are those of the parameter server by full name; without them the robot's own
-        text is where plugins look for it.
+        `parameters` are those of the parameter server by full name; by default, the robot's text is
+        in /robot_description.
         """
         if parameters is None:
             parameters = {"/robot_description": text}
         with listening() as captured:
             try:
-                # Looked for first, as to parse a large robot takes its time.
+                # A quick search first, as parsing a large robot takes time.
                 light = "<light" in text and load_light(text, self._resources) is not None
                 if not light:
                     description = load_model(text, self._resources, None)
@@ -88,11 +88,11 @@ class TextChecker:
         return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
-        """Plugins and elements of the text, which is in `folder`, and of what it includes."""
+        """Findings about plugins and elements of the text in `folder`, and of included files."""
         try:
             root = fromstring(text)
         except ParseError:
-            return []  # the reader is more patient than the strict parser
+            return []  # the simulator's reader is more tolerant than this parser
         found = list(Lookup(self._rows, where).findings(root))
         for uri, inner in included(root, folder, self._resources, set()):
             found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
@@ -100,7 +100,7 @@ class TextChecker:
 
 
 def _utf8(path: Path) -> str:
-    """The text, read as roslaunch reads it, which knows no other encoding."""
+    """The text, decoded as by roslaunch, which knows no other encoding."""
     content = read_bytes(path)
     try:
         return content.decode("utf-8-sig")
@@ -116,7 +116,7 @@ def _logged(captured: list[LogLine], where: str) -> list[Finding]:
 
 
 def _not_failed(details: list[Finding], captured: list[LogLine]) -> list[Finding]:
-    """Without plugins that work by the table but were not loaded."""
+    """The findings without those of plugins that work by the table but were not loaded."""
     return [found for found in details
             if not any(f"{found.part} is not loaded" in each.line for each in captured)]
 
@@ -135,7 +135,8 @@ def included(root: Element, folder: Path | None, resources: Resources,
              seen: set[Path]) -> Iterator[tuple[str, Element]]:
     """URI and root element of each included file, at any depth, once.
 
-    Without those that come with the simulator; what cannot be read, its loader complains of.
+    Without those that come with the simulator, and those that cannot be read, which are errors
+    when the text is loaded.
     """
     for include in root.iter("include"):
         uri = child_text(include, "uri")

@@ -1,5 +1,5 @@
-"""ros_control's side of the joints: controllers by type, the manager, and its services.
+"""ros_control: controllers by type, the controller manager and its services.
 
-They follow controller_manager/src/controller_manager.cpp, and the robot's joints
+These follow controller_manager/src/controller_manager.cpp; the robot's joints follow
 gazebo_ros_control/src/default_robot_hw_sim.cpp.
 """

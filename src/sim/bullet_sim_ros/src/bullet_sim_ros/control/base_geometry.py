@@ -1,4 +1,4 @@
-"""Lengths of a robot's base: parameters, else what its URDF has."""
+"""Lengths of a robot's base: from parameters, else from its URDF."""
 
 import math
 
@@ -8,7 +8,7 @@ from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,
                   axis: int | None = None) -> float:
-    """A parameter, else how far two joints lie apart, m; with `axis` (0: x, 1: y) along that."""
+    """A parameter, else the distance of two joints, m; with `axis` (0: x, 1: y) along that axis."""
     if p.has(name):
         return p.number(name)
     one, other = robot.pose(first).position, robot.pose(second).position

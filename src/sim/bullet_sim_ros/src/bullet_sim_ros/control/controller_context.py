@@ -1,4 +1,4 @@
-"""What a joint controller is given: its parameters, joints to claim, and topics closed together."""
+"""The context of a joint controller: its parameters, joints and topics, closed together."""
 
 from collections.abc import Callable
 
@@ -37,14 +37,14 @@ class ControllerContext:
         self.parameters = ControllerParameters(self.namespace)
         self.joints: dict[str, JointHandle] = hardware.joints
         self.robot = robot  # the URDF's facts
-        self.claims: dict[str, CommandHandle] = {}  # joint name: what was claimed
+        self.claims: dict[str, CommandHandle] = {}  # by joint name
         self.tasks: list[tuple[Rate, Callable[[], None]]] = []
         self.services, self.mailbox = context.services, context.services.mailbox
         self._hardware = hardware
         self._context = context
 
     def describe(self) -> str:
-        """Whose log line it is."""
+        """The controller's name in log lines."""
         return f"controller {self.namespace}"
 
     def world_time(self) -> float:
@@ -54,11 +54,11 @@ class ControllerContext:
     # --- joints
 
     def joint(self, name: str) -> JointHandle:
-        """The state of a joint; an error lists those that there are."""
+        """The state of a joint; the error for an unknown name lists all joints."""
         return self._hardware.joint_handle(name)
 
     def claim(self, interface: str, joint: str) -> CommandHandle:
-        """The command of a joint, for this controller alone; PluginError if it has it already."""
+        """Claim a joint's command for this controller; PluginError if it has done so already."""
         handle = self._hardware.command_handle(interface, joint)
         if joint in self.claims:
             raise PluginError(f"joint {joint!r} is named twice")
@@ -68,18 +68,18 @@ class ControllerContext:
     # --- ROS
 
     def every(self, rate_hz: float, action: Callable[[], None]) -> None:
-        """Call `action` in the loop at a rate of simulated time, as long as it is loaded.
+        """Call `action` in the loop at a rate of simulated time until the controller is unloaded.
 
-        SimulationError of a rate that is negative or not finite.
+        SimulationError if the rate is negative or not finite.
         """
         self.tasks.append((Rate(rate_hz), action))
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the controller is loaded."""
+        """A publisher that is open as long as the controller is loaded."""
         return self._context.advertise(names.join(self.namespace, topic), kind, **options)
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
-        """A subscriber; `take(message)` returns what the loop is to do, or None."""
+        """A subscriber; `take(message)` returns a function for the loop to call, or None."""
         return self._context.subscribe(names.join(self.namespace, topic), kind, take, **options)
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:

@@ -1,4 +1,4 @@
-"""Reads the parameters of one controller, with errors that name what was looked for."""
+"""Reads the parameters of one controller, with errors that name the parameter."""
 
 import math
 from typing import Any
@@ -6,13 +6,13 @@ from typing import Any
 from bullet_sim_ros import names, params
 from bullet_sim_ros.errors import PluginError
 
-REQUIRED = object()  # a default that means: there is none
+REQUIRED = object()  # stands for: there is no default
 
 
 class ControllerParameters:
     """All parameters below a namespace, read once. Names may be paths such as `pid/p`.
 
-    What is of the wrong kind, or not set and without a default, is a PluginError.
+    A parameter of the wrong type, or not set and without a default, is a PluginError.
     """
 
     def __init__(self, namespace: str, values: Any = REQUIRED):
@@ -21,11 +21,11 @@ class ControllerParameters:
         self._values = found if isinstance(found, dict) else {}
 
     def has(self, name: str) -> bool:
-        """Whether it is set, be it a value or a group of values."""
+        """Whether a parameter or a group of this name is set."""
         return self._find(name) is not None
 
     def value(self, name: str, default: Any = REQUIRED) -> Any:
-        """As the parameter server has it; PluginError if it is not set and has no default."""
+        """The value as on the server; PluginError if it is not set and has no default."""
         found = self._find(name)
         if found is not None:
             return found
@@ -66,7 +66,7 @@ class ControllerParameters:
         return found
 
     def numbers(self, name: str, count: int, default: Any = REQUIRED) -> list[float]:
-        """A list of so many finite numbers; else a PluginError."""
+        """A list of `count` finite numbers; else a PluginError."""
         def good(value) -> bool:
             return isinstance(value, list | tuple) and len(value) == count and all(
                 map(_is_number, value))

@@ -1,37 +1,37 @@
-"""The one goal of an action that is being pursued; used in the loop's thread alone."""
+"""The active goal of an action server, of which there is one at most; for the loop's thread."""
 
 from actionlib import ServerGoalHandle
 
 
 class GoalSlot:
-    """A new goal preempts the one that is in it."""
+    """Holds the active goal; a new goal preempts it."""
 
     def __init__(self):
         self._handle: ServerGoalHandle | None = None
 
     @property
     def occupied(self) -> bool:
-        """Whether a goal is being pursued."""
+        """Whether there is an active goal."""
         return self._handle is not None
 
     def accept(self, handle: ServerGoalHandle) -> None:
-        """Pursue this one from now on."""
+        """Make this the active goal."""
         self.preempt()
         handle.set_accepted()
         self._handle = handle
 
     def holds(self, handle: ServerGoalHandle) -> bool:
-        """Whether it is this one."""
+        """Whether this is the active goal."""
         return self._handle is not None and self._handle == handle
 
     def preempt(self) -> None:
-        """Give it up, if there is one."""
+        """Cancel the active goal, if there is one."""
         handle, self._handle = self._handle, None
         if handle:
             handle.set_canceled()
 
     def finish(self, succeeded: bool, result, text: str = "") -> None:
-        """It is over."""
+        """End the active goal, if there is one, as succeeded or aborted."""
         handle, self._handle = self._handle, None
         if handle and succeeded:
             handle.set_succeeded(result, text)
@@ -39,6 +39,6 @@ class GoalSlot:
             handle.set_aborted(result, text)
 
     def publish_feedback(self, feedback) -> None:
-        """How far it is."""
+        """Publish feedback for the active goal, if there is one."""
         if self._handle:
             self._handle.publish_feedback(feedback)

@@ -1,4 +1,4 @@
-"""Limits and gains of joints that parameters set, beside those that the URDF has."""
+"""Limits and gains of joints from parameters, and limits from the URDF."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -21,7 +21,7 @@ KINDS = {"position": (("lower", "min_position"), ("upper", "max_position")),
 
 def read_joint_limits(namespace: str, robot: RobotFacts,
                       joints: Iterable[str]) -> dict[str, JointLimits]:
-    """Those of the URDF, overridden by `joint_limits/<joint>/...`."""
+    """The URDF's limits, overridden by `joint_limits/<joint>/...`."""
     parameters = ControllerParameters(names.join(namespace, LIMITS))
     return {
         joint: _overridden(robot.limits(joint) if robot.has_joint(joint) else JointLimits(),
@@ -44,7 +44,7 @@ def _overridden(limits: JointLimits, parameters: ControllerParameters, joint: st
 
 
 def read_joint_gains(namespace: str, joints: Iterable[str]) -> dict[str, PidGains]:
-    """Gains of joints that have any: the others are driven directly."""
+    """The gains of those joints that have any; the others are driven without a PID."""
     parameters = ControllerParameters(names.join(namespace, GAINS))
     return {joint: read_gains(parameters, joint) for joint in joints
             if parameters.has(f"{joint}/p")}

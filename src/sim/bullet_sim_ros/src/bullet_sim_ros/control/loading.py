@@ -1,4 +1,4 @@
-"""Makes the controller that parameters name, or says what is wrong with them."""
+"""Creates the controller that parameters describe, or says what is wrong with them."""
 
 from bullet_sim_ros.control import registry
 from bullet_sim_ros.control.controller_context import ControllerContext
@@ -7,7 +7,7 @@ from bullet_sim_ros.errors import format_error
 
 
 def make_controller(name: str, context: ControllerContext) -> Loaded:
-    """The controller of the parameter `type`; ManagerError if it cannot be made."""
+    """Create a controller of the parameter `type`; ManagerError if that fails."""
     kind = context.parameters.value("type", None)
     if kind is None:
         raise ManagerError(

@@ -1,4 +1,4 @@
-"""Which controllers are loaded and which run: load, unload, switch, list, as controller_manager."""
+"""The controller manager: loads, unloads, switches and lists controllers."""
 
 import logging
 import threading
@@ -14,7 +14,7 @@ from bullet_sim_ros.errors import format_error
 
 log = logging.getLogger("bullet_sim.control")
 
-LOOK = 0.1  # s, wall: how often to see whether the simulation has ended
+LOOK = 0.1  # s, wall clock: how often to check whether the simulation has ended
 
 
 class ControllerManager:
@@ -24,8 +24,8 @@ class ControllerManager:
                  stopped: Callable[[], bool] = lambda: False):
         self._open_context = open_context
         self._stopped = stopped
-        self._one_at_a_time = threading.Lock()  # requests
-        self._handover = threading.Lock()  # of a switch to the loop
+        self._one_at_a_time = threading.Lock()  # for requests
+        self._handover = threading.Lock()  # for passing a switch to the loop
         self._switch: Switch | None = None
         self._closed = False
         self._loaded: dict[str, Loaded] = {}
@@ -35,7 +35,7 @@ class ControllerManager:
     # --- the loop
 
     def update(self, time: float, period: float, restart: bool = False) -> None:
-        """Switch if asked to, then update what runs; `restart` all of it first if wanted."""
+        """Do a requested switch, restart running controllers if `restart`, then update them."""
         if self._switch is not None:
             self._carry_out(time)
         if restart:
@@ -46,14 +46,14 @@ class ControllerManager:
         for loaded in self._running:
             try:
                 loaded.controller.update(time, period)
-            except Exception as error:  # one controller's fault must not take the others with it
+            except Exception as error:  # one controller's failure must not affect the others
                 self._abort(loaded, time, error)
         for rate, action in self._tasks:
             if rate.due(time):
                 action()
 
     def close(self) -> None:
-        """End all controllers and their topics; who waits gets a Gone."""
+        """End all controllers and their topics; a thread that waits for a switch gets Gone."""
         self._closed = True
         for loaded in self._loaded.values():
             loaded.context.close()
@@ -104,19 +104,19 @@ class ControllerManager:
         return list(self._loaded.values())
 
     def state_of(self, loaded: Loaded) -> str:
-        """As ControllerState.msg names it; what a paused world has still to start is waiting."""
+        """As named in ControllerState.msg; `waiting` until the next update starts it."""
         switch = self._switch
         return switching.WAITING if switch is not None and loaded in switch.start else loaded.state
 
     def load(self, name: str) -> None:
-        """Make a controller, as the parameters below its name say; ManagerError if it cannot be."""
+        """Create a controller from the parameters below its name; ManagerError if that fails."""
         with self._one_at_a_time:
             if name in self._loaded:
                 raise ManagerError(f"A controller named '{name}' was already loaded inside the "
                                    "controller manager")
             try:
                 context = self._open_context(name)
-            except Exception as error:  # a name that is none, or no master
+            except Exception as error:  # an illegal name, or no master
                 raise ManagerError(
                     f"Could not load controller '{name}': {format_error(error)}"
                 ) from error
@@ -132,7 +132,7 @@ class ControllerManager:
             self._collect_tasks()
 
     def unload(self, name: str) -> None:
-        """Forget a controller; ManagerError if it runs, or is not there."""
+        """Unload a controller; ManagerError if it runs or does not exist."""
         with self._one_at_a_time:
             loaded = self._loaded.get(name)
             if loaded is None:
@@ -146,9 +146,9 @@ class ControllerManager:
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strict: bool,
                timeout: float = 0.0) -> None:
-        """Start and stop at the next update; waits for it, at most `timeout` (s, wall; 0: ever).
+        """Start and stop at the next update; waits for it up to `timeout` (s, wall; 0: for ever).
 
-        ManagerError if that is refused or takes longer, Gone if the model is deleted meanwhile.
+        ManagerError if it is refused or takes longer, Gone if model or simulation end meanwhile.
         """
         with self._one_at_a_time:
             switch = switching.plan(self._loaded, start, stop, strict)
@@ -159,9 +159,9 @@ class ControllerManager:
             self._wait(switch, timeout)
 
     def reload(self, force: bool) -> None:
-        """With `force` everything is stopped and unloaded (reloadControllerLibrariesSrv).
+        """Stop and unload all controllers (reloadControllerLibrariesSrv).
 
-        ManagerError if something runs, without `force`.
+        ManagerError if any are loaded and `force` is not set.
         """
         names = list(self._loaded)
         if names and not force:
@@ -178,7 +178,7 @@ class ControllerManager:
             if not (late or self._closed or self._stopped()):
                 continue
             with self._handover:
-                if self._switch is not switch:  # just being done
+                if self._switch is not switch:  # the loop is doing it now
                     continue
                 self._switch = None
             if late:

@@ -1,4 +1,4 @@
-"""What the controllers of a robot's base share: cmd_vel in, odometry and tf out, parameters."""
+"""Common to the controllers of mobile bases: cmd_vel in, odometry and tf out, parameters."""
 
 import logging
 from collections.abc import Callable
@@ -19,7 +19,7 @@ log = logging.getLogger("bullet_sim.control")
 
 
 class MobileBaseController(Controller):
-    """Commands count only while the controller runs; odometry starts at zero when it is loaded."""
+    """Accepts commands only while it runs; odometry starts at zero when it is loaded."""
 
     def __init__(self, context: ControllerContext, base: MobileBase):
         super().__init__(context)
@@ -37,12 +37,12 @@ class MobileBaseController(Controller):
         self._commands = self.subscribe("cmd_vel", Twist, self._take_twist)
 
     def set_publish_rate(self, rate_hz: float) -> None:
-        """Of odometry and transform. SimulationError of a rate that is negative or not finite."""
+        """For odometry and transform. SimulationError if the rate is negative or not finite."""
         self._pace = Rate(rate_hz)
 
     def subscribe(self, topic: str, kind: type,
                   command: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
-        """`command(message)` returns what the loop is to do; messages are refused while stopped."""
+        """`command(message)` returns a function for the loop; refuses messages while stopped."""
         def take(message) -> Callable[[], None] | None:
             if not self._running:
                 self._complain(f"{topic}: Can't accept new commands. Controller is not running.")
@@ -52,27 +52,27 @@ class MobileBaseController(Controller):
         return self.context.subscribe(topic, kind, take, queue_size=1, tcp_nodelay=True)
 
     def start(self, time: float) -> None:
-        """Take commands, from standstill."""
+        """Accept commands, starting from standstill."""
         self.base.start(time)
         self._running, self._complained = True, set()
 
     def update(self, time: float, period: float) -> None:
-        """Drive, and publish when it is time to."""
+        """Drive, and publish odometry when it is due."""
         self.base.update(time, period)
         if self._pace.due(time) and self.odometry.wanted():
             self.odometry.publish(self.base.odometry.sample())
 
     def stop(self, time: float) -> None:
-        """Brake."""
+        """Brake, and refuse commands."""
         self._running, self._complained = False, set()
         self.base.stop()
 
     def refuse(self, what: str) -> None:
-        """Warn of a command that cannot be used."""
+        """Log a warning about a command that cannot be used."""
         log.warning("%s: a command that is %s is ignored", self.context.describe(), what)
 
     def _complain(self, what: str) -> None:
-        """Once from each start or stop on: commands come many times a second."""
+        """Log an error, once after each start or stop: commands come many times a second."""
         if what not in self._complained:
             self._complained.add(what)
             log.error("%s: %s", self.context.describe(), what)
@@ -89,12 +89,12 @@ class MobileBaseController(Controller):
         return lambda: self.apply_command(msg)
 
     def apply_command(self, msg: Twist) -> None:
-        """Hand a checked command to the drive; in the loop."""
+        """Pass a checked command to the drive; in the loop."""
         self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z)
 
 
 def read_options(parameters: ControllerParameters) -> BaseOptions:
-    """What all bases have by the same names."""
+    """Read the parameters that all bases share."""
     return BaseOptions(
         read_limits(parameters, "linear/x"), read_limits(parameters, "angular/z"),
         parameters.number("cmd_vel_timeout", 0.5),
@@ -103,7 +103,7 @@ def read_options(parameters: ControllerParameters) -> BaseOptions:
 
 
 def read_limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
-    """Of a speed, by the name that its group of parameters has."""
+    """The limits of one speed, from a group of parameters such as `linear/x`."""
     def bounds(quantity: str) -> tuple[float, float]:
         if not parameters.flag(f"{group}/has_{quantity}_limits", False):
             return UNBOUNDED

@@ -1,4 +1,4 @@
-"""A PID of a controller: gains from parameters, changeable at run time, its state on a topic."""
+"""A controller's PID: gains from parameters or dynamic_reconfigure, and its state on a topic."""
 
 from collections.abc import Callable
 from dataclasses import asdict
@@ -20,13 +20,13 @@ RANGES = {"p": (-1e5, 1e5, "Proportional gain"), "i": (-1e5, 1e5, "Integral gain
 
 def offer_gains(owner: Owner, namespace: str, gains: PidGains,
                 change: Callable[[PidGains], None]) -> None:
-    """`change(gains)` is called in a ROS thread, at once and whenever somebody changes them."""
+    """Offer dynamic_reconfigure; calls `change(gains)` at once, and in a ROS thread on changes."""
     values = {name: Value(now, *RANGES[name]) for name, now in asdict(gains).items()}
     offer_values(owner, namespace, values, lambda new: change(PidGains(**new)))
 
 
 def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:
-    """Gains below a group of parameters; only p has to be there."""
+    """The gains in a group of parameters, of which only p is required."""
     def number(name: str, default: float = 0.0) -> float:
         return parameters.number(f"{group}/{name}", default)
 
@@ -54,14 +54,14 @@ def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
 
 
 class PidTopic:
-    """`<group>/state`: what the PID did in each update."""
+    """The topic `<group>/state`: the PID's terms in each update."""
 
     def __init__(self, context: ControllerContext, pid: Pid, group: str = "pid"):
         self._pid = pid
         self._publisher = context.advertise(f"{group}/state", PidState, queue_size=1)
 
     def publish(self, time: float, period: float) -> None:
-        """Publish if somebody listens; time and period in s."""
+        """Publish if there are subscribers; time and period in s."""
         if not self._publisher.get_num_connections():
             return
         pid, gains = self._pid, self._pid.gains

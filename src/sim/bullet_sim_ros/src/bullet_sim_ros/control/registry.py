@@ -1,4 +1,4 @@
-"""Joint controllers by the type that YAML files name, and what every one of them has."""
+"""Joint controllers by the type that YAML files name, and their base class."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _registry: dict[str, type[Controller]] = {}
 
 
 class Controller:
-    """Made in a ROS thread when it is loaded; started, updated and stopped in the loop's thread.
+    """Created in a ROS thread when loaded; started, updated and stopped in the loop's thread.
 
     `__init__` reads parameters, claims joints and opens topics, and raises a SimulationError whose
     message says what is wrong. Time and period are in simulated seconds.
@@ -23,13 +23,13 @@ class Controller:
         self.context = context
 
     def start(self, time: float) -> None:
-        """About to be updated; also after an emergency stop was released."""
+        """Called before the first update; also after an emergency stop was released."""
 
     def update(self, time: float, period: float) -> None:
         """Read joints, write commands; `period` is the time since the last update."""
 
     def stop(self, time: float) -> None:
-        """Not updated any more; then the manager puts every claimed command to rest."""
+        """Called after the last update; then the manager puts every claimed command to rest."""
 
 
 def controller(*types: str) -> Callable[[type], type]:
@@ -42,7 +42,7 @@ def controller(*types: str) -> Callable[[type], type]:
 
 
 def find(kind: str) -> type[Controller] | None:
-    """The class of a type; None for a type that nobody registered."""
+    """The class of a type; None for an unknown type."""
     return _registry.get(kind)
 
 
@@ -52,5 +52,5 @@ def types() -> list[str]:
 
 
 def hint(kind: str) -> str:
-    """The end of a line: the type that a mistyped one most likely means, if there is one."""
+    """The end of an error line: the type that was probably meant, if one is similar."""
     return did_you_mean(kind, _registry, 0.6)

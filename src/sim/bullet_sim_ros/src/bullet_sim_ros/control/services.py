@@ -22,7 +22,7 @@ READ_ONLY = "hardware_interface::JointStateInterface"
 
 
 def offer(context: PluginContext, manager: ControllerManager, namespace: str) -> None:
-    """Advertise them below NAMESPACE/controller_manager."""
+    """Advertise the services below NAMESPACE/controller_manager."""
     def switch(request: srv.SwitchControllerRequest) -> None:
         if request.strictness not in (STRICT, BEST_EFFORT):
             log.warning("Controller Manager: To switch controllers you need to specify a "
@@ -68,11 +68,11 @@ def state_of(loaded: Loaded, state: str) -> ControllerState:
 
 
 def _answer(act: Callable, response: type) -> Callable:
-    """A handler that answers ok, or logs why not."""
+    """A service handler that calls `act` and answers whether that worked; it logs errors."""
     def handle(request):
         try:
             act(request)
-        except Gone as error:  # nothing is wrong with that
+        except Gone as error:  # not an error
             log.info("%s", error)
             return response(ok=False)
         except ManagerError as error:

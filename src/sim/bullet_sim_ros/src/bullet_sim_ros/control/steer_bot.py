@@ -12,11 +12,10 @@ NAMESPACE = "steer_bot_hardware_gazebo"
 
 
 def open_steer_bot(model: Model, namespace: str, robot: RobotFacts) -> SteerBotHardware:
-    """Parameters as of steer_bot_hardware_gazebo.cpp, initSim; lengths not set are the URDF's.
+    """Reads the parameters of steer_bot_hardware_gazebo.cpp, initSim, or lengths from the URDF.
 
-    PluginError if a parameter is missing or of the wrong kind.
-
-    Also SimulationError of a joint that is not there.
+    PluginError if a parameter is missing or of the wrong type; SimulationError if a joint does not
+    exist.
     """
     p = ControllerParameters(names.join(namespace, NAMESPACE))
     wheels, steers = (p.pair(name, "there must be two, the right and the left one")

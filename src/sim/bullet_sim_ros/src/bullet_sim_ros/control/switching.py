@@ -1,4 +1,4 @@
-"""What a switch of controllers would do, and why it is refused: controller_manager's rules."""
+"""Plans a switch of controllers, or says why it is refused, by controller_manager's rules."""
 
 import threading
 from collections.abc import Iterable, Mapping, Sequence
@@ -47,7 +47,9 @@ class Switch:
 
 def plan(loaded: Mapping[str, Loaded], start: Sequence[str], stop: Sequence[str],
          strict: bool) -> Switch:
-    """ManagerError if it contradicts itself; where it is strict, also if needless or unknown."""
+    """Plan a switch. ManagerError if it contradicts itself or two controllers share a joint; if
+    `strict`, also if a controller is unknown or in the requested state already.
+    """
     stops = _known(loaded, stop, "stop", strict)
     starts = _known(loaded, start, "start", strict)
     for one in starts:
@@ -67,7 +69,7 @@ def plan(loaded: Mapping[str, Loaded], start: Sequence[str], stop: Sequence[str]
 
 
 def absent(what: str, name: str, loaded: Iterable[str]) -> ManagerError:
-    """The error of a request to do `what` to a controller that is not among those loaded."""
+    """The error for a request to do `what` to a controller that is not `loaded`."""
     return ManagerError(f"Could not {what} controller with name '{name}' because no controller "
                         f"with this name exists; there are: {', '.join(loaded) or 'none'}")
 
@@ -84,7 +86,7 @@ def _known(loaded: Mapping[str, Loaded], names: Iterable[str], what: str,
 
 
 def _check_for_conflict(together: Iterable[Loaded]) -> None:
-    """No joint may be commanded by two controllers, through whatever interface."""
+    """ManagerError if two controllers command a joint, through whatever interface."""
     holder: dict[str, Loaded] = {}
     for loaded in together:
         for joint in loaded.context.claims:

@@ -1,4 +1,4 @@
-"""Between trajectory messages and the core's trajectories: pure functions."""
+"""Pure functions that convert between trajectory messages and the core's trajectories."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 
 def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:
-    """A header stamp of 0 means now."""
+    """The core's request; a header stamp of 0 means now."""
     points = [RequestedPoint(point.time_from_start.to_sec(), point.positions, point.velocities,
                              point.accelerations) for point in msg.points]
     start = None if msg.header.stamp.is_zero() else msg.header.stamp.to_sec()
@@ -26,7 +26,7 @@ def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:
 
 
 def read_tolerances(parameters: ControllerParameters, joints: Sequence[str]) -> GoalTolerances:
-    """The `constraints`."""
+    """Read the tolerances from the parameters below `constraints`."""
     def number(name: str, default: float = 0.0) -> float:
         return parameters.number(f"constraints/{name}", default)
 
@@ -38,9 +38,9 @@ def read_tolerances(parameters: ControllerParameters, joints: Sequence[str]) -> 
 
 
 def goal_tolerances(goal: FollowJointTrajectoryGoal, default: GoalTolerances) -> GoalTolerances:
-    """The controller's, as far as the goal does not say otherwise.
+    """The goal's tolerances; those it does not set are the controller's, `default`.
 
-    InvalidTrajectory if the goal names a joint that the controller has not.
+    InvalidTrajectory if the goal names a joint that the controller does not have.
     """
     return GoalTolerances(_replaced(default.path, goal.path_tolerance),
                           _replaced(default.goal, goal.goal_tolerance),
@@ -60,7 +60,7 @@ def _replaced(default: dict[str, Tolerance],
 
 
 def fill_state(msg, follower: TrajectoryFollower, time: float):
-    """header, joint_names, desired, actual and error of a state or a feedback."""
+    """Fill header, joint_names, desired, actual and error of a state or feedback message."""
     convert.stamped(msg, time)
     msg.joint_names = follower.names
     msg.desired = _point(follower.desired)
@@ -70,7 +70,7 @@ def fill_state(msg, follower: TrajectoryFollower, time: float):
 
 
 def _point(waypoints: Sequence[Waypoint]) -> JointTrajectoryPoint:
-    """Accelerations are left out where they are unknown."""
+    """The message of waypoints; without accelerations if any is unknown."""
     known = all(waypoint.acceleration is not None for waypoint in waypoints)
     return JointTrajectoryPoint(
         positions=[waypoint.position for waypoint in waypoints],

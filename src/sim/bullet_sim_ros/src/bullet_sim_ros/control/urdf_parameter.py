@@ -1,4 +1,4 @@
-"""Waits for the parameter with a robot's URDF while the simulation goes on."""
+"""Waits for the parameter that holds a robot's URDF, while the simulation goes on."""
 
 import logging
 import threading
@@ -18,11 +18,11 @@ POLL = 0.1  # s, wall
 def with_urdf(
     context: PluginContext, namespace: str, name: str, use: Callable[[str], None]
 ) -> None:
-    """Call `use(text)` in the loop: at once if the parameter is there, else as soon as it is.
+    """Call `use(text)` in the loop: at once if the parameter is set, else as soon as it is.
 
-    The text is empty where the parameter holds none.
+    The text is empty if the parameter is not a string.
 
-    gazebo_ros_control_plugin.cpp, getURDF, waits in the loop and holds up the whole world; a spawn
+    gazebo_ros_control_plugin.cpp, getURDF, waits in the loop and blocks the whole world; a spawn
     service would not answer meanwhile.
     """
     closed = threading.Event()
@@ -35,12 +35,12 @@ def with_urdf(
         return
 
     def look() -> None:
-        """In the loop, once the parameter is there."""
+        """Called in the loop, once the parameter is set."""
         if closed.is_set():
             return
         try:
             use(_text(params.find_upwards(namespace, name)))
-        except Exception as error:  # nobody else would see it
+        except Exception as error:  # logged with the plugin's name
             log.error("%s is not loaded: %s", context.describe(), format_error(error))
             context.close()
 

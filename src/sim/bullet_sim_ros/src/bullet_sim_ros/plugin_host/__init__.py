@@ -1,6 +1,6 @@
-"""What plugins are written against: context, tags, registry, and output that several share.
+"""The API for plugins: context, tags, registry, and output that several share.
 
-It does for them what gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h does.
+It corresponds to gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h.
 """
 
 from bullet_sim_ros.plugin_host.commands import subscribe_commands

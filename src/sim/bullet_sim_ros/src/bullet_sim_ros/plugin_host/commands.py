@@ -1,4 +1,4 @@
-"""How a drive's commands come: geometry_msgs/Twist on a topic."""
+"""The commands of a drive: geometry_msgs/Twist on a topic."""
 
 from collections.abc import Callable
 
@@ -10,7 +10,7 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 
 def subscribe_commands(context: PluginContext, namespace: str, topic: str,
                        command: Callable[[Twist], None], queue_size: int = 1) -> None:
-    """Have `command(message)` called in the loop; messages with unusable numbers are refused."""
+    """Subscribe, and call `command(message)` in the loop; refuses messages with bad numbers."""
     def take(message: Twist) -> Callable[[], None] | None:
         return None if context.refuses("command", message) else lambda: command(message)
 

@@ -1,4 +1,4 @@
-"""What a plugin is given: its tags and place, calls by the loop, and topics that end with it."""
+"""A plugin's context: its tags and scope, calls by the loop, and topics that end with it."""
 
 import logging
 import math
@@ -32,11 +32,11 @@ class PluginContext(PluginScope):
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
         self.closed = False  # whether the plugin has ended; for any thread
-        self._task: PeriodicTask | None = None  # the last that `every` was asked for
+        self._task: PeriodicTask | None = None  # that of the last `every`
 
     @property
     def updates(self) -> int:
-        """How often the plugin has done what it does at a rate."""
+        """How often the plugin's last periodic task has run."""
         return self._task.count if self._task else 0
 
     # --- when the loop calls
@@ -45,8 +45,8 @@ class PluginContext(PluginScope):
               wanted: Callable[[], bool] = always, whole_steps: bool = False) -> None:
         """Call `action` at a rate of simulated time, while `wanted` is true; 0: every step.
 
-        `whole_steps` is for plugins that count the period from the last time (see `TickRate`). A
-        rate below zero is none, too (gazebo_ros_diff_drive.cpp, Load).
+        `whole_steps` is for plugins that count the period from their last call (see `TickRate`). A
+        rate below zero means every step, too (gazebo_ros_diff_drive.cpp, Load).
         """
         scheduler = self.services.scheduler
         self._task = task = scheduler.add(
@@ -54,7 +54,7 @@ class PluginContext(PluginScope):
         self._closers.append(lambda: scheduler.remove(task))
 
     def change_rate(self, rate_hz: float) -> None:
-        """Do what `every` was last asked for at another rate, from now on."""
+        """Run the task of the last `every` at another rate from now on."""
         if self._task is not None and not self.closed:
             self.services.scheduler.change_rate(self._task, rate_hz)
 
@@ -62,8 +62,8 @@ class PluginContext(PluginScope):
                       wanted: Callable[[], bool] = always) -> None:
         """Call `action` at the sensor's own rate, thinned to `rate_hz`; 0: at each reading.
 
-        A reading is left out until so much time has gone by since the last one that was taken, so
-        100 Hz thinned to 30 Hz is 25 Hz (gazebo_ros_imu_sensor.cpp, UpdateChild).
+        Readings are skipped until a period has passed since the last one that was taken, so 100 Hz
+        thinned to 30 Hz is 25 Hz (gazebo_ros_imu_sensor.cpp, UpdateChild).
         """
         sensor_rate = self.sensor.update_rate
         if sensor_rate <= 0 or rate_hz <= 0:
@@ -88,7 +88,7 @@ class PluginContext(PluginScope):
         self._resets.append(self._guarded(action))
 
     def reset(self) -> None:
-        """Time is back at the start."""
+        """Call the actions of `on_reset`: time is back at the start."""
         for action in self._resets:
             action()
 
@@ -98,7 +98,7 @@ class PluginContext(PluginScope):
                 return
             try:
                 action()
-            except Exception as error:  # a plugin's fault must not take the simulation with it
+            except Exception as error:  # a plugin's failure must not end the simulation
                 log.error("%s failed and is switched off: %s", self.describe(), format_error(error))
                 self.close()
         return run
@@ -106,15 +106,15 @@ class PluginContext(PluginScope):
     # --- ROS
 
     def advertise(self, topic: str, kind: type, **options) -> rospy.Publisher:
-        """A publisher that lives as long as the plugin; PluginError if that is no topic's name."""
+        """A publisher that ends with the plugin; PluginError if the topic's name is illegal."""
         publisher = rospy.Publisher(_legal(topic), kind, **options)
         self._closers.append(publisher.unregister)
         return publisher
 
     def subscribe(self, topic: str, kind: type, take: Callable, **options) -> rospy.Subscriber:
-        """A subscriber; `take(message)` returns what the loop is to do, or None.
+        """A subscriber; `take(message)` returns a function for the loop to call, or None.
 
-        PluginError if that is no topic's name.
+        PluginError if the topic's name is illegal.
         """
         lockstep = self.services.lockstep
         resolved = rospy.resolve_name(_legal(topic))
@@ -135,7 +135,8 @@ class PluginContext(PluginScope):
         return subscriber
 
     def refuses(self, what: str, *messages) -> bool:
-        """Whether numbers of these messages are not finite or far too great; if so, a warning."""
+        """Whether numbers in these messages are not finite or far too large; if so, logs a warning.
+        """
         if convert.is_sane(*messages):
             return False
         log.warning("%s: a %s that is not finite, or beyond %g, is ignored", self.describe(), what,
@@ -143,9 +144,9 @@ class PluginContext(PluginScope):
         return True
 
     def serve(self, name: str, kind: type, handler: Callable) -> None:
-        """A service; a name that is taken is a warning.
+        """Advertise a service; a name that is taken is a warning.
 
-        PluginError of a name that ROS does not allow.
+        PluginError if the name is illegal.
         """
         def answer(request):
             self.services.mailbox.announce(rospy.resolve_name(name), request)
@@ -159,7 +160,7 @@ class PluginContext(PluginScope):
         self._closers.append(lambda: service.shutdown("the model was deleted"))
 
     def on_close(self, action: Callable[[], None]) -> None:
-        """Call `action` when the plugin ends, before the topics that it has now are closed."""
+        """Call `action` when the plugin ends, before the topics opened so far are closed."""
         self._closers.append(action)
 
     def close(self) -> None:
@@ -168,7 +169,7 @@ class PluginContext(PluginScope):
         self.services.lockstep.cancel(self)
         while self._closers:
             self._closers.pop()()
-        # What it calls leads back to it: the plugin's arrays would wait for the collector.
+        # These are reference cycles: the plugin's arrays would wait for the garbage collector.
         self._task = None
         self._resets.clear()
 

@@ -1,4 +1,4 @@
-"""The tags of plugins that warn of each one that is missing (gazebo_ros_utils.h, getParameter)."""
+"""Tags of plugins that log a warning for each missing one (gazebo_ros_utils.h, getParameter)."""
 
 import logging
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ defaults = logging.getLogger("bullet_sim.plugins.defaults")
 
 
 class LoggedParameters:
-    """Reads as `PluginParameters` do; a missing tag is a warning that names the default."""
+    """Reads as `PluginParameters` does; a missing tag is a warning that names the default."""
 
     def __init__(self, parameters: PluginParameters, kind: str, namespace: str):
         self._parameters = parameters
@@ -35,7 +35,7 @@ class LoggedParameters:
         return self._parameters.flag(tag, default)
 
     def choice(self, tag: str, words: Sequence[str]) -> str:
-        """One of some words; the first is the default, also for anything else, with a warning."""
+        """One of `words`; the first is the default, and also used for others, with a warning."""
         word = self.text(tag, words[0])
         if word not in words:
             log.warning("%s: <%s> is %r; there are %s; %s is used", self.label, tag, word,

@@ -1,4 +1,4 @@
-"""What drives publish about where they are: a topic and a transform."""
+"""The odometry output of drives: a topic and a transform."""
 
 from collections.abc import Sequence
 
@@ -15,9 +15,9 @@ from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 
 class OdometryOutput:
-    """nav_msgs/Odometry and the transform of the same pose, to those who listen.
+    """nav_msgs/Odometry and the transform of the same pose, published to subscribers.
 
-    `flat`: the topic's height is 0 while the transform has it. Covariances are 6x6, row by row.
+    `flat`: z is 0 on the topic, but not in the transform. Covariances are 6x6, row by row.
     """
 
     def __init__(self, context: PluginContext, topic: str, odom_frame: str, base_frame: str, *,
@@ -31,7 +31,7 @@ class OdometryOutput:
         self.set_transform(transform)
 
     def set_transform(self, wanted: bool) -> None:
-        """Whether the transform is sent."""
+        """Set whether the transform is sent."""
         self._transform = wanted
         if wanted:
             self._services.announce_transforms()
@@ -41,7 +41,7 @@ class OdometryOutput:
         return bool(self._topic.get_num_connections()) or self._services.transforms_wanted()
 
     def publish(self, reading: OdometryReading, others: Sequence[TransformStamped] = ()) -> None:
-        """Send topic and transform, and other transforms with it."""
+        """Publish on the topic, and send the transform together with `others`."""
         if self._topic.get_num_connections():
             self._topic.publish(self._message(reading))
         transforms = [*others]
@@ -64,7 +64,10 @@ class OdometryOutput:
 def open_odometry(context: PluginContext, namespace: str, base_frame: str = "base_footprint",
                   tags: LoggedParameters | PluginParameters | None = None,
                   **options) -> OdometryOutput:
-    """By `<odometryTopic>`, `<odometryFrame>` and `<robotBaseFrame>`; options of OdometryOutput."""
+    """Open the output of `<odometryTopic>`, `<odometryFrame>` and `<robotBaseFrame>`.
+
+    `options` are those of OdometryOutput.
+    """
     p, prefix = tags or context.parameters, params.tf_prefix(namespace)
     return OdometryOutput(
         context, names.join(namespace, p.text("odometryTopic", "odom")),
@@ -74,9 +77,9 @@ def open_odometry(context: PluginContext, namespace: str, base_frame: str = "bas
 
 def wheel_transform(model: Model, joint: Joint, time: float, prefix: str,
                     frame: str) -> TransformStamped:
-    """The wheel seen from the model, with the joint's parent link as header frame.
+    """The wheel's pose in the model, with the joint's parent link as header frame.
 
-    gazebo_ros_diff_drive.cpp, publishWheelTF.
+    So it is in gazebo_ros_diff_drive.cpp, publishWheelTF.
     """
     pose = model.pose.inverse() * model.links[joint.description.child].pose
     return convert.transform_to_msg(pose, time, names.frame(prefix, joint.description.parent),

@@ -1,4 +1,4 @@
-"""Where a drive's odometry comes from, by its tag `<odometrySource>`."""
+"""The source of a drive's odometry, by its tag `<odometrySource>`."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
 
 
 class OdometrySource:
-    """The truth (`world`), or what a left and a right wheel have turned (`encoder`)."""
+    """The true pose (`world`), or the rotation of a left and a right wheel (`encoder`)."""
 
     def __init__(self, context: PluginContext, p: LoggedParameters, wheels: Sequence[Joint],
                  encoders: WheelOdometry):
@@ -27,7 +27,7 @@ class OdometrySource:
         return self._encoders.sample()
 
     def restart(self) -> None:
-        """Encoders back to zero."""
+        """Set the encoders to zero."""
         self._encoders.restart(self._world.time)
 
     def _count(self) -> None:

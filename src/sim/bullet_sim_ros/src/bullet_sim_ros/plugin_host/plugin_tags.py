@@ -13,15 +13,15 @@ from bullet_sim_ros.errors import PluginError
 log = logging.getLogger("bullet_sim.plugins")
 
 TRUE, FALSE = ("true", "1"), ("false", "0")
-# How far a C++ stream reads a number: 1.5f, 0.3m and 1,5 are 1.5, 0.3 and 1, and 0x10 is 0.
+# The part that a C++ stream reads: 1.5f, 0.3m and 1,5 are 1.5, 0.3 and 1, and 0x10 is 0.
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
-WORDS = ("inf", "nan", "infinity")  # that a stream does not know, but xacro and Python write
+WORDS = ("inf", "nan", "infinity")  # unknown to a C++ stream, but written by xacro and Python
 
 
 def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
-    """The numbers at the beginning of a text, `count` at most, and whether that was all of it.
+    """The numbers at the beginning of a text, `count` at most, and whether they are all of it.
 
-    It goes on until something is not a number.
+    Reading ends at the first word that is not a number.
     """
     values: list[float] = []
     for word in text.split():
@@ -51,9 +51,9 @@ class PluginParameters:
         self.read: set[str] = set()  # tags that were asked for
 
     def unread(self) -> list[str]:
-        """Tags that are there and were not asked for, each once; those of other namespaces not.
+        """Tags that are present and were not read, each once; without those of other namespaces.
 
-        Also those within what was asked for as a group, as `GROUP/TAG`.
+        Also tags within groups that were read, as `GROUP/TAG`.
         """
         found = [child.tag for child in self._element if isinstance(child.tag, str)]
         found = [tag for tag in found if tag not in self.read and not set(tag) & set("{:")]
@@ -62,7 +62,7 @@ class PluginParameters:
         return list(dict.fromkeys(found))
 
     def groups(self, tag: str) -> list[PluginParameters]:
-        """The elements of that name, each with parameters of its own."""
+        """The elements of that name, each as its own PluginParameters."""
         self.read.add(tag)
         if tag not in self._groups:
             self._groups[tag] = [
@@ -76,7 +76,7 @@ class PluginParameters:
         return [(element.text or "").strip() for element in self._element.findall(tag)]
 
     def has(self, tag: str) -> bool:
-        """Whether the tag is there, empty or not."""
+        """Whether the tag is present, empty or not."""
         self.read.add(tag)
         return self._element.find(tag) is not None
 
@@ -87,7 +87,7 @@ class PluginParameters:
         return found.strip() if found and found.strip() else default
 
     def required(self, tag: str) -> str:
-        """Trimmed text of a tag; PluginError if it is not there or empty."""
+        """Trimmed text of a tag; PluginError if it is absent or empty."""
         found = self.text(tag)
         if not found:
             raise PluginError(f"it needs a <{tag}>")
@@ -101,7 +101,7 @@ class PluginParameters:
         return value
 
     def bound(self, tag: str, default: float) -> float:
-        """A number that may be infinite: no bound. PluginError if it is not a number."""
+        """A number that may be infinite (no bound). PluginError if it is not a number."""
         text = self.text(tag)
         if not text:
             return default
@@ -118,11 +118,11 @@ class PluginParameters:
         return value
 
     def topic(self, default: str, tag: str = "topicName") -> str:
-        """A topic's name; empty, for no topic at all, where the tag is there and empty."""
+        """A topic's name; empty, which means no topic, if the tag is present and empty."""
         return self.text(tag) if self.has(tag) else default
 
     def flag(self, tag: str, default: bool) -> bool:
-        """true/1/false/0 in any case, of several words the first; else a warning, the default."""
+        """The first word as true/1/false/0 in any case; others are the default, with a warning."""
         text = self.text(tag).lower()
         word = text.split()[0] if text else ""
         if word in TRUE or word in FALSE:
@@ -143,7 +143,7 @@ class PluginParameters:
         return (values[0], values[1], values[2])
 
     def _leading(self, tag: str, text: str, count: int) -> list[float]:
-        """The first `count` numbers; what follows them is a warning."""
+        """The first `count` numbers; a warning if anything follows them."""
         values, whole = read_numbers(text, count)
         if len(values) == count and not whole:
             self._warn_of_rest(tag, text, " ".join(f"{value:g}" for value in values))
@@ -154,7 +154,7 @@ class PluginParameters:
                     "follows is not", self._model, self._plugin, tag, text, used)
 
     def namespace(self, missing: str, empty: str) -> str:
-        """`robotNamespace`; families of plugins differ in what an absent or an empty one means."""
+        """`robotNamespace`; what an absent or an empty one means differs between plugins."""
         if not self.has("robotNamespace"):
             return missing
         return self.text("robotNamespace", empty)

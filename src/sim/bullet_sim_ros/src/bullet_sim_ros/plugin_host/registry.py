@@ -1,4 +1,4 @@
-"""From library file name to class, and the loading of all plugins of a model."""
+"""The plugin classes by library file name, and the loading of all plugins of a model."""
 
 import functools
 import logging
@@ -24,7 +24,7 @@ NOT_NEEDED = {"libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so"}
 def plugin(*filenames: str) -> Callable[[type], type]:
     """Register a class under the library names that model files use.
 
-    It is made with a PluginContext; a PluginError then, of a wrong tag, is one line of the log.
+    It is called with a PluginContext; a PluginError that it raises is logged as one line.
     """
     def register(made: type) -> type:
         for filename in filenames:
@@ -58,7 +58,7 @@ def load_world_plugins(services: SharedByPlugins) -> list[PluginContext]:
 
 
 def _load(context: PluginContext) -> bool:
-    """Make the plugin, which registers with its context what to call when."""
+    """Create the plugin, which registers its callbacks with its context; False if there is none."""
     filename = PurePosixPath(context.description.filename).name
     if filename in NOT_NEEDED:
         return False
@@ -82,9 +82,9 @@ EVERY_PLUGIN = frozenset(("robotNamespace", "alwaysOn", "always_on", "updateRate
 
 
 def warn_of_unread_tags(context: PluginContext) -> None:
-    """One warning for each tag that the plugin has not read and the interface table has not.
+    """One warning for each tag that the plugin has not read and the interface table does not list.
 
-    Tags of the table that have no effect, or are read later, are no warning.
+    Tags in the table that have no effect, or are read later, cause no warning.
     """
     unread = [tag for tag in context.parameters.unread() if tag not in EVERY_PLUGIN]
     if not unread:

@@ -1,4 +1,4 @@
-"""Where a plugin is: in the world, a model, a sensor or a visual."""
+"""A plugin's scope: the world, a model, a sensor or a visual."""
 
 from typing import TypeVar
 
@@ -12,7 +12,7 @@ Part = TypeVar("Part")  # a model, sensor, visual or link
 
 
 class PluginScope:
-    """A plugin's element and those around it; what is asked for and not there is a PluginError."""
+    """A plugin's element and those around it; PluginError if a requested one does not exist."""
 
     def __init__(self, world: World, model: Model | None, description: PluginDescription,
                  sensor: SensorDescription | None = None, link: Link | None = None,

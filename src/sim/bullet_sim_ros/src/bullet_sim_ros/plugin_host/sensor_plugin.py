@@ -1,4 +1,4 @@
-"""What a sensor plugin is written against: it has parameters and a message, the rest is here."""
+"""The base class of sensor plugins, which add their parameters and their message."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -20,10 +20,10 @@ class SensorPlugin(ABC):
                  namespace: str | None = None,
                  tf_prefix: Callable[[str], str] = params.own_tf_prefix,
                  noise: str = "", queue_size: int = 1):
-        """`topic`: empty for none. `frame`: as in the file, `tf_prefix(namespace)` goes before it.
+        """`topic`: empty for none. `frame`: as in the file; `tf_prefix(namespace)` is added to it.
 
         `namespace` replaces that of `<robotNamespace>`; `noise` is the name of the sensor's random
-        numbers, and without one `<gaussianNoise>` is not read. PluginError of tags that are wrong.
+        numbers, and without one `<gaussianNoise>` is not read. PluginError if tags are wrong.
         """
         p = context.parameters
         self.context, self.world = context, context.world
@@ -61,7 +61,7 @@ class SensorPlugin(ABC):
         return any(publisher.get_num_connections() for publisher in self._publishers)
 
     def random(self) -> np.random.Generator:
-        """That of the sensor's noise, the same for one tick in every run with one seed."""
+        """The generator of the sensor's noise, the same at a tick in every run with one seed."""
         return self.world.random(self._noise_name)
 
     def disturbed(self, values: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What all plugins of one simulation use together: world, loop, drawing thread and /tf."""
+"""Objects shared by all plugins of one simulation: world, loop, drawing thread and /tf."""
 
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
@@ -11,7 +11,7 @@ from bullet_sim_ros.scheduler import Scheduler
 
 
 class SharedByPlugins:
-    """What all plugins of one simulation use together."""
+    """Objects shared by all plugins of one simulation."""
 
     def __init__(self, world: World, mailbox: Mailbox, scheduler: Scheduler, drawing: DrawingThread,
                  lockstep: Lockstep):
@@ -20,11 +20,11 @@ class SharedByPlugins:
         self.scheduler = scheduler
         self.drawing = drawing
         self.lockstep = lockstep
-        self.warned: set[tuple[str, str]] = set()  # unknown plugins: where they are, file name
+        self.warned: set[tuple[str, str]] = set()  # unknown plugins: model, file name
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
     def announce_transforms(self) -> None:
-        """Make /tf known, so that early subscribers miss nothing."""
+        """Advertise /tf, so that early subscribers miss nothing."""
         if self._broadcaster is None:
             self._broadcaster = tf2_ros.TransformBroadcaster()
 

@@ -1,4 +1,4 @@
-"""The warning about a plugin that is not there: once, with what will be missing."""
+"""The warning about an unknown plugin: once, with what will be missing."""
 
 import logging
 from collections.abc import Iterable
@@ -8,8 +8,8 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins.unknown")
 
-# Beginnings of file names, and what a world without them lacks. Gazebo's own plugins use its own
-# transport, so ROS nodes do not depend on most of them.
+# Beginnings of file names, and what is missing without these plugins. Gazebo's own plugins use its
+# own transport, so ROS nodes do not depend on most of them.
 CONSEQUENCES = {
     "libDiffDrivePlugin": "actuator: the wheels will not be driven; on ROS topics "
                           "libgazebo_ros_diff_drive.so does it",
@@ -30,7 +30,7 @@ CONSEQUENCES = {
     "libRayPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
     "libImuSensorPlugin": "no ROS topic is lost: it only uses Gazebo's own transport",
 }
-# What is missing without one that is named by none of these, by where it is.
+# What is missing without any other plugin, by the element that it is in.
 MATTERS = {
     "sensor": "sensor: its topics will be missing",
     "visual": "looks: what it shows will be missing",

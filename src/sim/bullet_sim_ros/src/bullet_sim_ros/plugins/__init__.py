@@ -1,6 +1,6 @@
-"""Gazebo plugins by library file name. A file here with `@plugin(...)` is all it takes.
+"""Gazebo plugins by library file name. To add one, put a file with `@plugin(...)` here.
 
-Files named here are those of gazebo_plugins/src, unless another package is said.
+C++ files named here are in gazebo_plugins/src, unless another package is named.
 """
 
 import importlib

@@ -1,4 +1,4 @@
-"""libgazebo_ros_block_laser.so: the points that a fan of rays meets, as sensor_msgs/PointCloud."""
+"""libgazebo_ros_block_laser.so: the points that a fan of rays hits, as sensor_msgs/PointCloud."""
 
 import numpy as np
 from geometry_msgs.msg import Point32
@@ -10,10 +10,10 @@ from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 @plugin("libgazebo_ros_block_laser.so")
 class BlockLaserPlugin(SensorPlugin):
-    """Rays that meet nothing give points at range_max, without noise; the ray's own is not used.
+    """Rays that hit nothing give points at range_max, without noise; `<ray>`'s noise is not used.
 
     Points lie where the rays went: gazebo_ros_block_laser.cpp, PutLaserData, mirrors them top to
-    bottom, turns them by half a ray and makes NaN of a single row.
+    bottom, turns them by half a ray and gives NaN for a single row.
     """
 
     def __init__(self, context: PluginContext):

@@ -9,7 +9,7 @@ from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 @plugin("libgazebo_ros_bumper.so")
 class BumperPlugin(SensorPlugin):
-    """In world axes, whatever `frameName` is; empty `states` while nothing touches.
+    """Contacts in world axes, whatever `frameName` is; empty `states` while nothing touches.
 
     The sensor's own collision always comes first; in gazebo_ros_bumper.cpp, OnContact, the order
     is the engine's.
@@ -23,7 +23,7 @@ class BumperPlugin(SensorPlugin):
         self.publish_readings()
 
     def measure(self) -> ContactsState:
-        """What touches now."""
+        """The present contacts."""
         pairs = self._sensor.sample()
         return ContactsState(states=[
             self._state(pair, index, len(pairs)) for index, pair in enumerate(pairs)])

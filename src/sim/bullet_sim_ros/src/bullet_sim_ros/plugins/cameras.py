@@ -17,7 +17,7 @@ STREAMING, POLLED = "streaming", "polled"
 
 @plugin("libgazebo_ros_camera.so")
 class CameraPlugin:
-    """Also of sensors of type wideanglecamera."""
+    """Also for sensors of type wideanglecamera."""
 
     def __init__(self, context: PluginContext):
         _capture_at_rate(context, [CameraPublisher(context)])
@@ -25,7 +25,7 @@ class CameraPlugin:
 
 @plugin("libgazebo_ros_triggered_camera.so")
 class TriggeredCameraPlugin:
-    """A picture for each message on `triggerTopicName`."""
+    """One image for each message on `triggerTopicName`."""
 
     def __init__(self, context: PluginContext):
         CameraGroup(context, [CameraPublisher(context)]).capture_on_trigger()
@@ -33,7 +33,7 @@ class TriggeredCameraPlugin:
 
 @plugin("libgazebo_ros_multicamera.so")
 class MulticameraPlugin:
-    """Both take their pictures at once and share a frame."""
+    """Both cameras capture at the same time and share a frame."""
 
     def __init__(self, context: PluginContext):
         _capture_at_rate(context, _pair(context))
@@ -41,7 +41,7 @@ class MulticameraPlugin:
 
 @plugin("libgazebo_ros_triggered_multicamera.so")
 class TriggeredMulticameraPlugin:
-    """Each has a trigger topic; either gives a picture of both."""
+    """Each camera has a trigger topic; a message on either triggers both cameras."""
 
     def __init__(self, context: PluginContext):
         CameraGroup(context, _pair(context)).capture_on_trigger()
@@ -49,7 +49,7 @@ class TriggeredMulticameraPlugin:
 
 @plugin("libgazebo_ros_prosilica.so")
 class ProsilicaPlugin:
-    """A camera that streams; being asked for single pictures is absent.
+    """A streaming camera; polling it for single images is not supported.
 
     `trigger_mode` is searched for upwards from the camera's namespace, once.
     """
@@ -81,7 +81,7 @@ class OpenniKinectPlugin:
 class DepthCameraPlugin:
     """A Kinect without an upper limit for depth.
 
-    Sends both camera_info topics; nothing in gazebo_ros_depth_camera.cpp calls PublishCameraInfo.
+    Publishes both camera_info topics; gazebo_ros_depth_camera.cpp never calls PublishCameraInfo.
     """
 
     def __init__(self, context: PluginContext):
@@ -101,7 +101,7 @@ def _capture_depth(context: PluginContext, far: float) -> None:
 
 
 def _pair(context: PluginContext) -> list[CameraPublisher]:
-    """The cameras whose names have `left` or `right` in them; only the right one has a baseline."""
+    """The cameras with `left` or `right` in their names; only the right one has a baseline."""
     cameras = []
     for number, camera in enumerate(context.sensor.cameras):
         if "left" in camera.name:

@@ -20,9 +20,9 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_diff_drive.so")
 class DiffDrivePlugin:
-    """Publishes first, then moves the wheels.
+    """Publishes first, then moves the wheels, as gazebo_ros_diff_drive.cpp, UpdateChild, does.
 
-    gazebo_ros_diff_drive.cpp, UpdateChild. `commandTimeout` is ours: upstream's has no time-out.
+    `commandTimeout` is an addition: the original has no time-out.
     """
 
     def __init__(self, context: PluginContext):
@@ -40,7 +40,7 @@ class DiffDrivePlugin:
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
         self._updated = self._commanded = context.world.time
-        # s; 0: never. Nobody misses it: upstream has none.
+        # s; 0: never. A missing tag is not logged: the original has no such tag.
         self._timeout = context.parameters.number("commandTimeout", 0.0)
         self._publish_tf = p.flag("publishTf", True)
         odom_tf = p.flag("publishOdomTF", True)
@@ -63,7 +63,7 @@ class DiffDrivePlugin:
         context.on_reset(self._restart)
 
     def _as_driven(self, label: str, geometry: DiffDriveParameters) -> tuple[Joint, Joint]:
-        """The wheels as left and right of the law: swapped for files from before Melodic.
+        """The wheels that are driven as left and right: swapped for files from before Melodic.
 
         Indigo to Lunar swapped them unless <legacyMode> was false, so files of that time call the
         right wheel left. Noetic, which does not read the tag, turns such robots the wrong way.

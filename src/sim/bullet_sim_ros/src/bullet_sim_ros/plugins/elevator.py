@@ -1,4 +1,4 @@
-"""libgazebo_ros_elevator.so: a lift that goes to the floor whose number comes on a topic."""
+"""libgazebo_ros_elevator.so: a lift that goes to the floor whose number is sent on a topic."""
 
 import logging
 import sys
@@ -15,7 +15,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_elevator.so")
 class ElevatorPlugin:
-    """A call while it is on its way is ignored (Gazebo's ElevatorPlugin.cc, MoveToFloor)."""
+    """A call while the lift moves is ignored (Gazebo's ElevatorPlugin.cc, MoveToFloor)."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

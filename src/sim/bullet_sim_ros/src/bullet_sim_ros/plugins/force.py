@@ -1,4 +1,4 @@
-"""libgazebo_ros_force.so: the last Wrench that came acts on a link at every step."""
+"""libgazebo_ros_force.so: the last Wrench received acts on a link at every step."""
 
 from collections.abc import Callable
 
@@ -12,7 +12,7 @@ NONE = (0.0, 0.0, 0.0)
 
 @plugin("libgazebo_ros_force.so")
 class ForcePlugin:
-    """World axes, at the centre of mass; for ever, until another one comes."""
+    """The wrench acts at the centre of mass, in world axes, until another one is received."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -1,4 +1,4 @@
-"""Bases moved by force: hector's force_based_move and the three libraries made of it."""
+"""Bases moved by force: hector's force_based_move and three libraries derived from it."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ STRAIGHT = 1e-4  # rad/s
 
 @dataclass(frozen=True)
 class Family:
-    """In what the libraries differ: their defaults, and the tag of a time-out if there is one."""
+    """What differs between the libraries: their defaults, and the tag of a time-out if any."""
 
     gains: ForceGains = ForceGains()
     transform: bool = True
@@ -37,7 +37,7 @@ FAMILIES = {
 @plugin("libhector_gazebo_ros_force_based_move.so", "libwpr_plugin.so",
         "libridgeback_ros_force_based_move.so", "librobotnik_force_based_move.so")
 class ForceBasedMovePlugin:
-    """Odometry starts at zero where the model is spawned, and does not know what it bumped into."""
+    """Odometry starts at zero where the model is spawned, and does not account for collisions."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -9,7 +9,7 @@ from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 @plugin("libgazebo_ros_ft_sensor.so")
 class FtSensorPlugin(SensorPlugin):
-    """The reaction in a joint, in the child link's frame; `provideFeedback` is not needed."""
+    """The reaction wrench in a joint, in the child link's frame; needs no `provideFeedback`."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters
@@ -21,15 +21,15 @@ class FtSensorPlugin(SensorPlugin):
         self.publish_at(p.number("updateRate", 0.0))
 
     def measure(self) -> WrenchStamped:
-        """What the parent does to the child."""
+        """The wrench that the parent exerts on the child."""
         return _message(self.disturbed(np.concatenate(self._joint.reaction())))
 
 
 @plugin("libgazebo_ros_f3d.so")
 class F3dPlugin(SensorPlugin):
-    """What moves a link, gravity and contacts included: m a, in world axes. `frameName` is a label.
+    """The net force on a link, gravity and contacts included: m a, in world axes.
 
-    The frame is `world` whatever is written (gazebo_ros_f3d.cpp, Load); the tf_prefix goes before.
+    `frameName` has no effect: frame_id is the tf_prefix and `world` (gazebo_ros_f3d.cpp, Load).
     """
 
     def __init__(self, context: PluginContext):
@@ -40,11 +40,11 @@ class F3dPlugin(SensorPlugin):
         context.on_reset(self._net.restart)
 
     def measure(self) -> WrenchStamped:
-        """Since the last step."""
+        """The mean force and torque since the last measurement."""
         return _message(self._net.sample())
 
 
 def _message(values: np.ndarray) -> WrenchStamped:
-    """From force and torque, (6,)."""
+    """The message of a force and a torque, (6,)."""
     numbers = values.tolist()
     return WrenchStamped(wrench=Wrench(Vector3(*numbers[:3]), Vector3(*numbers[3:])))

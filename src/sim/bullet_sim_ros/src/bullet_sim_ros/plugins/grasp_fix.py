@@ -1,4 +1,4 @@
-"""libgazebo_grasp_fix.so: what a gripper's fingers press from two sides is held by its palm."""
+"""libgazebo_grasp_fix.so: an object that the fingers press from two sides is held by the palm."""
 
 import logging
 import math
@@ -13,7 +13,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_grasp_fix.so", "libgazebo_grasp_plugin.so")
 class GraspFixPlugin:
-    """Updates by simulated time; GazeboGraspFix.cpp, OnUpdate, by the wall clock's."""
+    """Updates by simulated time; GazeboGraspFix.cpp, OnUpdate, goes by the wall clock."""
 
     def __init__(self, context: PluginContext):
         self._context = context
@@ -26,7 +26,7 @@ class GraspFixPlugin:
         if p.flag("disable_collisions_on_attach", False):
             log.warning("%s: <disable_collisions_on_attach> has no effect: what is held goes on "
                         "colliding", context.describe())
-        # <arm> elements are the newer way of writing: several grippers in one plugin
+        # <arm> elements are the newer syntax: several grippers in one plugin
         grasps = [self._grasp(arm, parameters) for arm in p.groups("arm") or [p]]
         rate_hz = p.number("update_rate", 5.0)
         for grasp in grasps:

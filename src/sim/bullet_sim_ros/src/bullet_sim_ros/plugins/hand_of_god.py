@@ -15,7 +15,7 @@ WORLD = "world"
 
 @plugin("libgazebo_ros_hand_of_god.so")
 class HandOfGodPlugin:
-    """Pulls towards FRAME_desired as seen from world; publishes FRAME_actual, once it has one."""
+    """Pulls the link towards FRAME_desired in `world`; while tf has that, sends FRAME_actual."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -18,9 +18,9 @@ from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix
 
 @plugin("libgazebo_ros_imu.so")
 class ImuPlugin(SensorPlugin):
-    """Rates and accelerations are in the link's axes; UpdateChild turns them the wrong way round.
+    """Rates and accelerations are in the link's axes; UpdateChild rotates them the wrong way.
 
-    `xyzOffset` moves nothing there either. No tf_prefix.
+    `xyzOffset` has no effect, as in UpdateChild. No tf_prefix.
     """
 
     def __init__(self, context: PluginContext):
@@ -37,7 +37,7 @@ class ImuPlugin(SensorPlugin):
         context.on_reset(self._imu.restart)
 
     def measure(self) -> ImuMsg:
-        """What the link does now."""
+        """The link's orientation, angular velocity and acceleration now."""
         reading = self._imu.sample()
         back = conjugate(reading.orientation)
         values = self.disturbed(np.concatenate([

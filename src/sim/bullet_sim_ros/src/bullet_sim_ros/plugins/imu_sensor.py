@@ -25,7 +25,7 @@ class ImuSensorPlugin(SensorPlugin):
         context.on_reset(self._imu.restart)
 
     def measure(self) -> ImuMsg:
-        """What the sensor feels now."""
+        """The sensor's reading now."""
         reading = self._imu.sample()
         values = self.disturbed(np.concatenate([
             multiply(self._offset, reading.orientation), reading.angular_velocity,

@@ -21,10 +21,10 @@ INERTIAL = ("world", "/map", "map")
 
 @plugin("libgazebo_ros_joint_pose_trajectory.so")
 class JointPoseTrajectoryPlugin:
-    """While it plays, only its own model is outside physics; SetTrajectory stops the world's.
+    """While a trajectory plays, only its model is without physics; SetTrajectory stops the world's.
 
-    Each point's time_from_start is how long it is shown (gazebo_ros_joint_pose_trajectory.cpp,
-    UpdateStates). The service is there, which LoadThread has only if built with ENABLE_SERVICE.
+    Each point is held for its time_from_start (gazebo_ros_joint_pose_trajectory.cpp, UpdateStates).
+    The service is always offered; LoadThread offers it only if built with ENABLE_SERVICE.
     """
 
     def __init__(self, context: PluginContext):

@@ -15,7 +15,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_joint_state_publisher.so")
 class JointStatePublisherPlugin(SensorPlugin):
-    """A name that is no joint is left out with an error line; in Gazebo it is a crash.
+    """A name that is not a joint is skipped with an error line; it makes Gazebo crash.
 
     Without `jointName` the messages are empty (gazebo_ros_joint_state_publisher.cpp).
     """

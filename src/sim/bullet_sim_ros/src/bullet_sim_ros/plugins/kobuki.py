@@ -19,7 +19,7 @@ from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 from bullet_sim_ros.plugins.kobuki_events import BaseTopic, BumperTopic, CliffTopic, WheelDropTopic
 
-RATE = 50.0  # Hz: what the real base does; gazebo_ros_kobuki.cpp, OnUpdate, is at each step
+RATE = 50.0  # Hz, that of the real base; gazebo_ros_kobuki.cpp, OnUpdate, publishes at each step
 SIDES = ("left", "center", "right")
 
 
@@ -107,7 +107,7 @@ class KobukiOutput:
         self._imu = context.advertise(names.join(base, "sensors/imu_data"), Imu, queue_size=1)
 
     def publish(self) -> None:
-        """What somebody listens to."""
+        """Publish the topics that have subscribers."""
         if self._states.get_num_connections():
             msg = convert.joints_to_msg(sample_joints(self._context.world, self._kobuki.wheels))
             msg.header.frame_id, msg.effort = self._base_link, [0.0, 0.0]
@@ -124,10 +124,10 @@ class KobukiOutput:
         return convert.stamped(msg, reading.time, self._base_link)
 
 
-TICKS = 2578.33 / math.tau  # of a wheel's encoder, a rad: 52 a turn of the motor, geared
-BATTERY = 165  # 0.1 V: full, and simulated ones stay so
+TICKS = 2578.33 / math.tau  # of a wheel's encoder per rad: 52 per turn of the motor, geared
+BATTERY = 165  # 0.1 V: full, and it stays full
 BITS = {"right": SensorState.BUMPER_RIGHT, "center": SensorState.BUMPER_CENTRE,
-        "left": SensorState.BUMPER_LEFT}  # those of the cliff sensors, too
+        "left": SensorState.BUMPER_LEFT}  # of the cliff sensors, too
 WHEEL_BITS = {"right": SensorState.WHEEL_DROP_RIGHT, "left": SensorState.WHEEL_DROP_LEFT}
 WORD = 0xFFFF
 
@@ -143,7 +143,7 @@ class CoreTopic(BaseTopic):
         self._cliffs = {cliff.side: cliff for cliff in cliffs}
 
     def publish(self) -> None:
-        """After a step."""
+        """Publish one message; to be called after a step."""
         time = self._context.world.time
         cliffs = {side: self._cliffs[side].read() for side in BITS}
         left, right = (int(joint.position * TICKS) & WORD for joint in self._kobuki.wheels)

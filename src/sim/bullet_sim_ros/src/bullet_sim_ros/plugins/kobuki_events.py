@@ -17,7 +17,7 @@ CONVERTER_SCALE, CONVERTER_GAP = 76123.0, 0.995  # Kobuki's sensor: its reading 
 
 
 class BaseTopic:
-    """Of events, `look` publishes what has changed since it last looked."""
+    """A topic of the base; those of events have `look`, which publishes changes since last time."""
 
     def __init__(self, context: PluginContext, base: str, name: str, kind: type):
         self._context = context
@@ -29,7 +29,7 @@ class BaseTopic:
 
 
 class BumperTopic(BaseTopic):
-    """Each of the three that has changed."""
+    """An event for each of the three bumpers that has changed."""
 
     def __init__(self, context: PluginContext, base: str, link: Link):
         super().__init__(context, base, "events/bumper", BumperEvent)
@@ -37,7 +37,7 @@ class BumperTopic(BaseTopic):
         self._pressed: set[str] = set()
 
     def pressed(self) -> set[str]:
-        """Names of `SECTORS`."""
+        """Those of `SECTORS` that are pressed."""
         return pressed_bumpers(self._context.world.contacts(), self._link.scoped_name,
                                self._context.model.pose)
 
@@ -53,7 +53,7 @@ class BumperTopic(BaseTopic):
 
 
 class WheelDropTopic(BaseTopic):
-    """Each of the two wheels that lost the floor or found it."""
+    """An event for each of the two wheels that lost contact with the floor or regained it."""
 
     def __init__(self, context: PluginContext, base: str, kobuki: Kobuki):
         super().__init__(context, base, "events/wheel_drop", WheelDropEvent)
@@ -65,7 +65,7 @@ class WheelDropTopic(BaseTopic):
         self._dropped: set[str] = set()
 
     def dropped(self) -> set[str]:
-        """`left`, `right`."""
+        """Those of `left` and `right` that have dropped."""
         world = self._context.world
         return self._drop.dropped(world.contacts(), world.time)
 
@@ -80,14 +80,14 @@ class WheelDropTopic(BaseTopic):
 
 
 class CliffTopic(BaseTopic):
-    """When the floor under one sensor goes away or comes back.
+    """An event when the floor under one sensor ends or begins again.
 
-    FormatError of rays that cannot be.
+    FormatError if the sensor's rays are impossible.
     """
 
     def __init__(self, context: PluginContext, base: str, side: str, threshold: float, link: Link,
                  sensor: SensorDescription):
-        """`threshold` in m: a floor this far down is none."""
+        """`threshold` in m: a floor this far down counts as a cliff."""
         super().__init__(context, base, "events/cliff", CliffEvent)
         self.side = side
         self._threshold = threshold
@@ -95,7 +95,7 @@ class CliffTopic(BaseTopic):
         self._cliff = False
 
     def read(self) -> tuple[bool, int]:
-        """Whether there is no floor, and the converter's reading."""
+        """Whether there is a cliff, and the A/D converter's reading."""
         distance = float(self._laser.sample().ranges[0])
         reading = CONVERTER_SCALE * math.atan2(CONVERTER_GAP, max(distance, 0.0))
         return distance >= self._threshold, int(reading) & 0xFFFF

@@ -18,10 +18,10 @@ Ends = tuple[str, str, str, str]  # model, link, other model, its link
 
 @plugin("libgazebo_ros_link_attacher.so")
 class LinkAttacherPlugin:
-    """What is attached stays as it is to each other.
+    """Attached links keep their present pose relative to each other.
 
     gazebo_ros_link_attacher.cpp, attach, pulls the two origins together; it has no Reset, so that a
-    reset of the world releases nothing. Here, too; links then stay as they were spawned.
+    reset of the world releases nothing. Nor does it here; links are then held as they were spawned.
     """
 
     def __init__(self, context: PluginContext):
@@ -52,7 +52,7 @@ class LinkAttacherPlugin:
         return True
 
     def _detach(self, ends: Ends) -> bool:
-        """It went well only if there is something to part, as in detach there."""
+        """Whether there was anything to release (gazebo_ros_link_attacher.cpp, detach)."""
         weld = self._held.pop(ends, None)
         if weld is None:
             return False

@@ -15,9 +15,9 @@ log = logging.getLogger("bullet_sim.plugins")
         "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
         "libgazebo_mimic_joint_plugin.so")
 class MimicJointPlugin:
-    """Held by a strong motor, so that it can grip.
+    """The joint is driven by a strong motor, so that it can grip.
 
-    roboticsgroup's mimic_joint_plugin.cpp, UpdateChild, puts it in place, through things.
+    roboticsgroup's mimic_joint_plugin.cpp, UpdateChild, sets its position, even through obstacles.
     """
 
     def __init__(self, context: PluginContext):
@@ -52,9 +52,9 @@ class MimicJointPlugin:
 @plugin("libroboticsgroup_gazebo_disable_link_plugin.so",
         "libroboticsgroup_upatras_gazebo_disable_link_plugin.so")
 class DisableLinkPlugin:
-    """Only looks whether the link is there.
+    """Only checks that the link exists.
 
-    disable_link_plugin.cpp, Load, calls Link::SetEnabled(false): the first touch wakes it again.
+    disable_link_plugin.cpp, Load, calls Link::SetEnabled(false): the first contact wakes the link.
     """
 
     def __init__(self, context: PluginContext):

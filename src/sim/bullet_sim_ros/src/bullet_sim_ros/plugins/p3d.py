@@ -1,4 +1,4 @@
-"""libgazebo_ros_p3d.so: nav_msgs/Odometry of a link as the world has it."""
+"""libgazebo_ros_p3d.so: nav_msgs/Odometry of a link's true pose and twist."""
 
 from nav_msgs.msg import Odometry
 
@@ -12,10 +12,10 @@ INERTIAL = ("world", "/world", "map", "/map")
 
 @plugin("libgazebo_ros_p3d.so")
 class P3dPlugin(SensorPlugin):
-    """Seen from another link, the twist is truly that.
+    """With another link as frame, the twist is the true one relative to that link.
 
-    The offsets are in the link's axes, so that a lumped link's are right in any pose.
-    gazebo_ros_p3d.cpp, UpdateChild, turns the former the wrong way, and adds the latter in the
+    The offsets are in the link's axes, so that those of a lumped link are right in any pose.
+    gazebo_ros_p3d.cpp, UpdateChild, rotates that twist the wrong way, and adds the offsets in the
     world's axes.
     """
 

@@ -8,9 +8,10 @@ from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, sub
 
 @plugin("libgazebo_ros_planar_move.so")
 class PlanarMovePlugin:
-    """A reset of the simulation stops it.
+    """A reset of the simulation stops the model.
 
-    gazebo_ros_planar_move.cpp has no Reset: it drives on, and is silent until time is back.
+    gazebo_ros_planar_move.cpp has no Reset: the model drives on, and nothing is published until
+    simulated time has reached its old value.
     """
 
     def __init__(self, context: PluginContext):
@@ -30,7 +31,7 @@ class PlanarMovePlugin:
         context.on_reset(self._restart)
 
     def _quantised(self, rate_hz: float) -> float:
-        """UpdateChild waits until more than the period has gone by, and counts anew from there."""
+        """The rate that results, Hz: UpdateChild waits for more than the period, then restarts."""
         timestep = self._context.world.timestep
         steps = int(1.0 / (rate_hz * timestep) + 1e-6) + 1
         return 1.0 / (steps * timestep)

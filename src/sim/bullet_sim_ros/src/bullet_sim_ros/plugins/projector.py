@@ -12,7 +12,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_projector.so")
 class ProjectorPlugin:
-    """Takes what is sent, so that nodes find their subscriber; projected light is not drawn."""
+    """Subscribes to the topics, so that publishers find a subscriber; the light is not rendered."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

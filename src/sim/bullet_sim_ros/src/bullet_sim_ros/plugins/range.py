@@ -8,7 +8,7 @@ from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 @plugin("libgazebo_ros_range.so")
 class RangePlugin(SensorPlugin):
-    """The nearest thing that any ray meets. Any `radiation` but ultrasound is infrared."""
+    """The distance of the nearest hit of any ray. Any `radiation` but ultrasound is infrared."""
 
     def __init__(self, context: PluginContext):
         p = context.parameters

@@ -27,7 +27,7 @@ SIMULATION_TYPES = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim",
                     "steer_bot_hardware_gazebo/SteerBotHardwareGazebo", "SteerBotHardwareGazebo")
 ROUNDING = 1e-9  # of a step
 NO_ROBOT = fromstring('<robot name="nobody"><link name="nobody"/></robot>')
-MOST_STEPS = 1e15  # of a control period: that is for ever
+MOST_STEPS = 1e15  # of a control period: practically for ever
 
 
 @plugin("libgazebo_ros_control.so")
@@ -108,7 +108,7 @@ class RosControlPlugin:
         return hardware, robot
 
     def _urdf(self, text: str) -> Element:
-        """The `<robot>`; of an SDF, or of nothing, one without joints."""
+        """The `<robot>`; one without joints if the text is an SDF or empty."""
         element = parse_xml(text, "the URDF parameter") if text.strip() else None
         if element is not None and element.tag == "robot":
             return element
@@ -133,7 +133,7 @@ class RosControlPlugin:
         self._hardware.write(self._timestep)
 
     def _stop(self, on: bool) -> None:
-        """Emergency stop; when it is released, running controllers start anew."""
+        """Emergency stop; when it is released, running controllers are restarted."""
         self._restart = self._restart or (self._emergency and not on)
         self._emergency = on
         self._hardware.stop(on)

@@ -10,9 +10,9 @@ from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, sub
 
 @plugin("libgazebo_ros_skid_steer_drive.so")
 class SkidSteerDrivePlugin:
-    """Without time-out; a reset of the simulation stops it.
+    """There is no time-out; a reset of the simulation stops the robot.
 
-    gazebo_ros_skid_steer_drive.cpp has neither a time-out nor a Reset: it drives on.
+    gazebo_ros_skid_steer_drive.cpp has neither a time-out nor a Reset: the robot drives on.
     """
 
     def __init__(self, context: PluginContext):

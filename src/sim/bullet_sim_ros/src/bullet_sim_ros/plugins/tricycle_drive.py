@@ -16,11 +16,11 @@ from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
 
 @plugin("libgazebo_ros_tricycle_drive.so")
 class TricycleDrivePlugin:
-    """Encoders turn left for left, and braking brakes.
+    """Encoder odometry turns left when the robot does, and braking slows the robot down.
 
     gazebo_ros_tricycle_drive.cpp, UpdateOdometryEncoder and motorController, have both the other
-    way round. A reset of the simulation stops it and sets the encoders to zero; there is no Reset
-    there, so it drives on.
+    way round. A reset of the simulation stops the robot and sets the encoders to zero; the original
+    has no Reset, so the robot drives on.
     """
 
     def __init__(self, context: PluginContext):
@@ -62,7 +62,7 @@ class TricycleDrivePlugin:
     def _update(self) -> None:
         world = self._context.world
         if self._output.wanted():
-            # publishWheelTF calls the wheels' frames by the joints' names.
+            # publishWheelTF names the wheels' frames after the joints.
             wheels = self._joints if self._wheel_tf else ()
             self._output.publish(self._odometry_source.sample(), [
                 wheel_transform(self._context.model, joint, world.time, self._prefix, joint.name)

@@ -1,4 +1,4 @@
-"""libgazebo_ros_vacuum_gripper.so: services on and off; what is near the link is held by it."""
+"""libgazebo_ros_vacuum_gripper.so: services on and off; the link holds objects near it."""
 
 from std_msgs.msg import Bool
 from std_srvs.srv import Empty, EmptyResponse

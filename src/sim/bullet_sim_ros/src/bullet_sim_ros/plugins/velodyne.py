@@ -35,7 +35,7 @@ class VelodynePlugin(SensorPlugin):
         self.publish_readings()
 
     def measure(self) -> PointCloud2:
-        """One turn."""
+        """One revolution."""
         points, seen = self._points()
         if not self._organised:
             points = points[seen][None]
@@ -46,7 +46,7 @@ class VelodynePlugin(SensorPlugin):
         return msg
 
     def _points(self) -> tuple[np.ndarray, np.ndarray]:
-        """POINTs (columns, rings), NaN where there is none, and where there is one."""
+        """POINTs (columns, rings), NaN where a ray has none, and a mask of those that have one."""
         ranges, retro = self._laser.measure()
         seen = self._within(ranges) & (retro >= self._faintest)
         if self.noise:

@@ -13,9 +13,9 @@ from bullet_sim_ros.cameras.encodings import decode
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
-_ABOVE = 0.51  # heights of the visual, from its middle: 1 % of it above its upper side
+_ABOVE = 0.51  # of the visual's height, from its middle: 1 % above its upper side
 _ABOVE_PLANE = 0.001  # m
-_COMPLAIN = 10.0  # s
+_COMPLAIN = 10.0  # s between warnings
 
 
 @plugin("libgazebo_ros_video.so")

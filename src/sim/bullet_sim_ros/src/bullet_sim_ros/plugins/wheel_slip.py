@@ -10,7 +10,7 @@ log = logging.getLogger("bullet_sim.plugins")
 
 @plugin("libgazebo_ros_wheel_slip.so", "libWheelSlipPlugin.so")
 class WheelSlipPlugin:
-    """The engine has no slip that grows with the force; one warning."""
+    """The engine has no slip that grows with the force; this is logged as a warning."""
 
     def __init__(self, context: PluginContext):
         wheels = context.description.element.findall("wheel")

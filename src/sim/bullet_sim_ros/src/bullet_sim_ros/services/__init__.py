@@ -1,7 +1,7 @@
 """The services of /gazebo: each handler runs in the loop, and turns an exception into a status.
 
-They follow gazebo_ros/src/gazebo_ros_api_plugin.cpp; functions named here are that file's, and of
-set_link_state it is setLinkState.
+They follow gazebo_ros/src/gazebo_ros_api_plugin.cpp, in which the function of set_link_state is
+setLinkState and so on.
 """
 
 import rospy
@@ -17,7 +17,7 @@ __all__ = ["forces", "joints", "lights", "links", "offer_services", "physics", "
 
 
 def offer_services(simulation: Simulation, resources: Resources) -> None:
-    """All of them."""
+    """Advertise all services of /gazebo."""
     offer_model_services(simulation, resources)
     offer_registered(simulation)
     PhysicsReconfigure(simulation)

@@ -52,7 +52,7 @@ def service(name: str, kind: type) -> Callable[[Handler], Handler]:
 
 
 def offer_registered(simulation: Simulation) -> None:
-    """Advertise all that were registered."""
+    """Advertise all registered services."""
     for name, kind, handler in _registry:
         offer(simulation.mailbox, name, kind, partial(handler, simulation))
 

@@ -16,8 +16,8 @@ from bullet_sim_ros.simulation import Simulation
 def apply_body_wrench(simulation: Simulation, request, response) -> None:
     """Force and torque on a link's centre of mass; ServiceError if request or link are wrong.
 
-    A reference frame turns them into the axes of the body, and the result is then taken along the
-    axes of the world (applyBodyWrench): with the body itself as frame nothing is turned.
+    They are transformed from the reference frame into the body's axes, and the result is applied
+    in the world's axes (applyBodyWrench): with the body itself as frame nothing is rotated.
     """
     world = simulation.world
     link = find_link(world, request.body_name, "ApplyBodyWrench: body does not exist")
@@ -37,7 +37,7 @@ def apply_body_wrench(simulation: Simulation, request, response) -> None:
 
 @service(names.APPLY_JOINT_EFFORT, ApplyJointEffort)
 def apply_joint_effort(simulation: Simulation, request, response) -> None:
-    """Effort on a joint; a fixed one takes it without moving. ServiceError if there is none."""
+    """Effort on a joint, without effect on a fixed one. ServiceError if there is no such joint."""
     world = simulation.world
     model, _, joint = find_joint(world, request.joint_name, "ApplyJointEffort: joint not found")
     check_sane("ApplyJointEffort: effort", request.effort)
@@ -48,18 +48,18 @@ def apply_joint_effort(simulation: Simulation, request, response) -> None:
 
 @service(names.CLEAR_BODY_WRENCHES, BodyRequest)
 def clear_body_wrenches(simulation: Simulation, request, _response) -> None:
-    """Those of the link with exactly this scoped name; none is no error."""
+    """Clear wrenches on the link with exactly this scoped name; if there are none, no error."""
     simulation.world.forces.drop(lambda job: isinstance(job, Wrench)
                                  and job.link.scoped_name == request.body_name)
 
 
 @service(names.CLEAR_JOINT_FORCES, JointRequest)
 def clear_joint_forces(simulation: Simulation, request, _response) -> None:
-    """Those of all joints with this unscoped name; none is no error."""
+    """Clear efforts on all joints with this unscoped name; if there are none, no error."""
     simulation.world.forces.drop(lambda job: isinstance(job, Effort)
                                  and job.joint.name == request.joint_name)
 
 
 def _span(world: World, request) -> Span:
-    """A start in the past is now."""
+    """When the force acts; a start in the past means now."""
     return Span(max(request.start_time.to_sec(), world.time), request.duration.to_sec())

@@ -1,4 +1,4 @@
-"""Where a joint is; its stops, damping and motor."""
+"""Get a joint's position and rate; set its limits, damping and motor."""
 
 from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import GetJointProperties, SetJointProperties
@@ -15,7 +15,7 @@ NOT_NEGATIVE = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor", "fmax")
 
 @service(names.GET_JOINT_PROPERTIES, GetJointProperties)
 def get_joint_properties(simulation: Simulation, request, response) -> None:
-    """Position and rate; as in getJointProperties the type is REVOLUTE, and damping left out.
+    """Position and rate; as in getJointProperties, type is REVOLUTE and damping is not filled in.
 
     ServiceError without such a joint.
     """
@@ -29,7 +29,7 @@ def get_joint_properties(simulation: Simulation, request, response) -> None:
 
 @service(names.SET_JOINT_PROPERTIES, SetJointProperties)
 def set_joint_properties(simulation: Simulation, request, response) -> None:
-    """Empty arrays leave what is; of the others the first number counts, joints have one axis.
+    """Empty arrays change nothing; in others the first number counts, as joints have one axis.
 
     ServiceError if there is no such joint, or a number is impossible.
     """
@@ -44,7 +44,7 @@ def set_joint_properties(simulation: Simulation, request, response) -> None:
 
 
 def _check(config: ODEJointProperties) -> None:
-    """All numbers are looked at, those that have no effect here too."""
+    """ServiceError if any number is impossible, including those that have no effect here."""
     for field in config.__slots__:
         for value in getattr(config, field):
             if not abs(value) <= convert.LARGEST:

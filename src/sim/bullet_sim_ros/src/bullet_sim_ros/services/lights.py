@@ -1,4 +1,4 @@
-"""Lights: what they are like, changing them, taking them away."""
+"""Get and set the properties of lights, and delete lights."""
 
 from dataclasses import replace
 
@@ -16,7 +16,9 @@ ATTENUATION = ("constant", "linear", "quadratic")
 
 @service(names.GET_LIGHT_PROPERTIES, GetLightProperties)
 def get_light_properties(simulation: Simulation, request, response) -> None:
-    """Diffuse colour and attenuation, all that the message has; ServiceError if it is unknown."""
+    """Diffuse colour and attenuation, all that the message has; ServiceError if there is no such
+    light.
+    """
     light = _light(simulation.world.scene, request.light_name, "getLightProperties")
     response.diffuse = ColorRGBA(*light.diffuse)
     for term in ATTENUATION:
@@ -50,7 +52,7 @@ def set_light_properties(simulation: Simulation, request, response) -> None:
 
 @service(names.DELETE_LIGHT, DeleteLight)
 def delete_light(simulation: Simulation, request, response) -> None:
-    """ServiceError if there is no such light: the words of deleteLight name a time-out."""
+    """ServiceError if there is no such light; as in deleteLight, its text is about a time-out."""
     scene, name = simulation.world.scene, request.light_name
     if name not in scene.lights:
         raise ServiceError(f'DeleteLight: Timeout reached while removing light "{name}"')

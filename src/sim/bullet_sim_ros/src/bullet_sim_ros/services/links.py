@@ -1,4 +1,4 @@
-"""Where a link is, what it weighs, and changing both."""
+"""Get and set the state and the mass properties of links."""
 
 from gazebo_msgs.msg import LinkState
 from gazebo_msgs.srv import GetLinkProperties, GetLinkState, SetLinkProperties, SetLinkState
@@ -42,9 +42,9 @@ def _set_link_state(simulation: Simulation, request, response) -> None:
 
 
 def set_link_state(world: World, state: LinkState) -> None:
-    """Move a link; the twist is less that of the frame, a link always (setLinkState).
+    """Move a link; the frame's twist is subtracted, and a frame must be a link (setLinkState).
 
-    ServiceError if link or frame are not there, or a number is impossible.
+    ServiceError if link or frame do not exist, or a number is impossible.
     """
     link = find_link(world, state.link_name, "SetLinkState: link does not exist")
     check_sane("SetLinkState: pose and twist", state.pose, state.twist)
@@ -57,7 +57,7 @@ def set_link_state(world: World, state: LinkState) -> None:
 
 @service(names.GET_LINK_PROPERTIES, GetLinkProperties)
 def get_link_properties(simulation: Simulation, request, response) -> None:
-    """Mass, centre of mass and inertia; the orientation of the latter's axes is left out.
+    """Mass, centre of mass and inertia; the orientation of the inertia's axes is left out.
 
     ServiceError without such a link.
     """

@@ -22,9 +22,9 @@ LINK_UNKNOWN = "link not found, did you forget to scope the link by model name?"
 
 
 def find_model(world: World, name: str, missing: str) -> Model:
-    """The model of that name; ServiceError(`missing`) if there is none. Nested ones are not meant.
+    """The model of that name, not a nested one; ServiceError(`missing`) if there is none.
 
-    Only the services that read take nested models: see `find_part`.
+    Only services that read accept nested models: see `find_part`.
     """
     part = find_part(world, name, missing)
     if part.name:
@@ -43,7 +43,7 @@ def find_part(world: World, name: str, missing: str) -> NestedModel:
 def find_link(world: World, name: str, missing: str) -> Link:
     """A link by `model::link`, or by a name that is unique; ServiceError(`missing`) if none is.
 
-    A link that lumping of fixed joints took away is none.
+    A link that was lumped into another one by a fixed joint is not found.
     """
     try:
         link = world.link(name)
@@ -71,14 +71,14 @@ def seen_from(world: World, name: str, pose: Pose, twist: Twist,
 
 
 def check_sane(what: str, *values: Any) -> None:
-    """ServiceError if a number of these messages, sequences or numbers is not finite, or huge."""
+    """ServiceError if a number in these messages, sequences or numbers is not finite, or huge."""
     if not convert.is_sane(*values):
         raise ServiceError(f"{what} must be finite and not beyond {convert.LARGEST:g}")
 
 
 def find_joint(world: World, name: str, missing: str) -> tuple[Model, JointDescription,
                                                                 Joint | None]:
-    """The first joint of that name, unscoped or `model::joint`; no Joint if it is held fixed.
+    """The first joint of that name, unscoped or `model::joint`; its Joint is None if it is fixed.
 
     ServiceError(`missing`) if there is none.
     """

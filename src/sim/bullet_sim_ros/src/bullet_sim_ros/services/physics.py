@@ -1,4 +1,4 @@
-"""Step, update rate and gravity; the numbers of ODE that Bullet has no use for are only kept."""
+"""Step, update rate and gravity; ODE's parameters that Bullet does not use are only stored."""
 
 from gazebo_msgs.msg import ODEPhysics
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
@@ -10,13 +10,13 @@ from bullet_sim_ros.services.answers import ServiceError, done, service
 from bullet_sim_ros.services.physics_reconfigure import FIELDS
 from bullet_sim_ros.simulation import Simulation
 
-# Fields of gazebo_msgs/ODEPhysics, which Physics.cfg names alike, and of our PhysicsDescription.
+# Field of gazebo_msgs/ODEPhysics, of the same name in Physics.cfg: field of PhysicsDescription.
 ODE = {name: FIELDS[name][0] for name in ODEPhysics.__slots__ if FIELDS[name][0]}
 
 
 @service(names.GET_PHYSICS_PROPERTIES, GetPhysicsProperties)
 def get_physics_properties(simulation: Simulation, _request, response) -> None:
-    """As the world is now; `sor_pgs_rms_error_tol` is 0, which getPhysicsProperties leaves out."""
+    """The present values; `sor_pgs_rms_error_tol` is 0, as getPhysicsProperties never sets it."""
     description = simulation.world.description
     physics = description.physics
     response.time_step = physics.max_step_size

@@ -27,14 +27,14 @@ FIELDS = {  # name: field of PhysicsDescription, least, greatest, description
     "max_contacts": ("max_contacts", 0, 10_000_000, "Of two bodies"),
 }
 GRAVITY = ("gravity_x", "gravity_y", "gravity_z")
-GRAVITY_LIMIT = 100.0  # m/s^2, to both sides
-UNUSED = -1.0  # of what the world has no number for
+GRAVITY_LIMIT = 100.0  # m/s^2, in both directions
+UNUSED = -1.0  # the value of parameters that the world does not have
 
 
 class PhysicsReconfigure:
-    """Writes only what was changed, so that what set_physics_properties set meanwhile stays.
+    """Writes only changed values, so that those set by set_physics_properties meanwhile stay.
 
-    physicsReconfigureCallback writes all of its numbers, those that are out of date among them.
+    physicsReconfigureCallback writes all values, including those that are out of date.
     """
 
     def __init__(self, simulation: Simulation):
@@ -44,7 +44,7 @@ class PhysicsReconfigure:
         rospy.loginfo("Physics dynamic reconfigure ready.")
 
     def _change(self, values: dict[str, Any]) -> None:
-        """In a ROS thread; at first with the world's own values."""
+        """Called in a ROS thread; the first time with the world's own values."""
         changed = {name: value for name, value in values.items()
                    if value != self._last.get(name, value)}
         if changed:

@@ -1,4 +1,4 @@
-"""Where models are, and putting them elsewhere."""
+"""Get and set the poses, twists and joint positions of models."""
 
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SetModelConfiguration, SetModelState
@@ -40,7 +40,7 @@ def _set_model_state(simulation: Simulation, request, response) -> None:
 def set_model_state(world: World, state: ModelState) -> None:
     """Move a model and set its velocity; both are in the axes of the reference entity.
 
-    ServiceError if model or entity are not there, or a number is impossible.
+    ServiceError if model or entity do not exist, or a number is impossible.
     """
     model = find_model(world, state.model_name, "SetModelState: model does not exist")
     check_sane("SetModelState: pose and twist", state.pose, state.twist)
@@ -54,7 +54,7 @@ def set_model_state(world: World, state: ModelState) -> None:
 
 @service(names.SET_MODEL_CONFIGURATION, SetModelConfiguration)
 def set_model_configuration(simulation: Simulation, request, response) -> None:
-    """Joint positions at once; unknown joints are ignored (Gazebo's Model::SetJointPositions).
+    """Set joint positions at once; unknown joints are ignored (Model::SetJointPositions).
 
     ServiceError if there is no such model, or the positions are impossible.
     """
@@ -71,7 +71,7 @@ def set_model_configuration(simulation: Simulation, request, response) -> None:
 
 
 def spawn_pose(world: World, request) -> Pose:
-    """The wanted pose of a spawn request, in the world; ServiceError if it is impossible."""
+    """The initial pose of a spawn request, in the world; ServiceError if it is impossible."""
     check_sane("SpawnModel: initial_pose", request.initial_pose)
     frame, _ = find_frame(
         world, request.reference_frame,
@@ -84,8 +84,8 @@ def spawn_pose(world: World, request) -> Pose:
 def is_turnless(pose: PoseMsg) -> bool:
     """Whether the orientation is (0, 0, 0, 0), as in a message that was not filled in.
 
-    In the arithmetic of spawnSDFModel and updateSDFAttributes such a turn makes all others vanish:
-    that of the reference frame, and the model's own pose.
+    In the arithmetic of spawnSDFModel and updateSDFAttributes such a quaternion cancels the
+    rotation of the reference frame and the model's own pose.
     """
     turn = pose.orientation
     return not any((turn.x, turn.y, turn.z, turn.w))

@@ -1,4 +1,4 @@
-"""The world as a whole: what is in it, pause, reset."""
+"""The world as a whole: its properties and those of its models, pause, step, reset."""
 
 from collections.abc import Callable
 from functools import partial
@@ -13,7 +13,7 @@ from bullet_sim_ros.simulation import Simulation
 
 
 def _register(name: str, act: Callable[[Simulation], None]) -> None:
-    """A service without fields."""
+    """Register a service of type std_srvs/Empty."""
     service(name, Empty)(lambda simulation, _request, _response: act(simulation))
 
 
@@ -30,7 +30,7 @@ _register(names.RESET_SIMULATION, Simulation.reset)
 
 @service(names.GET_WORLD_PROPERTIES, GetWorldProperties)
 def get_world_properties(simulation: Simulation, _request, response) -> None:
-    """Time and the models' names, in the order they came."""
+    """Time and the models' names, in the order in which they were added."""
     response.sim_time = simulation.world.time
     response.model_names = list(simulation.world.models)
     response.rendering_enabled = True
@@ -39,7 +39,7 @@ def get_world_properties(simulation: Simulation, _request, response) -> None:
 
 @service(names.GET_MODEL_PROPERTIES, GetModelProperties)
 def get_model_properties(simulation: Simulation, request, response) -> None:
-    """Names of what a model consists of, unscoped. ServiceError without such a model."""
+    """The unscoped names of a model's parts. ServiceError without such a model."""
     part = find_part(simulation.world, request.model_name,
                      "GetModelProperties: model does not exist")
     response.parent_model_name = part.parent_name

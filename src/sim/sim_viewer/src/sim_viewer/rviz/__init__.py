@@ -1,1 +1,1 @@
-"""What rviz shows, for the page: displays, their configuration, and tools that publish."""
+"""RViz in the page: displays, their configuration, and tools that publish."""

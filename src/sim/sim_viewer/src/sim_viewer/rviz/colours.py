@@ -8,7 +8,7 @@ from sim_viewer.rviz.options import rgb
 
 
 def rgba(options: dict[str, Any], color: str = "Color", alpha: str = "Alpha") -> tuple:
-    """Four numbers from 0 to 255 of two options; a display without an alpha is opaque."""
+    """Red, green, blue, alpha, 0 to 255, from two options; without an alpha option opaque."""
     return (*rgb(options[color]), round(255 * options.get(alpha, 1.0)))
 
 
@@ -33,7 +33,7 @@ def between(values: np.ndarray, low: str, high: str) -> np.ndarray:
 
 
 def spread(values: np.ndarray, bounds: tuple[float, float] | None) -> np.ndarray:
-    """Values from 0 to 1 between these bounds, or between their own; what is no number is 0."""
+    """Values scaled to 0..1 from these bounds, or from their own; NaN and infinity become 0."""
     values = np.where(np.isfinite(values), values, np.nan).astype(float)
     if bounds is None:
         known = values[~np.isnan(values)]

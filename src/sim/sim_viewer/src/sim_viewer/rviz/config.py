@@ -20,11 +20,11 @@ TOOL_TOPICS = {  # by rviz's class: the page's name and rviz's topic
     "rviz/PublishPoint": ("point", "/clicked_point"),
 }
 TOPICS = dict(TOOL_TOPICS.values())
-BEGINNING = ("rviz/Grid", "rviz/RobotModel", "rviz/Map", "rviz/LaserScan")  # without a file
+BEGINNING = ("rviz/Grid", "rviz/RobotModel", "rviz/Map", "rviz/LaserScan")  # shown without a file
 
 
 class ConfigError(ValueError):
-    """A file of which nothing can be shown; the text names it, the place and what is wrong."""
+    """A file that cannot be used; the text names it, the line and what is wrong."""
 
 
 class Loader(yaml.SafeLoader):
@@ -53,7 +53,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
         read = Loader(data.decode("utf-8")).get_single_data()
     except UnicodeDecodeError:
         raise ConfigError(f"{path} is not text; give a .rviz file") from None
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise ConfigError(f"{path}{_where(error)}: this is not valid YAML: {_what(error)}") \
             from None
     try:
@@ -65,8 +65,8 @@ def read_config(path: str | Path) -> dict[str, Any]:
 def parse(read: Any) -> dict[str, Any]:
     """`fixed_frame`, `background`, `displays`, `topics` of tools, and `view` of a file's content.
 
-    A display is {class, name, enabled, topic, options, warnings, supported}; those of groups stand
-    in line with the others. ConfigError where the content is no configuration of rviz.
+    A display is {class, name, enabled, topic, options, warnings, supported}; those in groups are
+    listed among the others. ConfigError if the content is not a configuration of rviz.
     """
     if not isinstance(read, Mapping) or not isinstance(read.get("Visualization Manager"), Mapping):
         raise ConfigError("there is no `Visualization Manager:`, which rviz writes in each .rviz "
@@ -84,7 +84,7 @@ def parse(read: Any) -> dict[str, Any]:
 
 
 def beginning() -> dict[str, Any]:
-    """What is shown without a file: the fixed frame is whatever there is."""
+    """The configuration without a file; the empty fixed frame stands for any that exists."""
     return {"fixed_frame": "", "background": BACKGROUND, "topics": TOPICS, "view": {},
             "displays": [_display({"Class": name, "Enabled": True}, True) for name in BEGINNING]}
 
@@ -162,7 +162,7 @@ def _topics(tools: Any) -> dict[str, str]:
 
 
 def _view(views: Any) -> dict[str, Any]:
-    """The camera: `class`, numbers, and the place that is looked at."""
+    """The camera: `class`, `frame`, `focus` (the focal point) and numbers."""
     current = _mapping(_mapping(views, "Views").get("Current"), "Views: Current")
     named = {"distance": "Distance", "pitch": "Pitch", "yaw": "Yaw", "x": "X", "y": "Y",
              "scale": "Scale", "angle": "Angle"}

@@ -1,8 +1,8 @@
 """`rviz_display`: one display of one page, from its topic to frames of drawing.py.
 
 Events are bytes, a frame, or {"status": [[name, level, text]], "namespaces": of markers}. The page
-answers a frame by `rviz_drawn` (answers.py) once it is drawn, and only then comes the next: the
-newest there is by then.
+confirms each frame by `rviz_drawn` (answers.py) once it is drawn, and only then the next one, the
+newest by then, is sent.
 """
 
 import asyncio
@@ -32,13 +32,13 @@ from sim_viewer.tools.names import is_topic
 from sim_viewer.transforms import Transforms
 
 RATE_HZ = 15.0  # of frames, at most
-LONGEST_REST = 0.5  # s between two looks
-STATUS_PERIOD = 0.5  # s between two that differ
+LONGEST_REST = 0.5  # s at most between two checks for something new
+STATUS_PERIOD = 0.5  # s at least between two status events
 LARGEST_MESSAGE = 1 << 24  # bytes read at once
 
 
 class Displays(dict):
-    """Those of all pages, by client and the page's number."""
+    """The displays of all pages, by client and the display's number."""
 
     def __init__(self, node: Node):
         super().__init__()
@@ -62,18 +62,18 @@ class Display:
         self._view = RosView(context.node, self._key, self._wanted[1])
         self._showing = Showing(kind, self._wanted[0], self._view, self._read)
         self._pace = Pace()
-        self._parts: list[Part] = []  # of the frame under way
+        self._parts: list[Part] = []  # of the frame that was sent last
         self._known: set[str] = set()  # keys of parts that the page has
         self._last = b""
-        self._status: tuple[Any, float] = (None, 0.0)  # the last one, and when
+        self._status: tuple[Any, float] = (None, 0.0)  # the last one, and when the next may be sent
         self._news = asyncio.Event()
         self._closing = contextlib.ExitStack()
-        self._lock = threading.Lock()  # a page may go while its display is being opened
+        self._lock = threading.Lock()  # a page may disconnect while its display is being opened
         self._ended = False
         self._task: asyncio.Task | None = None
 
     async def start(self) -> None:
-        """Refused where another display of the page has the number."""
+        """Refused if another display of the page has the number."""
         shown: Displays = self._context.node.shared(Displays)
         if self._key in shown:
             raise Refused(f"display is {self._key[1]}, which is another one's number")
@@ -91,11 +91,11 @@ class Display:
 
     @property
     def drawer(self) -> Drawer:
-        """What it shows, and how."""
+        """The display's state, which draws its parts."""
         return self._showing.drawer
 
     def look_soon(self) -> None:
-        """There is something new; in the loop."""
+        """Wake the display, as there is something new; in the loop."""
         self._news.set()
 
     def drawn(self, number: int) -> None:
@@ -105,7 +105,7 @@ class Display:
             self._news.set()
 
     def change(self, options: dict[str, Any], frame: str) -> None:
-        """Refused for options that do not fit; in the loop."""
+        """Set options and fixed frame; Refused if the options are invalid; in the loop."""
         self._wanted = _checked(self._kind, options), frame.lstrip("/")
         self._news.set()
 
@@ -178,7 +178,7 @@ class Display:
     async def _draw(self) -> None:
         try:
             data = await self._context.run_in_thread(self._look)
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self._showing.stumble(error)
             return
         if data:
@@ -188,7 +188,7 @@ class Display:
         """A frame, if there is something new."""
         self._view.most_points = self._pace.most_points
         self._showing.change(*self._wanted)
-        with np.errstate(all="ignore"):  # of numbers that somebody else made
+        with np.errstate(all="ignore"):  # caused by numbers of another node
             parts = self._showing.look()
             if parts is None:
                 return None

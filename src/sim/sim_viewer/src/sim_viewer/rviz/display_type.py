@@ -1,4 +1,4 @@
-"""What a kind of display is: its name, messages, options and how it is drawn. Without ROS."""
+"""A type of display: its name, messages, options and how it is drawn. Without ROS."""
 
 import abc
 from collections.abc import Callable
@@ -23,33 +23,33 @@ class NoTransform(Problem):
 
 
 class View(Protocol):
-    """What a display may ask while it draws."""
+    """What a display may request while it draws."""
 
-    now: float  # s, in the time that stamps are in
-    wall: float  # s of a clock that never jumps
-    most_points: int  # that the page can take at once
+    now: float  # s, ROS time
+    wall: float  # s, monotonic clock
+    most_points: int  # that the page can draw at once
     fixed_frame: str
 
     def pose(self, frame: str, stamp: int = 0) -> Pose:
-        """Of a frame in the fixed frame at a time in ns, 0: the newest. Raises NoTransform."""
+        """A frame's pose in the fixed frame at a time in ns, 0: the newest. Raises NoTransform."""
 
     def links(self, visuals: dict[str, tuple[Visual, ...]]) -> dict[str, Any]:
-        """Fields of a part of the kind `links`, with meshes that the page can load."""
+        """The fields of a part of kind `links`, with meshes that the page can load."""
 
     def robot(self, text: str) -> dict[str, tuple[Visual, ...]]:
-        """What each link of a URDF looks like. FormatError of what is none."""
+        """The visuals of each link of a URDF. FormatError if the text is not a URDF."""
 
     def resolve(self, uri: str) -> str:
-        """The file that `package://...` or `file://...` is. Problem where there is none."""
+        """The file of a `package://...` or `file://...` URI. Problem if there is none."""
 
     def jpeg(self, message: Any, width: int) -> bytes:
-        """A picture's message, at most `width` px wide. Problem where it cannot be shown."""
+        """An image message as JPEG, at most `width` px wide. Problem if it cannot be shown."""
 
     def frames(self) -> dict[str, str]:
         """All frames of tf and their parents; a root's is empty."""
 
     def parameter(self, name: str) -> Any:
-        """Of the ROS parameter server; None where there is none."""
+        """The value of a ROS parameter; None if it is not set."""
 
 
 class Drawer(abc.ABC):
@@ -57,7 +57,7 @@ class Drawer(abc.ABC):
 
     statuses: Statuses
     namespaces: list[str] = []  # of markers
-    most_kept = 500  # messages, the newest, that there is room for
+    most_kept = 500  # how many of the newest messages there is room for
 
     def __init__(self, options: dict[str, Any]):
         self.options = options
@@ -65,50 +65,50 @@ class Drawer(abc.ABC):
         self.changed = False  # since the last drawing
 
     def restyle(self, options: dict[str, Any]) -> None:
-        """Other options from now on."""
+        """Use other options from now on."""
         self.options, self.changed = options, True
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:  # noqa: B027 (TF has none)
-        """A message; `pose` is its frame's at its stamp, if the type waits for that.
+        """Take a message; `pose` is that of its frame at its stamp, if the type waits for that.
 
-        Problem where it cannot be shown.
+        Problem if it cannot be shown.
         """
 
     def place_anew(self) -> bool:
-        """Another fixed frame or time: whether it places what it has itself, and needs no messages
-        again."""
+        """The fixed frame has changed or time was reset. Returns whether the drawer places its
+        contents anew by itself, without receiving its messages again."""
         return False
 
     @abc.abstractmethod
     def draw(self, view: View) -> list[Part] | None:
-        """All there is to see, or None where that has not changed. Problem where there is none."""
+        """All parts, or None if they have not changed. Problem if they cannot be drawn."""
 
 
 @dataclass(frozen=True)
 class DisplayType:
-    """`rviz/...` and what belongs to it."""
+    """The properties of a display type `rviz/...`."""
 
     name: str
     make: Callable[[dict[str, Any]], Drawer]
     options: tuple[Option, ...] = ()
     messages: tuple[str, ...] = ()  # types that its topic may have; none: it has no topic
-    topic: str = ""  # where it looks at first
+    topic: str = ""  # the default
     topic_key: str = "Topic"  # in a .rviz file
     at_stamp: bool = True  # whether a message waits for its frame's pose at its stamp
     every: bool = False  # whether each message counts, not only the newest
     beside: str = ""  # the type of a second topic: a map's changes, a camera's CameraInfo
     beside_topic: Callable[[str], str] = str  # its name, from the first one's
     most_bytes: int = 16 << 20  # of a message: Python's objects are twenty times as large
-    period: float = 0.0  # s between two looks without a message; 0: none needed
+    period: float = 0.0  # s between two drawings without a message; 0: not needed
 
     def as_json(self) -> dict[str, Any]:
-        """For the page."""
+        """The type's data for the page."""
         return {"class": self.name, "messages": self.messages, "topic": self.topic,
                 "options": [option.as_json() for option in self.options]}
 
 
 class Simple(Drawer):
-    """Draws messages one by one by a function of message, options, most points and the pose."""
+    """Draws messages one by one with a function of message, options, most points and pose."""
 
     def __init__(self, options: dict[str, Any], draw: Callable[..., list[Part]]):
         super().__init__(options)
@@ -145,6 +145,6 @@ class Simple(Drawer):
 
 
 def simple(draw: Callable[..., tuple[list[Part], Statuses]]) -> Callable[[dict], Simple]:
-    """For DisplayType.make: `draw(message, options, most_points, pose)` gives parts in the frame of
-    the message, whose pose in the fixed frame that is, and statuses."""
+    """For DisplayType.make: `draw(message, options, most_points, pose)` returns parts in the
+    message's frame, and statuses; `pose` is that frame's in the fixed frame."""
     return lambda options: Simple(options, draw)

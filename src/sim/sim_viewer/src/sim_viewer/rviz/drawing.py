@@ -1,4 +1,4 @@
-"""A drawing: parts that the page knows how to draw, and the bytes by which it gets them.
+"""A drawing: parts that the page knows how to draw, and their encoding in bytes.
 
 A frame is its number (uint32), the length of its head (uint32), the head as JSON, padded to 4
 bytes, then the arrays, each at a multiple of 4 bytes. The head is a list of parts with `kind`,
@@ -23,14 +23,14 @@ ALIGNED = 4  # bytes
 
 @dataclass
 class Part:
-    """One kind of things with the arrays (float32 or uint8) and fields that the kind needs.
+    """Things of one kind, with the arrays (float32 or uint8) and fields of that kind.
 
     points: position (n, 3) m, colour (n, 4); size, unit ("m" or "px"), round
     lines: position (2 n, 3), colour (2 n, 4); width m
     triangles: position (3 n, 3), colour (3 n, 4)
     shapes: rows (n, 10) of pose and scale, colour (n, 4); shape: cube, sphere, cylinder, cone
     texts: texts [{text, position, height m, colour}]
-    map: cells (height * width) of grey levels or palette; width, height, resolution m, ...
+    map: cells (height * width), uint8 views of int8; width, height in cells, size m, ...
     camera: jpeg, the bytes of a file; size px, focal_length, principal_point, ...
     links: rows (n, 7) of poses; links as page_scene has them
     """
@@ -39,11 +39,11 @@ class Part:
     arrays: dict[str, np.ndarray] = field(default_factory=dict)
     fields: dict[str, Any] = field(default_factory=dict)
     pose: Pose = IDENTITY
-    key: str = ""  # of arrays that are large and stay
+    key: str = ""  # names arrays that are large and seldom change
 
 
 def frame(number: int, content: bytes) -> bytes:
-    """What is sent."""
+    """The bytes of a frame."""
     return struct.pack("<I", number) + content
 
 

@@ -1,4 +1,4 @@
-"""What a hand in the page does to an interactive marker, as its server is told of it."""
+"""Reports what a user of the page does to an interactive marker to the marker's server."""
 
 from typing import Any
 
@@ -24,10 +24,10 @@ MOST_ENTRY = 2 ** 32  # ids of a menu's entries
 @operation("rviz_feedback", control=True)
 async def rviz_feedback(context: Context, display: int, marker: str, control: str, event: str,
                         pose: list, point: list, entry: int = 0) -> None:
-    """A control of a marker was touched. `marker` is its key in the frame, `pose` 7 numbers and
-    `point`, where the pointer meets it, 3 or none, in m in its header's frame.
+    """A control of a marker was used. `marker` is its key in the frame, `pose` 7 numbers, `point`,
+    where the mouse pointer hits it, 3 or none; in m and the marker's header's frame.
 
-    Refused for what there is not, and for what are no such numbers.
+    Refused for unknown displays, markers, controls and events, and for invalid numbers.
     """
     shown, found = _find(context, display, marker)
     if control not in found.control_names:
@@ -47,7 +47,7 @@ async def rviz_feedback(context: Context, display: int, marker: str, control: st
 async def rviz_menu(context: Context, display: int, marker: str) -> list[dict[str, Any]]:
     """The entries of a marker's menu: `id`, `parent`, `title` and whether it `works`.
 
-    Refused for what there is not.
+    Refused for unknown displays and markers.
     """
     return _find(context, display, marker)[1].menu()
 

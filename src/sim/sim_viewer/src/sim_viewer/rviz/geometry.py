@@ -17,7 +17,7 @@ AXES = ((0, (255, 0, 0)), (1, (0, 255, 0)), (2, (0, 0, 255)))
 
 
 def finite(values: Any) -> np.ndarray:
-    """As float64; Problem where one is no number."""
+    """The values as float64; Problem if one is not finite."""
     array = np.asarray(values, float)
     if not np.isfinite(array).all():
         raise Problem(INVALID)
@@ -31,9 +31,9 @@ def pose_row(message: Any) -> list[float]:
 
 
 def pose_rows(messages: list) -> np.ndarray:
-    """(n, 7), quaternions of unit length; Problem for what are no numbers or no rotations.
+    """(n, 7), quaternions of unit length; Problem for values not finite, or not near unit length.
 
-    All zeros is what nobody set: no rotation, as rviz has it.
+    A quaternion of zeros was not set: it means no rotation, as in rviz.
     """
     rows = finite([pose_row(one) for one in messages]).reshape(-1, 7)
     rows[~rows[:, 3:].any(axis=1), 6] = 1.0
@@ -50,12 +50,12 @@ def pose_of(message: Any) -> Pose:
 
 
 def row_pose(row: np.ndarray) -> Pose:
-    """From x, y, z and the quaternion."""
+    """A pose from x, y, z and the quaternion."""
     return Pose(tuple(map(float, row[:3])), tuple(map(float, row[3:7])))
 
 
 def points(messages: Any) -> np.ndarray:
-    """(n, 3) of geometry_msgs/Point; Problem for what are no numbers."""
+    """(n, 3) of geometry_msgs/Point; Problem if values are not finite."""
     return finite([(one.x, one.y, one.z) for one in messages]).reshape(-1, 3)
 
 
@@ -132,7 +132,7 @@ def strip(positions: np.ndarray, colours: Any, width: float, closed: bool = Fals
 
 
 def lines(positions: np.ndarray, colours: Any, width: float) -> Part:
-    """Between each two of the points (2 n, 3), `width` m wide."""
+    """Line segments between pairs of the points (2 n, 3), `width` m wide."""
     count = len(positions)
     return Part("lines", {"position": positions.astype(np.float32),
                           "colour": np.broadcast_to(colours, (count, 4)).astype(np.uint8)},

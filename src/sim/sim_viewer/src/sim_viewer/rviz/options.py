@@ -1,4 +1,4 @@
-"""A display's options by rviz's names, with what each may be. Without ROS."""
+"""A display's options by rviz's names, with their allowed values. Without ROS."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -23,14 +23,14 @@ class Option:
     high: float = 1e6
 
     def check(self, value: Any) -> Any:
-        """The value, as this kind has it; ValueError says why it cannot be."""
+        """The checked value; ValueError says why it is not allowed."""
         read = getattr(self, f"_{self.kind}")(value)
         if read is None:
             raise ValueError(f"{self.name} is {value!r:.40}, which is not {self._expected()}")
         return read
 
     def as_json(self) -> dict[str, Any]:
-        """For the page."""
+        """The option's data for the page."""
         return asdict(self)
 
     def _expected(self) -> str:
@@ -44,7 +44,7 @@ class Option:
     def _number(self, value: Any) -> float | None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             return None
-        return value if self.low <= value <= self.high else None  # what is no number is not
+        return value if self.low <= value <= self.high else None  # NaN is not
 
     def _integer(self, value: Any) -> int | None:
         return value if isinstance(value, int) and self._number(value) is not None else None
@@ -70,7 +70,7 @@ class Option:
 
 
 def rgb(text: str) -> tuple[int, int, int] | None:
-    """Red, green and blue, 0 to 255, of rviz's `255; 0; 0`; None where it is no colour."""
+    """Red, green and blue, 0 to 255, of rviz's `255; 0; 0`; None if it is not a colour."""
     try:
         red, green, blue = (int(part) for part in text.split(";"))
     except ValueError:
@@ -84,7 +84,7 @@ def defaults(options: tuple[Option, ...]) -> dict[str, Any]:
 
 
 def check_all(options: tuple[Option, ...], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Defaults with what is `given`; ValueError where that is unknown or does not fit."""
+    """The defaults with the `given` values; ValueError for unknown options and invalid values."""
     known = {option.name: option for option in options}
     if unknown := sorted(set(given) - set(known)):
         raise ValueError(f"there is no option {unknown[0]!r:.40}; "

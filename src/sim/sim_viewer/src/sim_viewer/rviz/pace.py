@@ -1,4 +1,4 @@
-"""How much a page takes: one frame at a time, and no more points than it draws in time."""
+"""How much is sent to a page: one frame at a time, and no more points than it draws in time."""
 
 FEWEST, MOST = 10_000, 200_000  # points
 SLOW, QUICK = 0.5, 0.2  # s from sending a frame until it is drawn
@@ -6,12 +6,12 @@ LESS, MORE = 0.5, 1.25  # by how much the number of points changes then
 
 
 class Pace:
-    """Of one display; times are in s of a clock that never jumps."""
+    """The pace of one display; times are in s of a monotonic clock."""
 
     def __init__(self) -> None:
         self.most_points = MOST
         self._number = 0
-        self._sent: float | None = None  # when the frame under way was
+        self._sent: float | None = None  # when the frame being drawn was sent
         self._large = False
 
     @property
@@ -20,13 +20,13 @@ class Pace:
         return self._sent is None
 
     def sent(self, points: int, now: float) -> int:
-        """A frame with so many points goes out; its number."""
+        """A frame with so many points is sent; returns its number."""
         self._number += 1
         self._sent, self._large = now, points >= self.most_points / 2
         return self._number
 
     def drawn(self, number: int, now: float) -> bool:
-        """The page has drawn a frame: whether it is the one under way."""
+        """The page has drawn a frame; returns whether it is the one that was sent last."""
         if self._sent is None or number != self._number:
             return False
         took, self._sent = now - self._sent, None

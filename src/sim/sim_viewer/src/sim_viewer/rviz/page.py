@@ -1,4 +1,4 @@
-"""What the page's tab RViz asks first: displays that there are, the configuration, frames."""
+"""What the page's RViz tab requests first: types of displays, the configuration, frames."""
 
 from typing import Any
 
@@ -13,15 +13,15 @@ from sim_viewer.transforms import NoPose, Transforms
 
 @operation("rviz_types")
 async def rviz_types(context: Context) -> list[dict[str, Any]]:
-    """All kinds of displays, with their options."""
+    """All types of displays, with their options."""
     return [kind.as_json() for kind in TYPES.values()]
 
 
 @operation("rviz_config")
 async def rviz_config(context: Context) -> dict[str, Any]:
-    """The file that the page was started with, read anew, as config.py has it; else a few displays.
+    """The file that the page was started with, read anew by config.py; else a few displays.
 
-    Refused where it cannot be read any more.
+    Refused if it cannot be read any more.
     """
     path = context.node.options.rviz
     try:
@@ -32,8 +32,8 @@ async def rviz_config(context: Context) -> dict[str, Any]:
 
 @watchable("rviz_place")
 class Place(Paced):
-    """Sends x, y, z in m of the argument `target`, a frame, in the fixed frame, the argument
-    `frame`, when it has moved."""
+    """Arguments: `frame`, the fixed frame, and `target`, another one. Sends the target's x, y, z in
+    m in the fixed frame, when it has moved."""
 
     PERIOD = 0.1
 
@@ -54,8 +54,8 @@ class Place(Paced):
 
 @watchable("rviz_frames")
 class Frames(Paced):
-    """Sends `{"frames": {frame: parent}, "status": [level, text]}` of the fixed frame, the argument
-    `frame`, when it has changed."""
+    """Argument: `frame`, the fixed frame. Sends `{"frames": {frame: parent}, "status": [level,
+    text]}`, the status being that of the fixed frame, on changes."""
 
     PERIOD = 0.5
 

@@ -24,13 +24,13 @@ from sim_viewer.rviz.waiting import Waiting
 
 MOST_KEPT = 500  # messages that a display shows at once, and
 MOST_BYTES = 64 << 20  # how large they may be together
-JUMP = 2.0  # s that time goes back when it has begun anew
+JUMP = 2.0  # s; time that goes back by so much was reset
 PATIENCE = 0.5  # s that a message's transform may be late before that is an error
 Received = tuple[Any, str]  # a message, and its publisher
 
 
 class Showing:
-    """Of one page. `read(raw)` gives a message and its publisher, or raises Problem."""
+    """A display of one page. `read(raw)` returns message and publisher, or raises Problem."""
 
     def __init__(self, kind: DisplayType, options: dict[str, Any], view: View,
                  read: Callable[[Any], Received]):
@@ -45,7 +45,7 @@ class Showing:
         self._problem: Statuses = {}
         self._late: float | None = None  # s, since when a transform is missing
         self._now = -math.inf  # s, at the last look
-        self._misplaced = False  # whether what the page shows stands where it was before
+        self._misplaced = False  # whether the page still shows the contents of before `_place_anew`
 
     @property
     def statuses(self) -> Statuses:
@@ -59,26 +59,26 @@ class Showing:
 
     @property
     def namespaces(self) -> list[str]:
-        """Of markers, as far as they are known."""
+        """Namespaces of markers, as far as they are known."""
         return self._drawer.namespaces
 
     def put(self, raw: Any, beside: bool = False) -> None:
-        """A message has come, of its topic or of the one beside. In any thread."""
+        """A message has come, on the display's topic or on the one beside. In any thread."""
         if beside and not self._kind.every:
             self._beside = raw
         else:
             self.waiting.put(raw)
 
     def fail(self, name: str, text: str) -> None:
-        """A status that something went wrong."""
+        """Set an error status."""
         self._own[name] = (ERROR, text)
 
     def stumble(self, error: Exception) -> None:
-        """What nobody thought of, until something can be drawn."""
+        """Set the status of an unexpected error, until something can be drawn."""
         self._problem = {"Error": (ERROR, f"{type(error).__name__}: {error}")}
 
     def change(self, options: dict[str, Any], fixed_frame: str) -> None:
-        """Other options, or another fixed frame: what was shown is shown anew."""
+        """Other options, or another fixed frame: the contents are drawn anew."""
         if options != self._options:
             self._options = options
             self._drawer.restyle(options)
@@ -87,7 +87,7 @@ class Showing:
             self._place_anew()
 
     def look(self) -> list[Part] | None:
-        """Take what has come, and draw it; None where nothing has changed."""
+        """Take new messages and draw them; None if nothing has changed."""
         before, self._now = self._now, self._view.now
         if self._now < before - JUMP:
             self._place_anew()
@@ -100,7 +100,7 @@ class Showing:
             self._problem = {"Transform": (ERROR, str(problem))}
         except (Problem, SimulationError) as problem:
             self._problem = {"Error": (ERROR, str(problem))}
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self.stumble(error)
         else:
             if parts is not None:
@@ -109,7 +109,7 @@ class Showing:
         return [] if self._kind.period else nothing
 
     def _place_anew(self) -> None:
-        """In another fixed frame, or after time has begun anew."""
+        """Place the contents in another fixed frame, or after time was reset."""
         if self._drawer.place_anew():
             return
         self._drawer = self._kind.make(self._options)
@@ -127,12 +127,12 @@ class Showing:
             self._try(self._take_newest)
 
     def _try(self, work: Callable[[], None]) -> None:
-        """A message that cannot be shown is told of until one comes that can."""
+        """Run `work`; a message that cannot be shown is reported until one comes that can."""
         try:
             work()
         except (Problem, SimulationError) as problem:
             self.fail("Topic", str(problem))
-        except Exception as error:  # of a message that somebody else made
+        except Exception as error:  # caused by a message of another node
             self.fail("Topic", f"{type(error).__name__}: {error}")
 
     def _take_newest(self) -> None:

@@ -26,13 +26,13 @@ from sim_viewer.tools.names import is_topic
 
 POSITION_VARIANCE = 0.5 * 0.5  # m^2, as rviz has it
 YAW_VARIANCE = 0.06853891945200942  # rad^2: (pi / 12)^2
-QUEUE = 100  # messages that wait for a listener who is slow
-CONNECTING = 1.0  # s that listeners are waited for, so that the first click is not lost
+QUEUE = 100  # messages queued for a slow subscriber
+CONNECTING = 1.0  # s to wait for subscribers, so that the first click is not lost
 FARTHEST = 1e6  # m
 
 
 def pose(x: float, y: float, yaw: float) -> Pose:
-    """On the floor, turned by `yaw` rad."""
+    """A pose on the floor, rotated by `yaw` rad."""
     return Pose(Point(x, y, 0.0), Quaternion(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
 
 
@@ -60,23 +60,23 @@ TOOLS: dict[str, tuple[type, Callable[..., Any]]] = {
 
 
 class Publishers:
-    """One for each use and topic, from its first use on. In worker threads."""
+    """A publisher for each use and topic, opened at its first use. In worker threads."""
 
     def __init__(self, node: Node):
         self._clock: SharedClock = node.shared(SharedClock)
         self._lock = threading.Lock()
-        # Each with the time in s until which listeners may still be connecting.
+        # Each with the time in s until which subscribers may still be connecting.
         self._publishers: dict[tuple[str, str], tuple[rospy.Publisher, float]] = {}
         self._closing = contextlib.ExitStack()
 
     def open(self, tool: str, topic: str) -> rospy.Publisher:
-        """Get ready to publish; Refused for what is no tool or no topic."""
+        """Get ready to publish; Refused for an unknown tool or an illegal topic name."""
         if tool not in TOOLS:
             raise Refused(f"there is no tool {tool!r:.40}; there are {', '.join(TOOLS)}")
         return self.open_topic(tool, topic, TOOLS[tool][0])
 
     def open_topic(self, use: str, topic: str, kind: type) -> rospy.Publisher:
-        """Get ready to publish messages of a class for a use; Refused for what is no topic."""
+        """Get ready to publish messages of a class for a use; Refused for an illegal topic name."""
         if not is_topic(topic):
             raise Refused(f"{topic[:40]!r} is not the name of a topic; /goal is one")
         key = use, rospy.resolve_name(topic)
@@ -92,20 +92,21 @@ class Publishers:
         return publisher
 
     def publish(self, tool: str, topic: str, frame: str, place: tuple[float, ...]) -> int:
-        """How many listen; `place` is x, y, z in m and yaw in rad. Refused as by `open`."""
+        """Publish, and return the number of subscribers; `place` is x, y, z in m and yaw in rad.
+        Refused as by `open`."""
         publisher = self.open(tool, topic)
         header = Header(stamp=rospy.Time.from_sec(self._clock.now()), frame_id=frame)
         publisher.publish(TOOLS[tool][1](header, *place))
         return publisher.get_num_connections()
 
     def close(self) -> None:
-        """The node ends."""
+        """To be called when the node ends."""
         self._closing.close()
 
 
 @operation("rviz_tool", control=True)
 async def rviz_tool(context: Context, tool: str, topic: str) -> None:
-    """A tool was taken: get ready to publish. Refused: no such tool, no name of a topic."""
+    """A tool was selected: get ready to publish. Refused: unknown tool, illegal topic name."""
     await context.run_in_thread(context.node.shared(Publishers).open, tool, topic)
 
 
@@ -113,7 +114,7 @@ async def rviz_tool(context: Context, tool: str, topic: str) -> None:
 async def rviz_publish(context: Context, tool: str, topic: str, frame: str, x: float, y: float,
                        z: float = 0.0, yaw: float = 0.0) -> dict[str, int]:
     """Publish a pose or a point in the fixed frame, at the present time; answers with the number
-    of `listeners`. Refused as for `rviz_tool`, without a frame, and for places that are far off."""
+    of `listeners`. Refused as `rviz_tool`, without a frame, and for places too far away."""
     if not frame:
         raise Refused("there is no fixed frame yet: choose one at the left")
     if max(map(abs, (x, y, z, yaw))) > FARTHEST:

@@ -1,4 +1,4 @@
-"""What the displays of a page ask of ROS while they draw: frames, files, parameters, the time."""
+"""What displays need from ROS while they draw: frames, files, parameters, the time."""
 
 import time
 from collections.abc import Hashable
@@ -38,12 +38,12 @@ class RosView:
 
     @property
     def now(self) -> float:
-        """s, in the time that stamps are in."""
+        """ROS time, s."""
         return self._clock.now()
 
     @property
     def wall(self) -> float:
-        """s of a clock that never jumps."""
+        """Time of a monotonic clock, s."""
         return time.monotonic()
 
     def frames(self) -> dict[str, str]:
@@ -51,7 +51,7 @@ class RosView:
         return self._transforms.frames()
 
     def pose(self, frame: str, stamp: int = 0) -> Pose:
-        """Of a frame in the fixed frame. NoTransform says why not, as rviz words it."""
+        """A frame's pose in the fixed frame. NoTransform says why not, as rviz words it."""
         try:
             return self._transforms.pose(self.fixed_frame, frame, stamp)
         except NoPose as error:
@@ -64,7 +64,7 @@ class RosView:
         return f"No transform to fixed frame [{self.fixed_frame}].  TF error: [{error}]"
 
     def parameter(self, name: str) -> Any:
-        """Of the parameter server; None where there is none or no master."""
+        """A parameter's value; None if it is not set or there is no master."""
         try:
             found = rospy.search_param(name)
             return rospy.get_param(found) if found else None
@@ -72,7 +72,7 @@ class RosView:
             return None
 
     def resolve(self, uri: str) -> str:
-        """The file behind an address; Problem where there is none."""
+        """The file of a URI; Problem if there is none."""
         if uri not in self._files:
             try:
                 self._files[uri] = str(workspace_files().resolve(uri))
@@ -81,19 +81,19 @@ class RosView:
         return self._files[uri]
 
     def jpeg(self, message: Any, width: int) -> bytes:
-        """A picture's message as JPEG. Problem where it cannot be shown."""
+        """An image message as JPEG. Problem if it cannot be shown."""
         try:
             return to_jpeg(message, width)
         except Refused as error:
             raise Problem(str(error)) from None
 
     def robot(self, text: str) -> dict[str, tuple[Visual, ...]]:
-        """Each link's visuals. FormatError of a text that is no URDF."""
+        """Each link's visuals. FormatError if the text is not a URDF."""
         links = read_robot_visuals(text, workspace_files())[1]
         return {name: visuals for name, (_, visuals) in links.items()}
 
     def links(self, visuals: dict[str, tuple[Visual, ...]]) -> dict[str, Any]:
-        """Ambient light, lights and links, as page_scene has them."""
+        """Ambient light, lights and links, as page_scene returns them."""
         if visuals != self._visuals:
             content = SceneContent(SceneDescription(), (LIGHT,), {
                 ("", name): (IDENTITY, shown) for name, shown in visuals.items()})
@@ -103,6 +103,6 @@ class RosView:
         return self._links
 
     def close(self) -> None:
-        """No meshes are needed any more."""
+        """Release the meshes."""
         if self._visuals:
             self._meshes.forget(self._owner)

@@ -5,13 +5,13 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-QUEUE = 10  # messages, as rviz's filter has it; older ones are dropped
-QUEUE_OF_ALL = 2000  # where each counts
+QUEUE = 10  # messages, as in rviz's message filter; older ones are dropped
+QUEUE_OF_ALL = 2000  # for displays to which each message counts
 MOST_BYTES = 32 << 20  # of raw messages, but the newest two stay
 
 
 class Waiting:
-    """A queue of raw messages, which are read when they are looked at. Thread safe."""
+    """A queue of raw messages, which are decoded when they are needed. Thread safe."""
 
     def __init__(self, every: bool, read: Callable[[Any], tuple[Any, str]]):
         self._queue: deque[list[Any]] = deque(maxlen=QUEUE_OF_ALL if every else QUEUE)
@@ -21,7 +21,7 @@ class Waiting:
         self.publisher = ""  # of the message that was read last
 
     def put(self, raw: Any) -> None:
-        """A message has come."""
+        """Add a message."""
         with self._lock:
             self.received += 1
             self._queue.append([raw, None])
@@ -30,22 +30,22 @@ class Waiting:
                 size -= len(self._queue.popleft()[0]._buff)
 
     def put_back(self, raws: list[Any]) -> None:
-        """Messages that were shown already, before those that wait."""
+        """Put messages that were shown already before those that wait."""
         with self._lock:
             self._queue.extendleft([raw, None] for raw in reversed(raws))
 
     def in_order(self) -> list[Any]:
-        """All, oldest first, raw; none waits any more."""
+        """Remove and return all raw messages, oldest first."""
         with self._lock:
             found = [raw for raw, _ in self._queue]
             self._queue.clear()
         return found
 
     def newest(self, ready: Callable[[Any], Any]) -> tuple[Any, tuple[Any, str], Any] | None:
-        """The newest message for which `ready` raises no ValueError: raw, as read, and what that
-        gave; older ones are dropped, and so is one that cannot be read, whose error is raised.
+        """The newest message for which `ready` raises no ValueError: raw, as read, and the result
+        of `ready`; older ones are dropped. One that cannot be read is, too, and its error raised.
 
-        Where none is ready, the newest one's ValueError is raised.
+        If none is ready, the newest one's ValueError is raised.
         """
         with self._lock:
             entries = list(self._queue)
@@ -73,7 +73,7 @@ class Waiting:
         self.publisher = entry[1][1]
 
     def _drop(self, last: list[Any]) -> None:
-        """This one and all before it."""
+        """Remove this entry and all before it."""
         with self._lock:
             while self._queue:
                 if self._queue.popleft() is last:

@@ -1,1 +1,1 @@
-"""What rqt's tools do: a module for each tab and for the simulation's bar, and what they share."""
+"""The page's counterparts of rqt's tools: a module per tab, the simulation bar, shared modules."""

@@ -1,4 +1,4 @@
-"""The folder of bags: which names are safe, what is there, what is in a bag."""
+"""The folder of bags: safe file names, the list of bags, the contents of a bag."""
 
 import re
 import time
@@ -15,7 +15,7 @@ MOST_LISTED = 500
 
 
 def bag_folder(wanted: str) -> Path:
-    """Where bags are, by the option of that name; made when the first is recorded."""
+    """The folder of bags, by the option `bags`; made when the first is recorded."""
     return Path(wanted or DEFAULT_FOLDER).expanduser().resolve()
 
 
@@ -31,7 +31,7 @@ def bag_path(folder: Path, name: str) -> Path:
 
 
 def existing_bag(folder: Path, name: str) -> Path:
-    """As `bag_path`; Refused where there is no such bag."""
+    """As `bag_path`; Refused if there is no such bag."""
     path = bag_path(folder, name)
     if not path.is_file():
         raise Refused(f"there is no {path.name} in {folder}")
@@ -39,7 +39,7 @@ def existing_bag(folder: Path, name: str) -> Path:
 
 
 def new_bag(folder: Path, name: str) -> Path:
-    """Where to record; without a name it is called after the time. Refused if there is one."""
+    """The file to record into; without a name it is named after the time. Refused if it exists."""
     path = bag_path(folder, name or time.strftime("%Y-%m-%d-%H-%M-%S"))
     if path.exists() or path.with_name(path.name + ".active").exists():
         raise Refused(f"{path.name} exists already; choose another name")

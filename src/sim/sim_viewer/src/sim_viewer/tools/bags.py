@@ -1,4 +1,4 @@
-"""Recording and playing bags: what `rosbag record` and `rosbag play` start, as child processes."""
+"""Recording and playing bags: the programs of `rosbag record` and `play` as child processes."""
 
 import shutil
 import signal
@@ -16,7 +16,7 @@ from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools.bag_folder import bag_folder, contents, existing_bag, listing, new_bag
 from sim_viewer.tools.paced import Paced
 
-LEAST_FREE = 1 << 30  # byte on the disk; recording ends before it is full
+LEAST_FREE = 1 << 30  # bytes on the disk; recording ends before it is full
 TIMEOUT = 10.0  # s for a bag to be closed
 RATES = (0.01, 100.0)
 
@@ -24,8 +24,8 @@ RATES = (0.01, 100.0)
 class Child:
     """`record` or `play` of package rosbag; interrupted when this process dies, which closes a bag.
 
-    Not by the command `rosbag`: it takes a second to start, and loses the bag if stopped before.
-    Refused where rosbag is not installed.
+    The command `rosbag` is not used: it takes a second to start, and loses the bag if stopped
+    before. Refused if rosbag is not installed.
     """
 
     def __init__(self, program: str, arguments: list[str], path: Path):
@@ -45,7 +45,7 @@ class Child:
 
     @property
     def failure(self) -> str:
-        """Its last words if it ended by itself and badly, else nothing."""
+        """Its last line of output if it failed by itself, else empty."""
         if self._process.poll() in (None, 0, -signal.SIGINT):
             return ""
         self._output.seek(0)
@@ -53,7 +53,7 @@ class Child:
         return lines[-1] if lines else f"rosbag ended with {self._process.returncode}"
 
     def interrupt(self) -> None:
-        """As Ctrl-C does; waits until the bag is closed."""
+        """End it as Ctrl-C does; waits until the bag is closed."""
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             if self.running:
                 self._process.send_signal(number)
@@ -76,15 +76,15 @@ class Bags:
 
     def __init__(self, node: Any):
         self.folder = bag_folder(node.options.bags)
-        self._lock = threading.Lock()  # of the two below
+        self._lock = threading.Lock()  # for the two below
         self._recording: Child | None = None
         self._playing: Child | None = None
         self.note = ""  # why something ended by itself
 
     def record(self, name: str, topics: list[str]) -> str:
-        """Begin; no topics: all. Call it from a thread that lives as long as the process.
+        """Start recording; no topics: all. Call it from a thread that lasts until the process ends.
 
-        Refused: one is being recorded, the name, the topics, a full disk.
+        Refused: a bag is being recorded, invalid name or topics, a full disk.
         """
         for topic in topics:
             check_topic(topic)
@@ -100,9 +100,9 @@ class Bags:
         return path.name
 
     def play(self, name: str, rate: float, loop: bool, clock: bool) -> str:
-        """Begin; the same thread rule as for `record`.
+        """Start playing; the same thread rule as for `record`.
 
-        Refused: one is being played, the rate, no bag.
+        Refused: a bag is being played, invalid rate, no such bag.
         """
         if not RATES[0] <= rate <= RATES[1]:
             raise Refused(f"rate is {rate:g}; give {RATES[0]:g} to {RATES[1]:g}")
@@ -117,7 +117,7 @@ class Bags:
         return path.name
 
     def stop(self, what: str) -> None:
-        """`record` or `play`; nothing happens where nothing runs."""
+        """Stop `record` or `play`, if it runs."""
         child = self._recording if what == "record" else self._playing
         if child:
             child.interrupt()
@@ -131,7 +131,7 @@ class Bags:
                 "note": self.note or "; ".join(failures), "bags": listing(self.folder)}
 
     def close(self) -> None:
-        """Have both ended and the bag closed."""
+        """End both, and close the bag."""
         for child in (self._recording, self._playing):
             if child and child.running:
                 child.interrupt()
@@ -156,7 +156,7 @@ class Bags:
 
 
 def check_topic(topic: Any) -> None:
-    """Refused unless it is a full name, which also is no option of rosbag."""
+    """Refused unless it is a full name, so that it cannot be an option of rosbag either."""
     if not isinstance(topic, str) or not topic.startswith("/") \
             or not rosgraph.names.is_legal_name(topic):
         raise Refused(f"{topic!r:.60} is not a topic's full name")
@@ -178,14 +178,14 @@ class BagState(Paced):
 
 @operation("bag_info")
 async def bag_info(context: Any, name: str) -> dict[str, Any]:
-    """What is in a bag. Refused of a file that is no bag here."""
+    """The contents of a bag. Refused if there is no such bag."""
     path = existing_bag(context.node.shared(Bags).folder, name)
     return await context.run_in_thread(contents, path)
 
 
 @operation("record", control=True)
 async def record(context: Any, topics: list, name: str = "") -> str:
-    """Begin to record these topics, or all if there are none; the bag's name."""
+    """Start to record these topics, or all if there are none; answers with the bag's name."""
     # Here, in the loop's thread: the child is interrupted when the thread that made it ends.
     return context.node.shared(Bags).record(name, topics)
 
@@ -193,13 +193,13 @@ async def record(context: Any, topics: list, name: str = "") -> str:
 @operation("play", control=True)
 async def play(context: Any, name: str, rate: float = 1.0, loop: bool = False,
                clock: bool = False) -> str:
-    """Begin to play a bag."""
+    """Start to play a bag."""
     return context.node.shared(Bags).play(name, rate, loop, clock)
 
 
 @operation("stop_record", control=True)
 async def stop_record(context: Any) -> None:
-    """Answers when the bag is closed."""
+    """Stop recording; answers when the bag is closed."""
     await context.run_in_thread(context.node.shared(Bags).stop, "record")
 
 

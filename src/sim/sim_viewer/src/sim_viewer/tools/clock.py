@@ -1,4 +1,4 @@
-"""The time that nodes go by: simulated while somebody publishes /clock, else the wall's."""
+"""ROS time: simulated while /clock is published, else that of the wall clock."""
 
 import time
 from collections import deque
@@ -13,16 +13,16 @@ FACTOR_WINDOW = 2.0  # s of wall time that the real-time factor is measured over
 
 
 class SharedClock(SharedSubscription):
-    """What /clock says.
+    """The time of /clock.
 
-    rospy's own time would not do: it decides between the two when its node starts, and the page
-    may be older than the simulator.
+    rospy's own time cannot be used: it chooses between the two when the node starts, and the page
+    may have started before the simulator.
     """
 
     _stamp: rospy.Time | None = None
 
     def subscribe(self) -> Subscription:
-        """Begin anew, without a time."""
+        """Subscribe anew, without a time."""
         self._stamp = None
         return Subscription(names.CLOCK, ClockMessage, self._take)
 
@@ -32,7 +32,7 @@ class SharedClock(SharedSubscription):
         return self._stamp.to_sec() if self._stamp is not None else None
 
     def now(self) -> float:
-        """s, in the time that messages' stamps are in."""
+        """ROS time, s."""
         simulated = self.simulated
         return time.time() if simulated is None else simulated
 

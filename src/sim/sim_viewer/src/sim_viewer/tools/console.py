@@ -20,7 +20,7 @@ MOST_SENT = 200  # lines each time; more could not be read
 
 
 class SharedLog(SharedSubscription):
-    """The last lines, gathered while somebody looks; they stay for who comes back."""
+    """The last lines, collected while somebody watches, and kept afterwards."""
 
     def __init__(self, node: Any = None):
         super().__init__(node)
@@ -28,7 +28,7 @@ class SharedLog(SharedSubscription):
         self._numbers = itertools.count(1)
 
     def subscribe(self) -> Subscription:
-        """Begin anew; lines are numbered on."""
+        """Subscribe anew; the numbering of lines continues."""
         return Subscription(names.ROSOUT, Log, self._take)
 
     def after(self, number: int) -> list[tuple[int, dict[str, Any]]]:
@@ -50,7 +50,7 @@ def line_of(message: Log) -> dict[str, Any]:
 
 
 def pick(lines: list[dict[str, Any]], level: str) -> list[dict[str, Any]]:
-    """Those that are at least as grave as `level`."""
+    """The lines of at least the severity `level`."""
     return [line for line in lines if LEVELS[line["level"]] >= LEVELS[level]]
 
 
@@ -58,8 +58,8 @@ def pick(lines: list[dict[str, Any]], level: str) -> list[dict[str, Any]]:
 class Console(Paced):
     """Sends `{"lines": [{time, level, node, text, place}], "left_out": n}`, remembered ones first.
 
-    Only levels are sorted out here. The page filters by regular expression itself: a bad one may
-    take minutes, and then stops only the page where it was typed.
+    Only levels are filtered here. The page filters by regular expression itself: a bad one may
+    take minutes, and then blocks only the page where it was typed.
     """
 
     KEEP = True

@@ -23,8 +23,8 @@ Step = str | int
 
 
 def split_topic(path: str, topics: Iterable[str]) -> tuple[str, str]:
-    """The longest of `topics` that `path` begins with, and what follows it without its slash;
-    Refused where there is none."""
+    """The longest of `topics` that `path` begins with, and the rest without its slash; Refused if
+    there is none."""
     fitting = [t for t in topics if path == t or path.startswith((t + "/", t + "["))]
     if not fitting:
         raise Refused(f"{path}: no such topic. The Topics tab lists what there is")
@@ -68,8 +68,8 @@ def expand(path: str, message_class: type) -> list[str]:
 
 
 def field_type(message_class: type, steps: list[Step]) -> str:
-    """ROS's name for the type at the end of `steps`, such as `float64` or `float32[]`;
-    Refused where a step leads nowhere."""
+    """ROS's name for the type at the end of `steps`, such as `float64` or `float32[]`; Refused if
+    a step does not exist."""
     kind = message_class._type
     for step in steps:
         if isinstance(step, int):
@@ -89,7 +89,7 @@ def is_number(kind: str) -> bool:
 
 
 def value(message: object, steps: list[Step]) -> float | None:
-    """The number at the end of `steps`; None where an array is shorter than the index."""
+    """The number at the end of `steps`; None if the index is beyond the end of an array."""
     try:
         for step in steps:
             message = message[step] if isinstance(step, int) else getattr(message, step)
@@ -121,12 +121,12 @@ def _collect(kind: str, path: str, found: list[str]) -> None:
 
 
 def class_of(kind: str) -> type | None:
-    """The class of a field's type; None where it is no message, or none that is built here."""
+    """The class of a field's type; None if it is not a message, or not built here."""
     return get_message_class(kind) if "/" in kind and not kind.endswith("]") else None
 
 
 def slots(message_class: type | None) -> dict[str, str]:
-    """Names and types of a message's fields; none of None."""
+    """Names and types of a message's fields; empty for None."""
     return dict(zip(message_class.__slots__, message_class._slot_types)) if message_class else {}
 
 

@@ -1,4 +1,4 @@
-"""Requests of services as YAML text: a template to fill in, and what was filled in as a message."""
+"""Requests of services as YAML text: a template to fill in, and its conversion to a message."""
 
 from typing import Any
 
@@ -29,7 +29,7 @@ class PlainLoader(yaml.SafeLoader):
 
 
 def load_yaml(text: str) -> Any:
-    """The value of one YAML text; Refused with the line where it is wrong."""
+    """The value of a YAML text; Refused with the line of the error."""
     if len(text) > LONGEST:
         raise Refused(f"{len(text)} letters are too many; at most {LONGEST}")
     try:
@@ -37,7 +37,7 @@ def load_yaml(text: str) -> Any:
     except yaml.MarkedYAMLError as error:
         line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
         raise Refused(f"not YAML: {line}{error.problem}") from None
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise Refused(f"not YAML: {' '.join(str(error).split())[:200]}") from None
 
 
@@ -64,7 +64,7 @@ def _template_lines(message_class: type) -> list[str]:
 
 
 def _is_flat(message_class: type) -> bool:
-    """Whether it fits on one line: a few numbers, as a point or a quaternion."""
+    """Whether it fits on one line: a few plain values, as in a point or a quaternion."""
     kinds = message_class._slot_types
     return len(kinds) <= 4 and all(kind in BOUNDS or kind in DEFAULTS for kind in kinds)
 

@@ -1,4 +1,4 @@
-"""Nodes, topics and what flows between them, laid out as rqt_graph draws it."""
+"""The graph of nodes and topics, laid out as in rqt_graph."""
 
 from collections import defaultdict
 from typing import Any
@@ -43,10 +43,10 @@ class Graph(Paced):
 
 def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str = "",
          own: str = "") -> dict[str, Any]:
-    """The picture of `state`, in px as a `Layout` has it.
+    """The drawing of `state`, in px as in `Layout`.
 
-    `quiet` leaves out what every system has, and the node `own` with its guard. Refused where the
-    graph is too large, or cannot be laid out.
+    `quiet` leaves out nodes and topics that every system has, and the node `own` with its guard.
+    Refused if the graph is too large, or cannot be laid out.
     """
     if quiet:
         state = _without_quiet(state, own)
@@ -99,9 +99,9 @@ def _nodes(state: SystemState) -> list[str]:
 
 
 def _edges(flows: list[Flow], view: str) -> dict[tuple[str, str], set[str]]:
-    """From publisher to subscriber, but for nodes alone by way of the topic; with their topics.
+    """Edges with their topics: from publisher to subscriber in view `nodes`, else via the topic.
 
-    Only in the view `all` those whose other end is missing, too.
+    Edges whose other end is missing are only in the view `all`.
     """
     edges: dict[tuple[str, str], set[str]] = defaultdict(set)
     for source, topic, target in flows:

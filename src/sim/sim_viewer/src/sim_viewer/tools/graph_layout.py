@@ -34,11 +34,11 @@ class Layout:
 
 
 def layout(names: dict[str, str], edges: Iterable[Edge]) -> Layout:
-    """Layered from left to right; `names` are what is written on each node.
+    """A layout in layers from left to right; `names` are the labels of the nodes.
 
     With more than MOST_CURVED edges all are straight, and may cross nodes; a graph that cannot be
     layered within LONGEST is laid out by springs. The same graph gives the same layout.
-    LayoutError where there is none.
+    LayoutError if that fails, too.
     """
     nodes = sorted(names)
     number = {node: str(index) for index, node in enumerate(nodes)}
@@ -56,7 +56,7 @@ def layout(names: dict[str, str], edges: Iterable[Edge]) -> Layout:
 
 
 def _quoted(text: str) -> str:
-    # A line of dot's output for each node: what ends a line, or a string of C's, is a space.
+    # dot's output has a line per node: characters that end a line or a C string become spaces.
     text = "".join(each if each.isprintable() else " " for each in text)
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 

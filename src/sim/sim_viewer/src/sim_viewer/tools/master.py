@@ -1,4 +1,4 @@
-"""The ROS master's state, read at most once a second however many pages show it."""
+"""The ROS master's state, read at most once a second for any number of pages."""
 
 import threading
 import time
@@ -17,7 +17,7 @@ OLDEST = 1.0  # s that an answer may be old
 
 @dataclass(frozen=True)
 class SystemState:
-    """Who publishes, subscribes and serves: names of nodes by topic or service."""
+    """Publishers, subscribers and services: names of nodes by topic or service."""
 
     publishers: dict[str, list[str]]
     subscribers: dict[str, list[str]]
@@ -25,24 +25,24 @@ class SystemState:
 
 
 class MasterView:
-    """Safe from any thread; Refused where the master is gone."""
+    """Thread safe; Refused if the master is gone."""
 
     def __init__(self, node: Any = None):
         self._lock = threading.Lock()
         self._known: dict[str, tuple[float, Any]] = {}
 
     def state(self) -> SystemState:
-        """All publishers, subscribers and services. Refused where the master is gone."""
+        """All publishers, subscribers and services. Refused if the master is gone."""
         return self._recent("state", lambda: SystemState(
             *({name: sorted(nodes) for name, nodes in part}
               for part in connect().getSystemState())))
 
     def types(self) -> dict[str, str]:
-        """Each topic's type. Refused where the master is gone."""
+        """Each topic's type. Refused if the master is gone."""
         return self._recent("types", lambda: dict(connect().getTopicTypes()))
 
     def message_class(self, topic: str) -> type:
-        """The class of a topic's messages; Refused where there is no such topic or class."""
+        """The class of a topic's messages; Refused if there is no such topic or class."""
         kind = self.types().get(topic)
         if kind is None or kind == "*":
             raise Refused(f"{topic}: no such topic. The Topics tab lists what there is")
@@ -63,12 +63,12 @@ class MasterView:
 
 
 def connect() -> rosgraph.Master:
-    """A connection of one's own: they are not safe to share between threads."""
+    """A new connection for the caller alone: they cannot be shared between threads."""
     return rosgraph.Master(rospy.get_name())
 
 
 def asked(ask: Callable[[], Any]) -> Any:
-    """The master's answer; Refused where there is none."""
+    """The master's answer; Refused if there is none."""
     try:
         return ask()
     except OSError as error:

@@ -60,7 +60,7 @@ def _cut_list(first: list, count: int, most: int) -> str:
 
 
 def _quoted(text: str) -> str:
-    """As YAML reads it; control characters are escaped."""
+    """A YAML string; control characters are escaped."""
     cut = text[:MOST_LETTERS]
     safe = cut.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
     safe = "".join(c if c.isprintable() else f"\\u{ord(c) & 0xFFFF:04x}" for c in safe)

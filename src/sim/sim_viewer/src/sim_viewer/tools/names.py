@@ -12,7 +12,7 @@ SCENE = "/scene"
 LINK_STATES = "/link_states"
 PAUSE = "/pause_physics"
 UNPAUSE = "/unpause_physics"
-STEP = "/step_physics"  # not of Gazebo itself
+STEP = "/step_physics"  # Gazebo itself does not have it
 RESET_WORLD = "/reset_world"
 RESET_SIMULATION = "/reset_simulation"
 PHYSICS = "/get_physics_properties"
@@ -22,6 +22,6 @@ LONGEST_TOPIC = 256  # characters
 
 
 def is_topic(name: str) -> bool:
-    """Whether a page may name a topic so; a node's private names are not for pages."""
+    """Whether a page may use this as a topic's name; private names (~) are not allowed."""
     return (len(name) <= LONGEST_TOPIC and rosgraph.names.is_legal_name(name)
             and not name.startswith("~"))

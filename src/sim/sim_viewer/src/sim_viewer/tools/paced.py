@@ -13,10 +13,10 @@ from sim_viewer.tools.master import MasterView
 
 
 class Paced(abc.ABC):
-    """Subclasses give `open` and `collect`; both run in worker threads, may block and may raise
-    Refused. What `collect` cannot do is sent as `{"error": line}`; `closing` undoes `open`."""
+    """Subclasses define `open` and `collect`; both run in worker threads, may block and may raise
+    Refused. An error of `collect` is sent as `{"error": line}`; `closing` undoes `open`."""
 
-    PERIOD = 0.2  # s between two looks
+    PERIOD = 0.2  # s between two polls
     KEEP = False  # whether each event counts, not only the newest
 
     def __init__(self, context: Any, args: dict[str, Any], send: Any):
@@ -25,21 +25,21 @@ class Paced(abc.ABC):
         self.master: MasterView = context.node.shared(MasterView)
         self._send = send
         self._task: asyncio.Task | None = None
-        self._lock = threading.Lock()  # a browser may go while its watch is being opened
+        self._lock = threading.Lock()  # a browser may disconnect while its watch is being opened
         self._ended = False
         self._last_error = ""
         self._last: Any = None
-        self.closing = contextlib.ExitStack()  # what to undo, also where `open` failed half way
+        self.closing = contextlib.ExitStack()  # what to undo, also if `open` failed half way
 
     def open(self) -> None:  # noqa: B027 (not every tool subscribes)
         """Subscribe to what `collect` needs."""
 
     @abc.abstractmethod
     def collect(self) -> Any:
-        """What is new, or None."""
+        """The data to send, or None if nothing is new."""
 
     def changed(self, data: Any) -> Any:
-        """`data`, or None where it is the same as at the last call."""
+        """`data`, or None if it is the same as at the last call."""
         if data == self._last:
             return None
         self._last = data
@@ -73,7 +73,7 @@ class Paced(abc.ABC):
             await asyncio.sleep(self.PERIOD)
 
     def _look(self) -> Any:
-        """What has changed; an error is sent once, until it has passed."""
+        """The data to send; an error is sent once, until `collect` works again."""
         try:
             data = self.collect()
             self._last_error = ""

@@ -18,7 +18,7 @@ INTEGERS = range(-(1 << 31), 1 << 31)  # what XML-RPC carries
 
 @operation("parameters")
 async def parameters(context: Any) -> list[dict[str, Any]]:
-    """`[{name, type, value, cut}]` by name; `value` is YAML text, cut where it is long."""
+    """`[{name, type, value, cut}]` by name; `value` is YAML text, cut if it is long."""
     return await context.run_in_thread(lambda: rows(master_call(lambda m: m.getParam("/"))))
 
 
@@ -26,7 +26,7 @@ async def parameters(context: Any) -> list[dict[str, Any]]:
 async def parameter(context: Any, name: str) -> dict[str, Any]:
     """One parameter in full.
 
-    Refused of a name or value that cannot be, and where the master is gone.
+    Refused for an invalid name, and if the master is gone.
     """
     check_name(name)
     value = await context.run_in_thread(master_call, lambda m: m.getParam(name))
@@ -35,9 +35,9 @@ async def parameter(context: Any, name: str) -> dict[str, Any]:
 
 @operation("set_parameter", control=True)
 async def set_parameter(context: Any, name: str, value: str) -> dict[str, Any]:
-    """Set one from YAML text, and answer with its row as the server has it now.
+    """Set a parameter from YAML text, and answer with its row as the server has it now.
 
-    Refused of a name or value that cannot be, and where the master is gone.
+    Refused for an invalid name or value, and if the master is gone.
     """
     check_name(name)
     parsed = await context.run_in_thread(read_value, value)
@@ -47,9 +47,9 @@ async def set_parameter(context: Any, name: str, value: str) -> dict[str, Any]:
 
 @operation("delete_parameter", control=True)
 async def delete_parameter(context: Any, name: str) -> None:
-    """With everything below it.
+    """Delete a parameter and everything below it.
 
-    Refused of a name or value that cannot be, and where the master is gone.
+    Refused for an invalid name, and if the master is gone.
     """
     check_name(name)
     await context.run_in_thread(master_call, lambda m: m.deleteParam(name))
@@ -71,7 +71,7 @@ def row(name: str, value: Any, most: int) -> dict[str, Any]:
 
 
 def to_yaml(value: Any, in_lines: bool = True) -> str:
-    """On one line, but for texts of several lines; what YAML cannot express, as Python's repr."""
+    """On one line, except texts of several lines; Python's repr if YAML cannot express it."""
     if isinstance(value, str) and "\n" in value and in_lines:
         return yaml.dump(value, default_style="|", allow_unicode=True)
     if isinstance(value, str) and "\n" in value:
@@ -84,7 +84,7 @@ def to_yaml(value: Any, in_lines: bool = True) -> str:
 
 
 def read_value(text: str) -> Any:
-    """YAML text as a parameter; Refused where the server could not keep it."""
+    """YAML text as a parameter's value; Refused if the server could not keep it."""
     value = load_yaml(text)
     _check_value(value)
     return value
@@ -118,7 +118,7 @@ def check_name(name: str) -> None:
 
 
 def master_call(ask: Callable[[rosgraph.Master], Any]) -> Any:
-    """Its answer; Refused in one line."""
+    """The answer of the master; Refused says in one line why there is none."""
     try:
         return asked(lambda: ask(connect()))
     except (xmlrpc.client.Error, OverflowError, TypeError) as error:

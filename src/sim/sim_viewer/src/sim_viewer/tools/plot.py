@@ -15,7 +15,7 @@ from sim_viewer.tools.paced import Paced
 MOST_LINES = 24  # of one plot
 MOST_WAITING = 5_000  # samples of one line between two sends
 MOST_SENT = 100  # samples of one line each time: 500 a second are more than a screen is wide
-STAMP_TRUSTED = 5.0  # s; stamps further from now, as a bag's, are another time's
+STAMP_TRUSTED = 5.0  # s; stamps further from now, as in a bag, are not in the present time
 
 Sample = tuple[float, float]  # s, value
 
@@ -34,14 +34,14 @@ async def plot_expand(context: Any, path: str) -> list[str]:
 
 
 def lines_of(master: MasterView, path: str) -> list[str]:
-    """Full paths to single numbers; Refused with what would fit."""
+    """Full paths to single numbers; Refused, with the choices there are."""
     topic, rest = split_topic("/" + path.strip().strip("/"), master.types())
     return [f"{topic}/{one}" for one in expand(rest, master.message_class(topic))]
 
 
 @watchable("plot")
 class Plot(Paced):
-    """Sends `{path: [[time s, value], ...]}` with what came since; a value that is none is null."""
+    """Sends `{path: [[time s, value], ...]}` of new messages; NaN and infinity are null."""
 
     KEEP = True
 
@@ -83,14 +83,14 @@ class Plot(Paced):
 
 
 def sample_time(message: Any, now: float) -> float:
-    """The header's stamp, as in rqt_plot; `now` where there is none or it is of another time."""
+    """The header's stamp, as in rqt_plot; `now` if there is none or it is not near `now`."""
     header = getattr(message, "header", None)
     stamp = header.stamp.to_sec() if hasattr(header, "stamp") else 0.0
     return stamp if stamp and abs(stamp - now) < STAMP_TRUSTED else now
 
 
 def thin(samples: list[Sample], most: int) -> list[Sample]:
-    """At most `most` of the samples, true ones: of each stretch the lowest and the highest."""
+    """At most `most` of the samples, unchanged: of each stretch the lowest and the highest."""
     if len(samples) <= most:
         return samples
     stretch = math.ceil(2 * len(samples) / most)

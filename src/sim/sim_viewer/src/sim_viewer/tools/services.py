@@ -15,13 +15,13 @@ from sim_viewer.tools.forms import fill, template
 from sim_viewer.tools.master import MasterView
 from sim_viewer.tools.message_text import to_text
 
-TIMEOUT = 30.0  # s until an answer is no longer waited for
+TIMEOUT = 30.0  # s to wait for an answer
 MOST_AT_ONCE = 8  # calls of all pages
 
 
 @operation("services")
 async def services(context: Any) -> list[dict[str, str]]:
-    """`[{name, node}]` by name; types are asked one by one, since each node must be asked."""
+    """`[{name, node}]` by name; types are queried one by one, since only the node knows them."""
     state = await context.run_in_thread(context.node.shared(MasterView).state)
     return [{"name": name, "node": ", ".join(nodes)}
             for name, nodes in sorted(state.services.items())]
@@ -44,7 +44,7 @@ async def call_service(context: Any, name: str, request: str) -> str:
 
 
 def service_class(name: str) -> type:
-    """The class of a running service; Refused where it does not run or is not built here."""
+    """The class of a running service; Refused if it does not run or is not built here."""
     if not rosgraph.names.is_legal_name(name):
         raise Refused(f"{name!r:.60} is not the name of a service")
     try:
@@ -61,7 +61,7 @@ def service_class(name: str) -> type:
 
 
 class Calls:
-    """Calls under way. Each has a thread of its own: a service that hangs blocks nothing else."""
+    """Runs calls, each in a thread of its own: a service that hangs blocks nothing else."""
 
     def __init__(self, node: Any):
         self._loop: asyncio.AbstractEventLoop = node.loop
@@ -75,7 +75,8 @@ class Calls:
         return await self.run(name, lambda: rospy.ServiceProxy(name, kind)(*fields))
 
     async def run(self, name: str, work: Callable[[], Any]) -> Any:
-        """What `work` returns, which calls the services of `name`; Refused as for `call`."""
+        """Run `work`, which calls the services of `name`, and return its result; Refused as `call`.
+        """
         if self._under_way >= MOST_AT_ONCE:
             raise Refused(f"{MOST_AT_ONCE} calls are still waiting for their answers")
         answer = self._loop.create_future()

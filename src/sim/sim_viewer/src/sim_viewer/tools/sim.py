@@ -1,6 +1,6 @@
 """The simulator behind Gazebo's services: its time and speed, pause, step and reset.
 
-Its node goes by `name`, which is /gazebo but in another namespace.
+Its node's `name` is /gazebo, unless the simulator is in another namespace.
 """
 
 import threading
@@ -19,8 +19,8 @@ from sim_viewer.tools.paced import Paced
 from sim_viewer.tools.services import Calls
 from sim_viewer.tools.simulator_name import simulator_name
 
-PAUSE_ASKED = 1.0  # s between two questions whether it is paused
-ANSWER_TIME = 0.5  # s that an answer is waited for
+PAUSE_ASKED = 1.0  # s between two queries whether it is paused
+ANSWER_TIME = 0.5  # s to wait for an answer
 MOST_STEPS = 100_000
 STEP_LIMIT = 10.0  # s of wall time for all steps asked for at once
 RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
@@ -28,7 +28,7 @@ RESETS = {"world": names.RESET_WORLD, "simulation": names.RESET_SIMULATION}
 
 @operation("pause", control=True)
 async def pause(context: Any, paused: bool = True) -> None:
-    """Stop simulated time, or let it go on. Refused where no simulator answers."""
+    """Pause simulated time, or let it go on. Refused if no simulator answers."""
     name = await _find_simulator(context)
     await _call(context, name + (names.PAUSE if paused else names.UNPAUSE))
     context.node.shared(SharedPause).forget()
@@ -36,7 +36,7 @@ async def pause(context: Any, paused: bool = True) -> None:
 
 @operation("reset", control=True)
 async def reset(context: Any, what: str = "world") -> None:
-    """`world`: models back to where they began; `simulation`: time to 0 as well; Refused else."""
+    """`world`: set models back to the start; `simulation`: also time to 0; else Refused."""
     if what not in RESETS:
         raise Refused(f"what is {what!r:.40}; there are {', '.join(RESETS)}")
     await _call(context, await _find_simulator(context) + RESETS[what])
@@ -46,8 +46,8 @@ async def reset(context: Any, what: str = "world") -> None:
 async def step(context: Any, steps: int = 1) -> dict[str, float]:
     """Go on for this many physics steps, then pause; answers with `{"from", "to"}` in s.
 
-    The ROS interface of Gazebo itself cannot step, so there this lets go and stops at the first
-    /clock that is late enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
+    Gazebo's own ROS interface cannot step, so there physics is unpaused until the first /clock that
+    is late enough: with /clock at 100 Hz a single step is 0.01 s or a little more.
     Refused: a number of steps out of bounds, no simulator.
     """
     if not 0 < steps <= MOST_STEPS:
@@ -114,7 +114,7 @@ def _step_by_clock(name: str, clock: SharedClock, steps: int) -> dict[str, float
 
 
 def call(name: str, kind: type = Empty) -> Any:
-    """A service's answer to a request without fields; Refused where there is no simulator."""
+    """A service's answer to a request without fields; Refused if there is no simulator."""
     try:
         return rospy.ServiceProxy(name, kind)()
     except (rospy.ServiceException, rospy.ROSException) as error:
@@ -122,20 +122,20 @@ def call(name: str, kind: type = Empty) -> Any:
 
 
 class SharedPause:
-    """Whether the simulator is paused, asked at most once a second however many pages show it.
+    """Whether the simulator is paused, queried at most once a second for any number of pages.
 
-    It is asked in a thread of its own: one that is halted does not answer at all.
+    It is queried in a thread of its own: a simulator whose process is stopped does not answer.
     """
 
     def __init__(self, node: Any = None):
         self._lock = threading.Lock()
         self._asked = -PAUSE_ASKED
-        self._answered = threading.Event()  # the last question was
+        self._answered = threading.Event()  # whether the last query was
         self._answered.set()
         self._paused: bool | None = None
 
     def read(self, name: str) -> bool | None:
-        """As it was at most a second ago; None where there is no answer."""
+        """Its state of at most a second ago; None if there is no answer."""
         with self._lock:
             since = time.monotonic() - self._asked
             if not self._answered.is_set():
@@ -148,7 +148,7 @@ class SharedPause:
         return self._paused if self._answered.wait(ANSWER_TIME) else None
 
     def forget(self) -> None:
-        """Ask anew: it has just been changed."""
+        """Query again at the next `read`, since the state has just been changed."""
         with self._lock:
             self._asked = -PAUSE_ASKED
 

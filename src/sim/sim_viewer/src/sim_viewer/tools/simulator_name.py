@@ -5,7 +5,7 @@ from sim_viewer.tools.master import SystemState
 
 
 def simulator_name(state: SystemState) -> str:
-    """Of the one that can be paused; /gazebo where there is none or it is one of several."""
+    """The node that can be paused; /gazebo if there is none or it is one of several."""
     found = sorted(service.removesuffix(names.PAUSE) for service in state.services
                    if service.endswith(names.PAUSE))
     return names.GAZEBO if names.GAZEBO in found or not found else found[0]

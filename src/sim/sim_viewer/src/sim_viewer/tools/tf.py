@@ -1,4 +1,4 @@
-"""The tree of frames, as view_frames draws it: who publishes each, how often, how old."""
+"""The tree of tf frames, as drawn by view_frames: each frame's publisher, rate and age."""
 
 import math
 import threading
@@ -31,7 +31,7 @@ class Link:
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, in the parent
     rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)  # x, y, z, w
     times: deque[float] = field(default_factory=lambda: deque(maxlen=600))  # s, wall
-    others: dict[str, float] = field(default_factory=dict)  # other parent -> wall s of its last
+    others: dict[str, float] = field(default_factory=dict)  # other parent -> wall s, its last
 
 
 class FrameTree:

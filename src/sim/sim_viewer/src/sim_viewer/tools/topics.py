@@ -1,4 +1,4 @@
-"""The list of topics, what they carry as text, and how often they come."""
+"""The list of topics, their messages as text, and their rates."""
 
 import abc
 import time
@@ -29,7 +29,7 @@ class Topics(Paced):
 
 
 def rows(state: SystemState, types: dict[str, str]) -> list[dict[str, Any]]:
-    """One row a topic, by name."""
+    """One row per topic, by name."""
     return [{"name": name, "type": types.get(name, "*"),
              "publishers": state.publishers.get(name, []),
              "subscribers": state.subscribers.get(name, [])}
@@ -46,7 +46,7 @@ class OneTopic(Paced):
 
     @abc.abstractmethod
     def take(self, message: Any) -> None:
-        """Called by rospy's threads for each message, raw: few of them need to be read."""
+        """Called by rospy's threads for each raw message: few of them need to be decoded."""
 
     def open(self) -> None:
         self.kind = self.master.message_class(self.topic)
@@ -123,7 +123,7 @@ class RateMeter:
         recent = [moment for moment in list(self._times) if moment > now - RATE_WINDOW]
         gaps = [later - earlier for earlier, later in pairwise(recent)]
         span = recent[-1] - recent[0] if recent else 0.0
-        # What has been silent for longer than its longest gap is slower than it was.
+        # A topic that has been silent for longer than its longest gap has become slower.
         silence = now - recent[-1] if recent else 0.0
         if gaps and silence > 2 * max(gaps):
             span += silence

@@ -1,6 +1,6 @@
-"""Joint controllers by type. A file here with `@controller(...)` is all it takes.
+"""Joint controllers by type. To add one, put a file with `@controller(...)` here.
 
-They follow the packages of the types' names in ros_controllers; files named here are theirs.
+They follow the packages of the same names in ros_controllers; C++ files named here are in those.
 """
 
 import importlib

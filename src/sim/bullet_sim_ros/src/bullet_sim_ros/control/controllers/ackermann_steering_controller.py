@@ -13,10 +13,10 @@ from bullet_sim_ros.control.registry import controller
 @controller("ackermann_steering_controller/AckermannSteeringController",
             "steer_drive_controller/SteerDriveController")
 class AckermannSteeringController(MobileBaseController):
-    """angular.z of cmd_vel is the steering joint's angle.
+    """angular.z of cmd_vel is the steering joint's angle, rad.
 
-    ackermann_steering_controller.cpp, AckermannSteeringController::update.
-    steer_drive_controller is its older name in ros_controllers; its parameters are the same.
+    So it is in ackermann_steering_controller.cpp, AckermannSteeringController::update.
+    steer_drive_controller is the older name in ros_controllers, with the same parameters.
     """
 
     def __init__(self, context: ControllerContext):
@@ -29,7 +29,7 @@ class AckermannSteeringController(MobileBaseController):
 
 
 def _geometry(context: ControllerContext, rear: str, front: str) -> AckermannGeometry:
-    """Parameters, else the URDF; times the multipliers."""
+    """From parameters, else from the URDF; times the multipliers."""
     p, robot = context.parameters, context.robot
     wheelbase = read_distance(p, robot, "wheel_separation_h", rear, front)
     radius = read_wheel_radius(p, robot, rear)

@@ -11,13 +11,13 @@ from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.convert import LARGEST, is_sane
 from bullet_sim_ros.errors import PluginError
 
-COMPLAINT_PERIOD = 10.0  # s, wall: a sender of bad commands sends many
+COMPLAINT_PERIOD = 10.0  # s, wall clock: a publisher of bad commands sends many
 
 log = logging.getLogger("bullet_sim.control")
 
 
 def command_timeout(context: ControllerContext) -> float:
-    """`command_timeout`, s: ours; those of ros_controllers go on with the last command for ever.
+    """`command_timeout`, s, an addition: ros_controllers keep the last command for ever.
 
     PluginError if it is negative.
     """
@@ -31,14 +31,14 @@ def command_timeout(context: ControllerContext) -> float:
 
 
 class _LimitedLog:
-    """The log of bad commands of one controller: at most one line in COMPLAINT_PERIOD."""
+    """Logs the bad commands of one controller: at most one line per COMPLAINT_PERIOD."""
 
     def __init__(self, context: ControllerContext):
         self._context = context
         self._next = 0.0  # s, wall
 
     def write(self, level: int, text: str, *values: object) -> None:
-        """By the wall clock: simulated time may be paused, or fast."""
+        """The limit uses the wall clock: simulated time may be paused, or fast."""
         now = time.monotonic()
         if now >= self._next:
             self._next = now + COMPLAINT_PERIOD
@@ -46,7 +46,7 @@ class _LimitedLog:
 
 
 def subscribe_one(context: ControllerContext, commands: Commands) -> None:
-    """`command` is a Float64."""
+    """Subscribe to `command` as Float64."""
     complaints = _LimitedLog(context)
 
     def take(msg: Float64) -> Callable[[], None] | None:
@@ -56,7 +56,7 @@ def subscribe_one(context: ControllerContext, commands: Commands) -> None:
 
 
 def subscribe_all(context: ControllerContext, commands: Commands, count: int) -> None:
-    """`command` is a Float64MultiArray with a number for each joint."""
+    """Subscribe to `command` as Float64MultiArray with a number for each of `count` joints."""
     complaints = _LimitedLog(context)
 
     def take(msg: Float64MultiArray) -> Callable[[], None] | None:
@@ -70,7 +70,7 @@ def subscribe_all(context: ControllerContext, commands: Commands, count: int) ->
 
 
 def subscribe(context: ControllerContext, commands: Commands, joints: int, group: bool) -> None:
-    """`command` of one joint or, for a group, of so many."""
+    """Subscribe to `command` of one joint or, for a group, of `joints` joints."""
     if group:
         subscribe_all(context, commands, joints)
     else:

@@ -22,7 +22,7 @@ RATES = (0.0, 2000.0)  # Hz
 
 @controller("diff_drive_controller/DiffDriveController")
 class DiffDriveController(MobileBaseController):
-    """The first wheel of each side gives separation and radius where no parameter does."""
+    """Separation and radius come from parameters, else from the first wheel of each side."""
 
     def __init__(self, context: ControllerContext):
         p = context.parameters
@@ -48,9 +48,9 @@ class DiffDriveController(MobileBaseController):
         self._offer_changes(multipliers)
 
     def update(self, time: float, period: float) -> None:
-        """Drive; publish the limited command and the wheels' state, too.
+        """Drive; also publish the limited command and the wheels' state.
 
-        diff_drive_controller.cpp, DiffDriveController::update.
+        As in diff_drive_controller.cpp, DiffDriveController::update.
         """
         super().update(time, period)
         if self._limited and self._limited.get_num_connections():
@@ -67,7 +67,7 @@ class DiffDriveController(MobileBaseController):
                                  self._radius * multipliers["right_wheel_radius_multiplier"])
 
     def _offer_changes(self, multipliers: Mapping[str, float]) -> None:
-        """dynamic_reconfigure: names and ranges of DiffDriveController.cfg."""
+        """Offer dynamic_reconfigure, with names and ranges of DiffDriveController.cfg."""
         context = self.context
         values = {name: Value(now, *MULTIPLIERS, name.replace("_", " "))
                   for name, now in multipliers.items()}
@@ -85,7 +85,7 @@ class DiffDriveController(MobileBaseController):
 
 
 class WheelStates:
-    """Wanted, actual and the difference of both, wheel by wheel, the left ones first."""
+    """Publishes desired and actual state and their difference for each wheel, left ones first."""
 
     def __init__(self, context: ControllerContext, drive: DiffDrive):
         self._drive = drive
@@ -96,7 +96,7 @@ class WheelStates:
         self._positions, self._wanted, self._actual = [0.0] * count, [0.0] * count, [0.0] * count
 
     def update(self, time: float, period: float) -> None:
-        """After each update of the drive; what is wanted is so before the limits."""
+        """To be called after each update of the drive; desired speeds are those before limits."""
         left, right = self._drive.wheel_speeds(*self._drive.wanted)
         wanted = [left] * len(self._drive.left) + [right] * len(self._drive.right)
         actual = [handle.joint.velocity for handle in self._handles]

@@ -1,11 +1,11 @@
-"""Controllers that hand commands on: effort, velocity and position, single and in groups."""
+"""Controllers that forward commands: effort, velocity and position, single and in groups."""
 
 from bullet_sim.control.controllers.forward import Forward
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import command_timeout, subscribe
 from bullet_sim_ros.control.registry import Controller, controller
 
-TYPES = {  # which interface: N m or N, rad/s or m/s, rad or m; and whether that of a group
+TYPES = {  # interface (N m or N, rad/s or m/s, rad or m), and whether it controls a group
     "effort_controllers/JointEffortController": ("effort", False),
     "velocity_controllers/JointVelocityController": ("velocity", False),
     "position_controllers/JointPositionController": ("position", False),
@@ -17,7 +17,7 @@ TYPES = {  # which interface: N m or N, rad/s or m/s, rad or m; and whether that
 
 @controller(*TYPES)
 class ForwardController(Controller):
-    """The parameter `joint` or, for a group, `joints`."""
+    """Controls the joint of the parameter `joint` or, for a group, those of `joints`."""
 
     def __init__(self, context: ControllerContext):
         super().__init__(context)
@@ -27,8 +27,8 @@ class ForwardController(Controller):
         self._law = Forward([context.claim(interface, joint) for joint in joints],
                             command_timeout(context))
         subscribe(context, self._law.commands, len(joints), group)
-        self.update = self._law.update  # each step counts: no call more than needed
+        self.update = self._law.update  # called at each step: saves a function call
 
     def start(self, time: float) -> None:
-        """No effort, no speed, the present position, until a command comes."""
+        """Command zero effort, zero velocity or the present position until a command comes."""
         self._law.start()

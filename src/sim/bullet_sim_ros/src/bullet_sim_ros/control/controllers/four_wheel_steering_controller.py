@@ -21,7 +21,7 @@ MESSAGE = "four_wheel_steering_msgs/FourWheelSteering"
 
 @controller("four_wheel_steering_controller/FourWheelSteeringController")
 class FourWheelSteeringController(MobileBaseController):
-    """cmd_vel, and cmd_four_wheel_steering where that message's package is there."""
+    """Takes cmd_vel, and cmd_four_wheel_steering if its message's package is installed."""
 
     def __init__(self, context: ControllerContext):
         wheels, steering = (
@@ -51,7 +51,7 @@ class FourWheelSteeringController(MobileBaseController):
 def _geometry(
     context: ControllerContext, wheels: list[str], steering: list[str]
 ) -> FourWheelGeometry:
-    """Parameters, else the URDF."""
+    """From parameters, else from the URDF."""
     p, robot = context.parameters, context.robot
     return FourWheelGeometry(read_distance(p, robot, "track", steering[0], steering[1]),
                              read_distance(p, robot, "wheel_base", wheels[0], wheels[2]),

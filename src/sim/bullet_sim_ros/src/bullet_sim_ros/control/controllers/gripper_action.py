@@ -23,10 +23,10 @@ TYPES = {"position_controllers/GripperActionController": "position",
 
 @controller(*TYPES)
 class GripperActionController(Controller):
-    """Stalled is aborted; the joint keeps its effort.
+    """A stalled goal is aborted; the joint keeps its effort.
 
-    gripper_action_controller_impl.h, checkForSuccess. A position is commanded, and max_effort only
-    reported; an effort is that of a PID with `gains/<joint>` on the position, up to max_effort.
+    So does gripper_action_controller_impl.h, checkForSuccess. With the position interface,
+    max_effort is only reported; with effort, a PID with `gains/<joint>` acts up to max_effort.
     """
 
     def __init__(self, context: ControllerContext):
@@ -43,12 +43,12 @@ class GripperActionController(Controller):
         context.action("gripper_cmd", GripperCommandAction, self._take_goal, self._take_cancel)
 
     def start(self, time: float) -> None:
-        """Hold what is there."""
+        """Hold the present position."""
         self._gripper.start(time)
         self._running = True
 
     def update(self, time: float, period: float) -> None:
-        """Move, and publish how far it is."""
+        """Move, and publish feedback or the result."""
         outcome = self._gripper.update(time, period)
         if outcome:
             self._goal.finish(outcome.reached_goal, _filled(GripperCommandResult(), outcome))
@@ -56,7 +56,7 @@ class GripperActionController(Controller):
             self._goal.publish_feedback(_filled(GripperCommandFeedback(), self._gripper.state()))
 
     def stop(self, time: float) -> None:
-        """Nobody pursues the goal any more."""
+        """Hold, and preempt the goal."""
         self._running = False
         self._gripper.hold()
         self._goal.preempt()

@@ -1,4 +1,4 @@
-"""joint_state_controller/JointStateController: what all joints do, on the robot's joint_states."""
+"""joint_state_controller/JointStateController: all joints' states, on the robot's joint_states."""
 
 from sensor_msgs.msg import JointState
 
@@ -30,11 +30,11 @@ class JointStateController(Controller):
         self.start(context.world_time())
 
     def start(self, time: float) -> None:
-        """Publish at the first update. SimulationError of a rate that cannot be."""
+        """Publish at the first update. SimulationError if the rate is impossible."""
         self._pace = Rate(self._rate_hz)
 
     def update(self, time: float, period: float) -> None:
-        """Publish, if it is time and somebody listens."""
+        """Publish if it is due and there are subscribers."""
         if self._pace.due(time) and self._publisher.get_num_connections():
             self._publisher.publish(self._message(time))
 

@@ -50,11 +50,11 @@ TYPES = {"position_controllers/JointTrajectoryController": "position",
 class JointTrajectoryController(Controller):
     """After a violated tolerance the trajectory goes on; only the goal ends.
 
-    joint_trajectory_controller_impl.h, checkPathTolerances. Positions are commanded; velocities and
-    efforts are those of a PID on the position, and feed-forward. No simulated joint takes position
-    and velocity at once (default_robot_hw_sim.cpp, initSim).
+    So does joint_trajectory_controller_impl.h, checkPathTolerances. Positions are commanded
+    directly; velocities and efforts come from a PID on the position, plus feed-forward. No
+    simulated joint takes position and velocity at once (default_robot_hw_sim.cpp, initSim).
 
-    PluginError of parameters that are missing or wrong.
+    PluginError if parameters are missing or wrong.
     """
 
     def __init__(self, context: ControllerContext):
@@ -97,7 +97,7 @@ class JointTrajectoryController(Controller):
     # --- in the loop
 
     def start(self, time: float) -> None:
-        """Hold still."""
+        """Hold the present position."""
         self._goal.preempt()
         for drive in self._drives:
             drive.restart()
@@ -105,7 +105,7 @@ class JointTrajectoryController(Controller):
         self._running, self._time = True, time
 
     def update(self, time: float, period: float) -> None:
-        """Follow, and publish how well."""
+        """Follow the trajectory; publish state, feedback and results."""
         self._time = time
         outcome = self._follower.update(time, period)
         if outcome:
@@ -117,7 +117,7 @@ class JointTrajectoryController(Controller):
             self._state.publish(fill_state(JointTrajectoryControllerState(), self._follower, time))
 
     def stop(self, time: float) -> None:
-        """Nobody pursues the goal any more."""
+        """Hold, and preempt the goal."""
         self._running = False
         self._follower.hold()
         self._goal.preempt()

@@ -1,4 +1,4 @@
-"""mecanum_drive_controller: four wheels with rollers, forward, sideways and about."""
+"""mecanum_drive_controller: four wheels with rollers, which drive forward, sideways and turn."""
 
 import logging
 
@@ -32,19 +32,19 @@ class MecanumDriveController(MobileBaseController):
                         "by libgazebo_ros_planar_move.so", context.describe())
 
     def apply_command(self, msg: Twist) -> None:
-        """Hand a good command to the drive; in the loop."""
+        """Pass a checked command to the drive; in the loop."""
         self._drive.command(self.context.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
 
 
 def _joint(context: ControllerContext, corner: str) -> str:
-    """Of the wheel; some forks call it rear, not back."""
+    """The joint of a wheel; some forks call it rear, not back."""
     p = context.parameters
     other = f"{corner.replace('back', 'rear')}_wheel_joint"
     return p.text(other) if p.has(other) else p.text(f"{corner}_wheel_joint")
 
 
 def _geometry(context: ControllerContext, wheels: list[str]) -> MecanumGeometry:
-    """Parameters, else the URDF (mecanum_drive_controller.cpp, setWheelParamsFromUrdf)."""
+    """From parameters, else the URDF (mecanum_drive_controller.cpp, setWheelParamsFromUrdf)."""
     p, robot = context.parameters, context.robot
     length = read_distance(p, robot, "wheel_separation_x", wheels[0], wheels[1], axis=0)
     width = read_distance(p, robot, "wheel_separation_y", wheels[0], wheels[3], axis=1)

@@ -10,7 +10,7 @@ from bullet_sim_ros.control.pid import PidTopic, open_pid
 from bullet_sim_ros.control.registry import Controller, controller
 
 STATE_EVERY = 10  # updates
-TYPES: dict[str, tuple[str, type[Servo], bool]] = {  # interface, law, and whether it is a group's
+TYPES: dict[str, tuple[str, type[Servo], bool]] = {  # interface, control law, is group
     "effort_controllers/JointPositionController": ("effort", PositionServo, False),
     "effort_controllers/JointVelocityController": ("effort", VelocityServo, False),
     "velocity_controllers/JointPositionController": ("velocity", PositionServo, False),
@@ -20,9 +20,9 @@ TYPES: dict[str, tuple[str, type[Servo], bool]] = {  # interface, law, and wheth
 
 @controller(*TYPES)
 class ServoController(Controller):
-    """`joint` with `pid/...`, and topic `state` with target, value and command.
+    """Reads `joint` and `pid/...`; publishes target, value and command on the topic `state`.
 
-    A group has `joints` with `<joint>/pid/...` and publishes no state.
+    A group reads `joints` and `<joint>/pid/...` and publishes no state.
     """
 
     def __init__(self, context: ControllerContext):
@@ -50,7 +50,7 @@ class ServoController(Controller):
         return self._law(handle, pid)
 
     def start(self, time: float) -> None:
-        """Keep the joint as it is until a command comes."""
+        """Hold the joint until a command comes."""
         self._servos.start()
         self._updates = 0
 

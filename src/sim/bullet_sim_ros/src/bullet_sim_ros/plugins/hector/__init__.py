@@ -1,5 +1,5 @@
 """The plugins of hector_gazebo_plugins, and hector_quadrotor_gazebo_plugins' barometer.
 
-Files named here are those of their src and include; the errors are those of sensor_model.h, the
-rates those of update_timer.h.
+C++ files named here are in their src and include; sensor errors follow sensor_model.h, rates
+update_timer.h.
 """

@@ -27,7 +27,7 @@ class HectorBaroPlugin(common.HectorSensor):
         self.begin(0.0)
 
     def measure(self) -> PointStamped:
-        """The height now; sends the pressure, too."""
+        """The height now; publishes the pressure, too."""
         true = self._link.pose.position[2]
         height = float(self._error.apply(np.array([true]), self.elapsed())[0])
         if self._altimeters:

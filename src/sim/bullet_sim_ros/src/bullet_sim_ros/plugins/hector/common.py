@@ -32,29 +32,29 @@ def find_link(context: PluginContext) -> Link:
 
 
 class HectorSensor(SensorPlugin):
-    """Frame by `<frameId>`, without tf_prefix; errors that drift whether or not anybody listens."""
+    """The frame is `<frameId>`, without tf_prefix; errors drift with and without subscribers."""
 
     def __init__(self, context: PluginContext, kind: type, topic: str, frame: str,
                  queue_size: int = 10):
-        """`topic` and `frame` are those without tags."""
+        """`topic` and `frame` are the defaults where there are no tags."""
         p = context.parameters
         self._errors: list[HectorError] = []
-        self._measured: float | None = None  # s, when it was last
+        self._measured: float | None = None  # s, time of the last measurement
         context.on_reset(self._restart)
         self.topic = p.topic(topic)
         super().__init__(context, kind, self.topic, p.text("frameId", frame),
                          tf_prefix=no_tf_prefix, queue_size=queue_size)
 
     def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
-        """An error of the sensor with this many components; see HectorError.
+        """Add an error model with `size` components; see HectorError.
 
-        PluginError of a tag that is not a number.
+        PluginError if a tag is not a number.
         """
         self._errors.append(HectorError(self.context, name, size, *prefixes))
         return self._errors[-1]
 
     def offer(self, error: HectorError, name: str = "") -> None:
-        """Let the error be reconfigured, below the topic if there is one."""
+        """Let dynamic_reconfigure change the error model, below the topic if there is one."""
         if self.topic:
             error.offer(names.join(names.join(self.namespace, self.topic), name))
 
@@ -68,7 +68,7 @@ class HectorSensor(SensorPlugin):
         self._measured = None
 
     def begin(self, default_hz: float) -> None:
-        """Measure by `updateRate`, or by `updatePeriod` in s, which wins; 0: every step."""
+        """Measure at `updateRate`, Hz; `updatePeriod`, s, takes precedence; 0: every step."""
         p = self.context.parameters
         rate_hz = p.number("updateRate", default_hz)
         if p.text("updatePeriod"):
@@ -77,25 +77,25 @@ class HectorSensor(SensorPlugin):
         self.publish_at(rate_hz, whole_steps=False)
 
     def wanted(self) -> bool:
-        """A drift goes on whether or not anybody listens."""
+        """A drift goes on without subscribers, too."""
         return any(error.drifts for error in self._errors) or super().wanted()
 
 
 class HectorError(ErrorModel):
-    """An error model as a plugin's tags have it, that dynamic_reconfigure can change.
+    """An error model from a plugin's tags, which dynamic_reconfigure can change.
 
-    PluginError of a tag that is not a number.
+    PluginError if a tag is not a number.
     """
 
     def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
-        """`prefixes` are those of the tags; the last one that is used counts."""
+        """`prefixes` are those of the tags; where several are set, the last prefix counts."""
         self._context = context
         super().__init__(context.world, f"{context.model.name}::{context.description.name} {name}",
                          read_errors(context.parameters, size, prefixes or ("",)))
         context.on_reset(self.restart)
 
     def offer(self, namespace: str) -> None:
-        """Let it be reconfigured; one value is for all components.
+        """Let dynamic_reconfigure change it; each value is set for all components.
 
         sensor_model.h, dynamicReconfigureCallback.
         """
@@ -110,12 +110,12 @@ class HectorError(ErrorModel):
 
 
 def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:
-    """The same with that white noise on each component."""
+    """A copy with this standard deviation of white noise on each component."""
     return replace(errors, gaussian_noise=(noise,) * len(errors.offset))
 
 
 def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> ErrorParameters:
-    """`accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one.
+    """Read `accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one.
 
     PluginError if a tag has the wrong number of numbers, or a negative one where none can be.
     """

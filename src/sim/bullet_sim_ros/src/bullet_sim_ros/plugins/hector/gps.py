@@ -13,7 +13,7 @@ from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
-DARMSTADT = (49.9, 8.9)  # degrees, the default place of gazebo_ros_gps.cpp
+DARMSTADT = (49.9, 8.9)  # degrees, the default reference of gazebo_ros_gps.cpp
 SERVICES = {"SERVICE_GPS": NavSatStatus.SERVICE_GPS,
             "SERVICE_GLONASS": NavSatStatus.SERVICE_GLONASS,
             "SERVICE_COMPASS": NavSatStatus.SERVICE_COMPASS,
@@ -31,8 +31,8 @@ def world_heading(spherical: SphericalDescription) -> float:
 class HectorGpsPlugin(common.HectorSensor):
     """The world's `<spherical_coordinates>` count unless `useWorldSphericalCoordinates` is false.
 
-    Releases of gazebo_ros_gps.cpp, Load, differ there. A drift of the velocity moves the position,
-    too.
+    Releases of gazebo_ros_gps.cpp, Load, differ in that. A drift of the velocity also moves the
+    position.
     """
 
     def __init__(self, context: PluginContext):
@@ -73,7 +73,7 @@ class HectorGpsPlugin(common.HectorSensor):
         self._status.service = sum(SERVICES[name] for name in SERVICES if values[name])
 
     def measure(self) -> NavSatFix:
-        """The position now; sends the velocity, too."""
+        """The position now; publishes the velocity, too."""
         elapsed, place = self.elapsed(), self._reference
         velocity = self._velocity.apply(np.array(self._link.twist.linear), elapsed)
         position = self._position.apply(np.array(self._link.pose.position), elapsed)

@@ -17,9 +17,9 @@ from bullet_sim_ros.plugins.hector import common
 
 @plugin("libhector_gazebo_ros_imu.so")
 class HectorImuPlugin(common.HectorSensor):
-    """In the link's axes; the accelerometer's bias tilts the orientation, yaw's turns it.
+    """Measures in the link's axes; the accelerometer's bias tilts the orientation, yaw's turns it.
 
-    `heading...` tags, of older releases, mean what `yaw...` mean. `randomEngineSeed` is not needed.
+    `heading...` tags of older releases mean the same as `yaw...`. `randomEngineSeed` is not used.
     """
 
     def __init__(self, context: PluginContext):
@@ -41,13 +41,13 @@ class HectorImuPlugin(common.HectorSensor):
             context.on_reset(self._imu.restart)
 
     def _set_common_noise(self, noise: float) -> None:
-        """`gaussianNoise` replaces those of accelerometer and gyroscope."""
+        """`gaussianNoise` replaces the noise of accelerometer and gyroscope."""
         if noise:
             for error in (self._accel, self._rate):
                 error.parameters = common.with_noise(error.parameters, noise)
 
     def _serve(self, context: PluginContext, topic: str) -> None:
-        """Calibration forgets the gyroscope's drift; the others set a bias."""
+        """Offer services: calibration clears the gyroscope's drift, the others set a bias."""
         def setter(error: common.HectorError):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
                 bias = np.array(convert.triple(request.bias))
@@ -66,7 +66,7 @@ class HectorImuPlugin(common.HectorSensor):
         context.serve(f"{topic}/set_rate_bias", SetBias, setter(self._rate))
 
     def measure(self) -> ImuMsg:
-        """What the sensor feels now; sends its bias, too."""
+        """The reading now; publishes the biases, too."""
         reading, elapsed = self._imu.sample(), self.elapsed()
         gravity = np.array(self.world.description.gravity)
         orientation = multiply(self._offset, reading.orientation)

@@ -14,7 +14,7 @@ from bullet_sim_ros.plugins.hector.gps import world_heading
 
 @plugin("libhector_gazebo_ros_magnetic.so")
 class HectorMagneticPlugin(common.HectorSensor):
-    """Of length `magnitude`, `inclination` below level, `declination` clockwise from true north.
+    """A field of `magnitude`, `inclination` below level, `declination` clockwise from true north.
 
     The world's `<magnetic_field>` is not used, as in gazebo_ros_magnetic.cpp, Load; its heading is,
     as by the GPS.
@@ -31,7 +31,7 @@ class HectorMagneticPlugin(common.HectorSensor):
         self.begin(0.0)
 
     def _read_field(self) -> np.ndarray:
-        """In the world's axes, (3,)."""
+        """The field in the world's axes, (3,)."""
         p, spherical = self.context.parameters, self.world.description.spherical
         heading = 0.0
         if spherical and p.flag("useWorldSphericalCoordinates", True):

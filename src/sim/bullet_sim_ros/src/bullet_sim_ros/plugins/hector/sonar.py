@@ -10,7 +10,7 @@ from bullet_sim_ros.plugins.hector import common
 
 @plugin("libhector_gazebo_ros_sonar.so")
 class HectorSonarPlugin(common.HectorSensor):
-    """10 Hz by default, whatever the sensor's rate; what is nearer than range_max has errors."""
+    """10 Hz by default, whatever the sensor's rate; distances below range_max have errors."""
 
     def __init__(self, context: PluginContext):
         self._fan = RayFan(context.world, context.link, context.sensor)

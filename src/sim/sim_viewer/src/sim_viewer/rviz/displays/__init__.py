@@ -1,1 +1,1 @@
-"""One module a display: messages in, parts of a drawing out. None of them imports ROS."""
+"""One module per display: messages in, parts of a drawing out. None of them imports ROS."""

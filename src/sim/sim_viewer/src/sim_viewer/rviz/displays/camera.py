@@ -1,7 +1,7 @@
-"""rviz/Camera: a camera's picture, and the scene as the camera sees it.
+"""rviz/Camera: a camera's image, and the scene as the camera sees it.
 
-The picture is shown by the pose of its frame at its stamp, and by the CameraInfo beside its topic:
-the projection matrix P, as rviz does.
+As in rviz, the view is given by the pose of the image's frame at its stamp and by the projection
+matrix P of the CameraInfo beside its topic.
 """
 
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ from sim_viewer.rviz.options import Option
 
 COMPRESSED = "/compressed"
 RENDERINGS = ("background and overlay", "background", "overlay")
-WIDTH_PX = 640  # of the picture that is sent, at most
-LARGEST_PX, LEAST_PX = 1 << 14, 1e-6  # a side of a picture, a focal length
+WIDTH_PX = 640  # of the image that is sent, at most
+LARGEST_PX, LEAST_PX = 1 << 14, 1e-6  # a side of an image, a focal length
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Of a picture of `size` px: focal lengths and principal point in px; `shift` in m to the right
+    """Of an image of `size` px: focal lengths and principal point in px; `shift` in m to the right
     and down, of a stereo pair's second camera."""
 
     size: tuple[int, int]
@@ -32,7 +32,7 @@ class Intrinsics:
 
 
 class Camera(Drawer):
-    """The newest picture, once there is a CameraInfo."""
+    """The newest image, once there is a CameraInfo."""
 
     def __init__(self, options: dict[str, Any]):
         super().__init__(options)
@@ -43,7 +43,7 @@ class Camera(Drawer):
         self.statuses = {"Camera Info": (WARNING, "No CameraInfo received")}
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
-        """A picture with its pose, or a CameraInfo."""
+        """An image with its pose, or a CameraInfo."""
         if not hasattr(message, "P"):
             self._picture, self._pose, self.changed = message, pose, True
             return
@@ -52,7 +52,7 @@ class Camera(Drawer):
         self._intrinsics = found
 
     def draw(self, view: View) -> list[Part] | None:
-        """One part; Problem where the picture cannot be shown."""
+        """One part; Problem if the image cannot be shown."""
         if not self.changed:
             return None
         self.changed = False
@@ -68,7 +68,7 @@ class Camera(Drawer):
 
 
 def intrinsics_of(info: Any) -> tuple[Intrinsics | None, tuple[str, str]]:
-    """What a sensor_msgs/CameraInfo says, and the status for it; None where it says nothing."""
+    """The intrinsics of a sensor_msgs/CameraInfo, None if it is unusable, and its status."""
     across, down = info.P[0], info.P[5]
     if not np.isfinite(info.P).all():
         return None, (ERROR, "Contains invalid floating point values (nans or infs)")

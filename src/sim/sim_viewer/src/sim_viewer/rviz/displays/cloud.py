@@ -19,7 +19,7 @@ PACKED = "RGB8", "RGBF32"  # the Color Transformers that need them
 
 def cloud_points(message: Any, options: dict[str, Any], most: int,
                  pose: Pose) -> tuple[list[Part], Statuses]:
-    """As many as the page takes, evenly from the whole cloud. Problem for sizes that do not fit."""
+    """As many points as the page takes, evenly from the cloud. Problem if sizes do not fit."""
     table = records(message)
     chosen = table[evenly(len(table), most)]
     positions = np.stack([chosen[axis].astype(np.float32) for axis in "xyz"], axis=1)
@@ -29,7 +29,7 @@ def cloud_points(message: Any, options: dict[str, Any], most: int,
     if kind in PACKED and colour:
         colours = packed_colours(chosen[colour])
     else:
-        if kind in PACKED:  # what rviz takes where a cloud has no colours
+        if kind in PACKED:  # what rviz uses if a cloud has no colours
             options = options | {"Color Transformer": "Intensity" if channel in names
                                  else "AxisColor"}
         values = chosen[channel] if channel in names else None
@@ -38,9 +38,9 @@ def cloud_points(message: Any, options: dict[str, Any], most: int,
 
 
 def records(message: Any) -> np.ndarray:
-    """(n,) with a field for each of the message's, x, y and z among them; a view of its bytes.
+    """A structured array (n,) with the message's fields, among them x, y, z.
 
-    Problem where sizes and fields do not fit together.
+    Problem if sizes and fields do not fit together.
     """
     width, height, step = message.width, message.height, message.point_step
     order = ">" if message.is_bigendian else "<"

@@ -1,4 +1,4 @@
-"""How sure a pose is: an ellipsoid for the position, a wedge on the floor for the direction."""
+"""A pose's uncertainty: an ellipsoid for the position, a wedge on the floor for the direction."""
 
 from typing import Any
 
@@ -25,9 +25,9 @@ OPTIONS = (
 
 
 def ellipsoid(row: np.ndarray, covariance: Any, options: dict[str, Any]) -> list[Part]:
-    """One standard deviation round a pose (7,), of a (36,) covariance in the same frame.
+    """One standard deviation around a pose (7,), from a (36,) covariance in the same frame.
 
-    Problem where that has values that are no numbers.
+    Problem if the covariance has values that are not finite.
     """
     if not options["Covariance/Value"]:
         return []

@@ -14,7 +14,7 @@ from sim_viewer.rviz.geometry import axes, lines
 from sim_viewer.rviz.options import FIXED_FRAME, Option
 
 PLANES = {"XY": (0, 1), "XZ": (0, 2), "YZ": (1, 2)}
-PERIOD = 0.5  # s between looks at where the reference frame is
+PERIOD = 0.5  # s between look-ups of the reference frame's pose
 FRAME = Option("Reference Frame", "frame", FIXED_FRAME)
 
 
@@ -35,7 +35,7 @@ class Fixed(Drawer):
 
 
 def grid_lines(options: dict[str, Any]) -> list[Part]:
-    """As many cells as the options say, in the middle of the frame."""
+    """A grid of as many cells as the options say, centred on the frame's origin."""
     cells, size = options["Plane Cell Count"], options["Cell Size"]
     half = cells * size / 2
     places = np.linspace(-half, half, cells + 1)
@@ -51,7 +51,7 @@ def grid_lines(options: dict[str, Any]) -> list[Part]:
 
 
 def cross(options: dict[str, Any]) -> list[Part]:
-    """At the reference frame's origin."""
+    """Axes at the reference frame's origin."""
     row = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
     return axes(row, options["Length"], options["Radius"])
 

@@ -1,11 +1,11 @@
-"""rviz/Image: a picture beside the view, by the page's own stream of pictures (images.py)."""
+"""rviz/Image: an image beside the view, from the page's own image stream (images.py)."""
 
 from sim_viewer.rviz.display_type import DisplayType, Drawer, View
 from sim_viewer.rviz.drawing import Part
 
 
 class Picture(Drawer):
-    """Nothing in the view."""
+    """Draws nothing in the view."""
 
     def draw(self, view: View) -> list[Part]:
         return []

@@ -1,7 +1,7 @@
 """rviz/InteractiveMarkers: markers with handles, which a page with control can drag and click.
 
-The first part says which markers and controls there are; each of the others belongs to a control,
-in whose frame it is. The page puts those where they belong: they follow a hand, or face the viewer.
+The first part lists markers and controls; each of the others belongs to a control and is in its
+frame. The page places those parts: they follow the mouse, or face the viewer.
 """
 
 from collections import deque
@@ -18,10 +18,10 @@ from sim_viewer.rviz.options import Option
 
 UPDATE = "/update"  # after the markers' namespace
 MOST_SERVERS = 20  # on a topic
-MOST_CONTROLS = 1000  # that the page draws, and
-MOST_SHAPES = 5000  # of which they are made
+MOST_CONTROLS = 1000  # that the page draws
+MOST_SHAPES = 5000  # of all controls together
 MOST_STATUSES = 20
-MOST_DRAGS = 100  # that wait for the next look
+MOST_DRAGS = 100  # that wait for the next drawing
 Key = str  # of a marker, for the page: server and name
 
 
@@ -35,8 +35,8 @@ class Interactive(Drawer):
         self._drags: deque[tuple[Key, Pose]] = deque(maxlen=MOST_DRAGS)
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
-        """All markers of a server, or changes. Problem for those that cannot be taken."""
-        self._follow_drags()  # the message may be what their server answers
+        """All markers of a server, or changes. Problem if some cannot be used."""
+        self._follow_drags()  # the message may be the server's answer to them
         if len(message.server_id) > LONGEST_NAME:
             raise Problem(f"the server's id {message.server_id:.40} is longer than {LONGEST_NAME}")
         self._crowded = (message.server_id not in self._servers
@@ -46,7 +46,7 @@ class Interactive(Drawer):
         server = self._servers.setdefault(message.server_id, Server())
         try:
             news = server.update(message) if hasattr(message, "type") else server.begin(message)
-        except Exception:  # which the list tells of; some of it may be there
+        except Exception:  # which the status list shows; some markers may have been taken
             self.changed = True
             raise
         self.changed = self.changed or news
@@ -58,11 +58,11 @@ class Interactive(Drawer):
         return found.markers.get(name) if found else None
 
     def drag(self, key: Key, pose: Pose) -> None:
-        """The page says where it has put a marker, in its header's frame. In any thread."""
+        """The page has moved a marker to this pose in its header's frame. In any thread."""
         self._drags.append((key, pose))
 
     def place_anew(self) -> bool:
-        """Each marker by its own frame and time."""
+        """Each marker is placed anew, by its own frame and stamp."""
         for _, one in self._all():
             one.place = None
         self.changed = True
@@ -97,7 +97,7 @@ class Interactive(Drawer):
                 self.changed = True
 
     def _fitting(self) -> list[tuple[Key, InteractiveMarker]]:
-        """The first ones, as many as a page can draw."""
+        """The first markers, as many as a page can draw."""
         controls = shapes = 0
         for count, (_, one) in enumerate(found := self._all()):
             controls += len(one.message.controls)
@@ -120,7 +120,7 @@ class Interactive(Drawer):
         return found
 
     def _parts(self, placed: list[tuple[Key, InteractiveMarker]], view: View) -> list[Part]:
-        """Those of each control, with its number and the marker's."""
+        """The parts of each control, with the numbers of control and marker."""
         owners, parts, meshes = [], [], []
         for number, (_, marker) in enumerate(placed):
             for index, control in enumerate(marker.controls):
@@ -144,7 +144,7 @@ class Interactive(Drawer):
 
 
 def namespace(topic: str) -> str:
-    """The markers' namespace, from the name of their topic of updates."""
+    """The markers' namespace, from the name of their update topic."""
     return topic.removesuffix(UPDATE)
 
 

@@ -1,7 +1,7 @@
-"""What controls of interactive markers look like that bring no markers of their own.
+"""Default shapes for controls of interactive markers that have no markers of their own.
 
-Sizes and colours are those of rviz: arrows where something is pushed along an axis, a ring where it
-is turned or moved in a plane, words where there is a menu.
+Sizes and colours are those of rviz: arrows for moving along an axis, a ring for rotating or moving
+in a plane, text for a menu.
 """
 
 from typing import Any
@@ -13,9 +13,9 @@ from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import arrows, multiplied, turned
 
 NONE, MENU, BUTTON, MOVE_AXIS, MOVE_PLANE, ROTATE_AXIS, MOVE_ROTATE = range(7)
-MODES = 10  # with those of three dimensions
+MODES = 10  # with the 3D modes
 INHERIT, FIXED, VIEW_FACING = range(3)
-# In sizes of the marker.
+# In units of the marker's size.
 SHAFT, HEAD = (0.2, 0.15), (0.2, 0.25)  # length and diameter
 BEGIN = 0.5  # of an arrow
 INNER, OUTER = 0.5, 0.65  # radii of a ring
@@ -23,13 +23,13 @@ MENU_HEIGHT, MENU_ABOVE = 0.25, 1.175
 TITLE_HEIGHT, TITLE_ABOVE = 0.15, 1.4
 SIDES = 36  # of a ring
 ALPHA = 0.5
-SHADES = (0.6, 1.0)  # of a ring that turns something, so that one sees it turn
+SHADES = (0.6, 1.0)  # of a ring's segments in turn, so that its rotation is visible
 LONGEST_TEXT = 1000
 BACKWARDS = np.array([0.0, 0.0, 1.0, 0.0])  # turns x to -x
 
 
 def handle_parts(mode: int, orientation: Quaternion, size: float, text: str) -> list[Part]:
-    """Of a control whose x axis `orientation` turns, of a marker of `size` m."""
+    """The parts of a control with the x axis of `orientation`, of a marker of `size` m."""
     if mode == MOVE_AXIS:
         return _two_arrows(orientation, size)
     if mode in (MOVE_PLANE, ROTATE_AXIS, MOVE_ROTATE):
@@ -40,7 +40,7 @@ def handle_parts(mode: int, orientation: Quaternion, size: float, text: str) -> 
 
 
 def words(text: str, above: float, height: float) -> Part:
-    """White, `above` m over the marker."""
+    """White text of `height` m, `above` m over the marker."""
     return Part("texts", fields={"texts": [{
         "text": text[:LONGEST_TEXT], "position": [0.0, 0.0, above], "height": height,
         "colour": [255, 255, 255, 255]}]})
@@ -75,7 +75,7 @@ def _ring(mode: int, orientation: Quaternion, size: float) -> Part:
 
 
 def unique(names: list[str]) -> list[str]:
-    """Names that feedback goes by: those of a marker that are there twice get a number."""
+    """Control names for feedback: names that a marker has more than once get a number."""
     found: dict[str, Any] = {}
     for name in names:
         number, free = 0, name

@@ -1,4 +1,4 @@
-"""One interactive marker: where it is, and its controls with what they look like."""
+"""One interactive marker: its pose, and its controls with their shapes."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -27,26 +27,26 @@ LARGEST = 1e6  # m, sizes and places
 MOST_CONTROLS = 100  # of a marker
 MOST_MARKERS = 200  # of a control
 MOST_ENTRIES = 200  # of a menu
-TITLE = ""  # name of the controls that are its axes and words
-FEEDBACK = 0  # type of a menu's entry; the others would start programs here
-AXIS_WIDTH = 0.05  # sizes of the marker
+TITLE = ""  # name of the controls that show its axes and its description
+FEEDBACK = 0  # type of a menu entry; the other types would start programs on this machine
+AXIS_WIDTH = 0.05  # in units of the marker's size
 
 
 @dataclass
 class Control:
-    """What can be done with a marker; `shown` stands in the control's own frame."""
+    """One control of a marker; `shown` is in the control's own frame."""
 
     name: str
     mode: int  # of visualization_msgs/InteractiveMarkerControl
     facing: int  # its orientation_mode
-    orientation: Quaternion  # its x axis is the one that it is about
-    independent: bool = False  # whether what one sees does not turn to the viewer with the axis
+    orientation: Quaternion  # its x axis is that of the motion
+    independent: bool = False  # whether its markers do not turn to the viewer with the axis
     text: str = ""
     shown: list[Shown] = field(default_factory=list)
-    option: str = ""  # by which it is shown
+    option: str = ""  # of the display, which shows it
 
     def as_json(self) -> dict[str, Any]:
-        """For the page."""
+        """The control's data for the page."""
         return {"name": self.name, "mode": self.mode, "facing": self.facing, "text": self.text,
                 "orientation": self.orientation, "independent": self.independent}
 
@@ -59,15 +59,15 @@ class InteractiveMarker:
         self.message, self.header = message, message.header
         self.controls: list[Control] = []
         self.place: Pose | None = None
-        self.lost = ""  # why it, or one of its markers, has no place
+        self.lost = ""  # why it, or one of its markers, has no pose
         self.problems: list[str] = []
         self.built = False
-        self._first = IDENTITY  # the pose that it came with
-        self._moved: Pose | None = None  # the one that it has got since
+        self._first = IDENTITY  # the pose of its message
+        self._moved: Pose | None = None  # a pose that was set since
 
     @property
     def pose(self) -> Pose:
-        """In its header's frame."""
+        """The marker's pose in its header's frame."""
         return self._moved or self._first
 
     @property
@@ -78,7 +78,7 @@ class InteractiveMarker:
 
     @property
     def control_names(self) -> list[str]:
-        """By which feedback tells its controls apart, also before they are built."""
+        """Unique names of its controls for feedback, also before they are built."""
         return [TITLE, *unique([one.name[:LONGEST_TEXT] for one in self._given])]
 
     @property
@@ -86,13 +86,13 @@ class InteractiveMarker:
         return self.message.controls[:MOST_CONTROLS]
 
     def move(self, pose: Pose, header: Any = None) -> None:
-        """It is elsewhere, maybe in another frame."""
+        """Set its pose, and another frame if there is a `header`."""
         self._moved = pose
         if header is not None:
             self.header, self.place = header, None
 
     def build(self, view: View, most_points: int) -> None:
-        """Work out what it looks like."""
+        """Make its controls and their parts."""
         self.built = True
         try:
             self._first = unit_pose(self.message.pose)
@@ -118,7 +118,7 @@ class InteractiveMarker:
             self.problems += [f"{name}: {shown.problem}" for shown in made.shown if shown.problem]
 
     def put(self, view: View) -> bool:
-        """Find its frame, where that is due; whether it has moved."""
+        """Look up its frame if that is due; returns whether it has moved."""
         locked = not self.header.stamp.to_nsec()
         if self.place is not None and not locked and not self.lost:
             return False
@@ -133,7 +133,7 @@ class InteractiveMarker:
         return self.place != before
 
     def _put_markers(self, control: Control, view: View) -> None:
-        """Markers with a frame of their own stay where they were beside the control's."""
+        """Markers with a frame of their own are placed once, and keep that pose to the control."""
         turn = IDENTITY.orientation if control.facing == FIXED else self._first.orientation
         frame = self.place * Pose(self._first.position, turn)
         for one in control.shown:
@@ -149,27 +149,27 @@ class InteractiveMarker:
                 "menu": bool(self.message.menu_entries)}
 
     def menu(self) -> list[dict[str, Any]]:
-        """Its menu's entries, for the page."""
+        """The entries of its menu, for the page."""
         return [{"id": one.id, "parent": one.parent_id, "title": one.title[:LONGEST_TEXT],
                  "works": one.command_type == FEEDBACK}
                 for one in self.message.menu_entries[:MOST_ENTRIES]]
 
 
 def unit(message: Any) -> Quaternion:
-    """x, y, z, w of length 1 of a geometry_msgs/Quaternion of any length; all zeros: no rotation.
+    """x, y, z, w of a geometry_msgs/Quaternion, normalised; all zeros mean no rotation.
 
-    Problem for what are no numbers.
+    Problem if values are not finite.
     """
     values = finite([message.x, message.y, message.z, message.w])
     largest = np.abs(values).max()
     if not largest:
         return IDENTITY.orientation
-    values = values / largest  # or squares of very large and small ones would not be numbers
+    values = values / largest  # else squares of very large or small values overflow or vanish
     return tuple(map(float, values / np.linalg.norm(values)))
 
 
 def unit_pose(message: Any) -> Pose:
-    """Of a geometry_msgs/Pose; Problem for what are no numbers, and for places that are far off."""
+    """A pose from a geometry_msgs/Pose; Problem if values are not finite, or too far away."""
     position = points([message.position])[0]
     if np.abs(position).max() > LARGEST:
         raise Problem(f"farther than {LARGEST:g} m")
@@ -177,7 +177,7 @@ def unit_pose(message: Any) -> Pose:
 
 
 def _size(scale: float) -> float:
-    """m; Problem for what is none. Nobody has set it: 1 m."""
+    """A marker's size, m; 1 if it is not set. Problem if it is invalid."""
     found = float(finite([scale])[0]) or 1.0
     if not 0.0 < found <= LARGEST:
         raise Problem(f"The scale is {found:g}, which is not between 0 and {LARGEST:g} m")
@@ -203,12 +203,12 @@ def _control(name: str, message: Any, scale: float, view: View, most_points: int
 
 
 def _shown(marker: Any, view: View, most_points: int) -> Shown:
-    """A marker without a frame is meant in the control's."""
+    """A marker of a control; without a frame_id it is in the control's frame."""
     made = Shown(marker, -np.inf, np.inf)
     try:
         for axis, value in zip("xyzw", unit(marker.pose.orientation), strict=True):
             setattr(marker.pose.orientation, axis, value)
-        for axis in "xyz":  # as rviz completes them
+        for axis in "xyz":  # unset ones become 1, as in rviz
             setattr(marker.scale, axis, getattr(marker.scale, axis) or 1.0)
         made.build(view, most_points)
     except Problem as problem:
@@ -223,7 +223,7 @@ def _still(parts: list[Any]) -> Shown:
 
 
 def _extras(message: Any, scale: float) -> list[Control]:
-    """Axes and words, which the options show."""
+    """The marker's axes and description, which options of the display show."""
     cross = axes(np.array([[0.0] * 6 + [1.0]]), scale, AXIS_WIDTH * scale)
     made = [Control(TITLE, NONE, INHERIT, IDENTITY.orientation, shown=[_still(cross)],
                     option="Show Axes")]

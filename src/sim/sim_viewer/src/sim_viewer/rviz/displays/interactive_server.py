@@ -1,8 +1,8 @@
-"""The markers of one server, as its messages to `.../update_full` and `.../update` tell of them.
+"""The markers of one server, from its messages on `.../update_full` and `.../update`.
 
-Each message has a number. Those of the first topic have all markers; each of the second one has
-changes, and a number that is one larger, or says that there are none. A server sends both after
-each change, so whoever has missed changes gets all that there is with the next ones.
+Each message has a sequence number. Those on the first topic have all markers; each on the second
+has changes, with a number that is one larger, or says that there are none. A server sends both
+after each change, so a client that has missed changes gets all markers with the next change.
 """
 
 from typing import Any
@@ -13,24 +13,24 @@ from sim_viewer.rviz.displays.interactive_marker import InteractiveMarker, unit_
 UPDATE = 1  # type of an update that has changes
 MOST_MARKERS = 500
 LONGEST_NAME = 200  # characters
-SILENCE = 1.0  # s after which a server that says nothing is told of; it speaks twice as often
+SILENCE = 1.0  # s after which a silent server is reported; servers send twice as often
 WAITING = (WARNING, "Waiting for all markers, on update_full")
 MISSED = (ERROR, "Update sequence number is out of order.")
 
 
 class Server:
-    """`markers` by name."""
+    """One server's markers: `markers`, by name."""
 
     def __init__(self) -> None:
         self.markers: dict[str, InteractiveMarker] = {}
         self._number: int | None = None  # of the last change
-        self._followed = False  # whether all that there is comes once more after that change
+        self._followed = False  # whether all markers are still to be sent again after that change
         self._missed = False
-        self._fresh = True  # whether it has spoken since the last look
-        self._heard = 0.0  # s, the last look before which it had
+        self._fresh = True  # whether it has sent anything since the last `status`
+        self._heard = 0.0  # s, the last `status` that followed a message
 
     def begin(self, init: Any) -> bool:
-        """All markers; whether that is news. Problem for those that cannot be taken."""
+        """Take all markers; returns whether that is news. Problem if some cannot be used."""
         self._fresh = True
         if self._followed and init.seq_num == self._number:
             self._followed = False
@@ -44,7 +44,7 @@ class Server:
         return True
 
     def update(self, update: Any) -> bool:
-        """Changes; whether there are any. Problem for those that cannot be taken."""
+        """Take changes; returns whether there are any. Problem if some cannot be used."""
         self._fresh = True
         if self._number is None:
             return False
@@ -62,7 +62,7 @@ class Server:
         return True
 
     def status(self, wall: float) -> tuple[str, str]:
-        """As rviz lists it; `wall` is the present in s of a clock that never jumps."""
+        """The status as rviz lists it; `wall` is the present time, s, of a monotonic clock."""
         if self._fresh:
             self._heard, self._fresh = wall, False
         if self._number is None:

@@ -1,4 +1,4 @@
-"""What each type of visualization_msgs/Marker looks like: a table from its number to parts."""
+"""The shapes of each type of visualization_msgs/Marker: a table of functions that make parts."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,12 +14,12 @@ ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST = 0, 1, 2, 3, 4, 5
 CUBE_LIST, SPHERE_LIST, POINTS, TEXT, MESH, TRIANGLES = 6, 7, 8, 9, 10, 11
 ORIGIN = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
 SHAFT = 0.77  # of an arrow's length
-HEAD_WIDTH = 2.0  # shafts
+HEAD_WIDTH = 2.0  # in shaft diameters
 
 
 def marker_parts(marker: Any, most: int) -> list[Part]:
-    """Parts in the marker's own pose; `most` points of a list. Problem: a marker that rviz would
-    not show. Meshes are not drawn here."""
+    """Parts relative to the marker's pose; at most `most` points of a list. Problem if rviz would
+    not show the marker. Meshes are not drawn here."""
     draw = DRAWN.get(marker.type)
     if draw is None:
         raise Problem(f"Unknown marker type: {marker.type}")
@@ -27,7 +27,7 @@ def marker_parts(marker: Any, most: int) -> list[Part]:
 
 
 def scale_of(marker: Any) -> np.ndarray:
-    """(3,) m; Problem for what are no numbers."""
+    """(3,) m; Problem if values are not finite."""
     try:
         return finite([marker.scale.x, marker.scale.y, marker.scale.z])
     except Problem:
@@ -40,7 +40,7 @@ def colour_of(color: Any) -> np.ndarray:
 
 
 def _arrow(marker: Any, scale: np.ndarray, most: int) -> list[Part]:
-    """By two points, or along x of its pose."""
+    """An arrow between two points, or along the x axis of the marker's pose."""
     if not len(marker.points):
         _solid(scale)
         length, head = SHAFT * scale[0], (1 - SHAFT) * scale[0]
@@ -125,7 +125,7 @@ def _text(marker: Any, scale: np.ndarray, most: int) -> list[Part]:
 
 
 def _listed(marker: Any, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """At most so many points (n, 3) m and colours (n, 4); Problem where there are none."""
+    """At most `most` points (n, 3) m and colours (n, 4); Problem if there are none."""
     if not len(marker.points):
         raise Problem("Points should not be empty for specified marker type.")
     count = len(marker.points)

@@ -33,17 +33,17 @@ class Shown:
     """One marker; `place` is its frame in the fixed frame, once that is known."""
 
     marker: Any
-    begins: float  # s; of one without a lifetime always
-    ends: float  # s; or never
+    begins: float  # s; -inf without a lifetime
+    ends: float  # s; inf without a lifetime
     pose: Pose = IDENTITY
     parts: list[Part] = field(default_factory=list)
     visuals: tuple[Visual, ...] = ()  # of a mesh
     place: Pose | None = None
     problem: str = ""  # why there is nothing to be drawn
-    lost: str = ""  # why its frame has no place
+    lost: str = ""  # why its frame has no pose
 
     def build(self, view: View, most_points: int) -> None:
-        """Work out what it looks like."""
+        """Make its parts or, for a mesh, its visuals."""
         try:
             self.pose = pose_of(self.marker.pose)
             if self.marker.type == MESH:
@@ -56,7 +56,7 @@ class Shown:
             self.problem = str(problem)
 
     def put(self, view: View) -> bool:
-        """Find its frame, where that is due; whether it has moved."""
+        """Look up its frame if that is due; returns whether it has moved."""
         locked = self.marker.frame_locked
         if self.place is not None and not locked:
             return False
@@ -100,7 +100,7 @@ class Markers(Drawer):
             self._full = True
 
     def place_anew(self) -> bool:
-        """Each marker by its own frame and time."""
+        """Each marker is placed anew, by its own frame and stamp."""
         for one in self._shown.values():
             one.place = None
         self.changed = True
@@ -129,13 +129,13 @@ class Markers(Drawer):
 
 
 def _parts(seen: dict[Key, Shown], view: View) -> list[Part]:
-    """All shapes of a kind in one part; meshes in one as well."""
+    """All shapes of a kind are in one part, and all meshes in another."""
     meshes = {f"{ns}/{number}": one for (ns, number), one in seen.items() if one.visuals}
     return merged(list(seen.values())) + [part for part, _ in mesh_parts([meshes], view)]
 
 
 def merged(seen: list[Shown]) -> list[Part]:
-    """Without meshes; all shapes of a kind in one part."""
+    """The parts of markers without meshes; all shapes of a kind are in one part."""
     found: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
     parts = []
     for one in seen:
@@ -154,7 +154,7 @@ def merged(seen: list[Shown]) -> list[Part]:
 
 
 def mesh_parts(groups: list[dict[str, Shown]], view: View) -> list[tuple[Part, int]]:
-    """A part for each group that is not empty, and the group's number. Names are unique in all."""
+    """A part for each group that is not empty, and the group's number. Names must be unique."""
     visuals = {name: one.visuals for group in groups for name, one in group.items()}
     if not visuals:
         return []
@@ -171,7 +171,7 @@ def mesh_parts(groups: list[dict[str, Shown]], view: View) -> list[tuple[Part, i
 
 
 def _material(marker: Any) -> Material | None:
-    """The marker's colour, but where the mesh's own are asked for."""
+    """The marker's colour; None if the mesh's own materials are to be used."""
     colour = tuple(colour_of(marker.color) / 255)
     if marker.mesh_use_embedded_materials and not any(colour):
         return None

@@ -1,4 +1,4 @@
-"""rviz/Map: an occupancy grid as a picture on the floor, with its updates."""
+"""rviz/Map: an occupancy grid as an image on the floor, with its updates."""
 
 import zlib
 from typing import Any
@@ -19,14 +19,14 @@ from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.geometry import finite, pose_of
 from sim_viewer.rviz.options import Option
 
-LARGEST = 4096  # cells a side that are sent: what every graphics card takes
+LARGEST = 4096  # cells per side that are sent: a texture size that every graphics card supports
 SCHEMES = ("map", "costmap", "raw")
 MOST_CELLS = 1 << 28
 MAP_TYPE = "nav_msgs/OccupancyGrid"
 
 
 class Map(Drawer):
-    """The newest map with all updates since; its frame is placed anew at each look."""
+    """The newest map with all updates since; its frame is looked up at each drawing."""
 
     def __init__(self, options: dict[str, Any]):
         super().__init__(options)
@@ -34,9 +34,9 @@ class Map(Drawer):
         self._part: Part | None = None
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
-        """A map or an update; Problem where sizes do not fit."""
+        """A map or an update; Problem if sizes do not fit."""
         if hasattr(message, "info"):
-            self._cells = None  # a map that cannot be shown takes the last one away
+            self._cells = None  # so that a map that cannot be shown removes the last one
             self._cells, self._place = cells_of(message), pose_of(message.info.origin)
             self._resolution = float(message.info.resolution)
             self._frame = message.header.frame_id
@@ -46,7 +46,7 @@ class Map(Drawer):
         self._part = None
 
     def place_anew(self) -> bool:
-        """Each look does."""
+        """Each drawing places the map anew."""
         return True
 
     def restyle(self, options: dict[str, Any]) -> None:
@@ -54,7 +54,7 @@ class Map(Drawer):
         self._part = None
 
     def draw(self, view: View) -> list[Part]:
-        """One part; NoTransform where the map's frame has no place."""
+        """One part; NoTransform if the map's frame has no transform."""
         if self._cells is None:
             self.statuses = {"Map": (WARNING, "No map received")}
             return []
@@ -82,7 +82,7 @@ class Map(Drawer):
 
 
 def cells_of(message: Any) -> np.ndarray:
-    """(height, width) int8, the first row at the origin; Problem for sizes that do not fit."""
+    """(height, width) int8, the first row at the origin; Problem if sizes do not fit."""
     width, height = message.info.width, message.info.height
     data = np.asarray(message.data, np.int8)
     if not width or not height:
@@ -96,7 +96,7 @@ def cells_of(message: Any) -> np.ndarray:
 
 
 def put(cells: np.ndarray, update: Any) -> None:
-    """Write a map_msgs/OccupancyGridUpdate into a map; Problem where it lies outside."""
+    """Write a map_msgs/OccupancyGridUpdate into a map; Problem if it lies outside."""
     height, width = cells.shape
     data = np.asarray(update.data, np.int8)
     if (update.x < 0 or update.y < 0 or update.x + update.width > width

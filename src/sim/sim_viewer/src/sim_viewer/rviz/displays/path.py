@@ -17,7 +17,7 @@ HIDDEN, ARROWS, AXES = "None", "Arrows", "Axes"
 
 def path_lines(message: Any, options: dict[str, Any], most: int,
                _pose: Pose) -> tuple[list[Part], Statuses]:
-    """A line, and arrows or axes at each pose where they are wanted. Problem: no numbers."""
+    """A line, and arrows or axes at each pose if wanted. Problem if values are not finite."""
     chosen = message.poses[::max(1, -(-len(message.poses) // most))]
     positions = points([one.pose.position for one in chosen])
     positions += [options[f"Offset/{axis}"] for axis in "XYZ"]
@@ -40,7 +40,7 @@ def _poses(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
 
 def polygon_lines(message: Any, options: dict[str, Any], _most: int,
                   _pose: Pose) -> tuple[list[Part], Statuses]:
-    """The outline, closed; Problem for what are no numbers."""
+    """The closed outline; Problem if values are not finite."""
     corners = points(message.polygon.points)
     return [strip(corners, rgba(options), 0.0, closed=True)], {}
 

@@ -14,7 +14,7 @@ from sim_viewer.rviz.options import Option
 
 def ball(message: Any, options: dict[str, Any], _most: int,
          _pose: Pose) -> tuple[list[Part], Statuses]:
-    """Its diameter is the option Radius, as in rviz. Problem for what are no numbers."""
+    """Its diameter is the option Radius, as in rviz. Problem if values are not finite."""
     row = np.append(points([message.point])[0], (0.0, 0.0, 0.0, 1.0))
     return [shapes("sphere", row[None], [options["Radius"]] * 3, rgba(options))], {}
 

@@ -34,7 +34,7 @@ OPTIONS = (
 
 
 def points(positions: np.ndarray, colours: Any, options: dict[str, Any]) -> Part:
-    """Positions (n, 3) in m and colours (n, 3) or one, without what is no number."""
+    """Positions (n, 3) in m and colours (n, 3) or one; points that are not finite are left out."""
     known = np.isfinite(positions).all(axis=1)
     shades = np.empty((len(positions), 4), np.uint8)
     shades[:, :3], shades[:, 3] = colours, round(255 * options["Alpha"])
@@ -47,7 +47,7 @@ def points(positions: np.ndarray, colours: Any, options: dict[str, Any]) -> Part
 
 def colours_of(positions: np.ndarray, channel: np.ndarray | None, options: dict[str, Any],
                pose: Pose) -> np.ndarray | tuple:
-    """By the option `Color Transformer`: of an axis, a channel of values (n,), or one for all.
+    """By the option `Color Transformer`: from an axis, from a channel (n,), or one for all.
 
     `pose` is that of the frame of `positions` in the fixed frame.
     """
@@ -70,11 +70,11 @@ def colours_of(positions: np.ndarray, channel: np.ndarray | None, options: dict[
 
 
 def counted(shown: int, there: int) -> Statuses:
-    """What the list says of how many points are shown."""
+    """The status that says how many points are shown."""
     text = f"Showing {there} points" if shown == there else f"showing {shown} of {there} points"
     return {"Points": (OK, text)}
 
 
 def evenly(count: int, most: int) -> slice | np.ndarray:
-    """Which of `count` things are shown where `most` may be: all, or that many, evenly spread."""
+    """Indices of `most` of `count` things at most: all, or that many, evenly spread."""
     return slice(None) if count <= most else np.arange(most) * count // most

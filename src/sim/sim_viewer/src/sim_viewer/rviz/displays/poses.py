@@ -1,4 +1,4 @@
-"""rviz/PoseArray, Pose, PoseWithCovariance and Odometry: arrows or axes, and how sure they are."""
+"""rviz/PoseArray, Pose, PoseWithCovariance, Odometry: arrows or axes, and their covariance."""
 
 import math
 from typing import Any
@@ -23,7 +23,7 @@ FLAT_ARROW = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 0), (0.75, 0.2, 0), (1, 0, 0
 
 def shape_options(color: str, length: float, radius: float, head: float,
                   head_radius: float) -> tuple[Option, ...]:
-    """What rviz lists below an arrow or a cross, with its defaults in m."""
+    """The options that rviz lists for an arrow, with their defaults in m."""
     return (Option("Color", "color", color), Option("Alpha", "number", 1.0, high=1),
             Option("Shaft Length", "number", length), Option("Shaft Radius", "number", radius),
             Option("Head Length", "number", head), Option("Head Radius", "number", head_radius))
@@ -43,7 +43,7 @@ def drawn(rows: np.ndarray, options: dict[str, Any]) -> list[Part]:
 
 def array(message: Any, options: dict[str, Any], most: int,
           _pose: Pose) -> tuple[list[Part], Statuses]:
-    """All poses of a PoseArray, such as amcl's particles. Problem for what is no pose."""
+    """All poses of a PoseArray, such as amcl's particles. Problem for an invalid pose."""
     there = len(message.poses)
     rows = pose_rows(list(message.poses))[evenly(there, max(most // 10, 1))]
     return drawn(rows, options), {} if len(rows) == there else {
@@ -52,13 +52,13 @@ def array(message: Any, options: dict[str, Any], most: int,
 
 def stamped(message: Any, options: dict[str, Any], _most: int,
             _pose: Pose) -> tuple[list[Part], Statuses]:
-    """A PoseStamped; Problem for what is no pose."""
+    """A PoseStamped; Problem for an invalid pose."""
     return drawn(pose_rows([message.pose]), options), {}
 
 
 def with_covariance(message: Any, options: dict[str, Any], _most: int,
                     _pose: Pose) -> tuple[list[Part], Statuses]:
-    """A PoseWithCovarianceStamped, such as amcl_pose; Problem for what is no pose."""
+    """A PoseWithCovarianceStamped, such as amcl_pose; Problem for an invalid pose."""
     rows = pose_rows([message.pose.pose])
     return drawn(rows, options) + ellipsoid(rows[0], message.pose.covariance, options), {}
 
@@ -72,7 +72,7 @@ class Trail(Drawer):
         self._newest: tuple[Pose, np.ndarray, Any] | None = None
 
     def take(self, message: Any, pose: Pose | None, now: float) -> None:
-        """Problem for what is no pose."""
+        """Problem for an invalid pose."""
         own = pose_rows([message.pose.pose])
         row = moved(own, pose)
         if len(self._rows) and not self._far(self._rows[-1], row[0]):
@@ -87,7 +87,7 @@ class Trail(Drawer):
                 or 2 * math.acos(half) > self.options["Angle Tolerance"])
 
     def draw(self, view: View) -> list[Part] | None:
-        """The whole trail; Problem for a covariance that is none."""
+        """The whole trail; Problem for an invalid covariance."""
         if not self.changed or self._newest is None:
             return None
         self.changed = False

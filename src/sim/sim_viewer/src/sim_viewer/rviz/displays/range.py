@@ -14,9 +14,9 @@ from sim_viewer.rviz.options import Option
 
 def cone(message: Any, options: dict[str, Any], _most: int,
          _pose: Pose) -> tuple[list[Part], Statuses]:
-    """From the sensor to what it has seen; nothing where that is outside of its limits.
+    """A cone from the sensor to the measured range; nothing if that is outside of its limits.
 
-    Problem for an angle that is no number.
+    Problem if the angle is not finite.
     """
     angle = finite([message.field_of_view])[0]
     reach = float(message.range)

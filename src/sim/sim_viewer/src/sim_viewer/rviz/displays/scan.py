@@ -14,7 +14,7 @@ from sim_viewer.rviz.options import Option
 
 def scan_points(message: Any, options: dict[str, Any], most: int,
                 pose: Pose) -> tuple[list[Part], Statuses]:
-    """Of all beams with a range within the laser's own limits. Problem for angles that are none."""
+    """Points of all beams with a range within the laser's limits. Problem for invalid angles."""
     ranges = np.asarray(message.ranges, float)
     if not np.isfinite([message.angle_min, message.angle_increment]).all():
         raise Problem("The scan's angles are not numbers")
