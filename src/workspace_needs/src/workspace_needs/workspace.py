@@ -46,7 +46,7 @@ class Package:
     asked: list[Asked] = field(default_factory=list)
     includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
     problem: str = ""  # why its package.xml cannot be read
-    unfit: dict[str, str] = field(default_factory=dict)  # feature that no tool supports: reason
+    unfit: dict[str, str] = field(default_factory=dict)  # what no build tool can handle: why
     is_ours: bool = False  # of this repository: setup installs its dependencies
 
 
