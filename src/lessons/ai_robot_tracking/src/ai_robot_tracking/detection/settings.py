@@ -1,4 +1,4 @@
-"""The detector's numbers: from its YAML file, and from the node's own parameters, which win."""
+"""The detector's settings: from its YAML file, overridden by the node's own parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FIELDS = {entry.name: entry for entry in fields(Settings)}
 
 
 def read_settings(path: Path | str, given: Mapping[str, object]) -> Settings:
-    """The file's numbers with those of `given` (ROS parameters) in their place.
+    """The file's settings, overridden by those in `given` (ROS parameters).
 
     Raises SettingsError for an unknown or missing key and for a value that does not fit.
     """
